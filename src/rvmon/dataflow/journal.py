@@ -23,9 +23,10 @@ class Journal:
     def __init__(self, network: Network) -> None:
         self._plan, self._gap = network.plan, network.positions.distance
         # Most networks live for an attempt alone.
-        self._begun = None if network.grown == -FAR else network.copy()
+        self._begun = None if network.grown == -FAR and not network.noted else network.copy()
         self._told: list[tuple[int, Sequence[bool] | None, int | None]] = []
-        self._most = max(_LEAST, sum(len(true) + len(false) for true, false in network.known))
+        size = sum(len(true) + len(false) for true, false in network.known)
+        self._most = max(_LEAST, size + len(network.noted))
         self._telling = False
         self._played: tuple[int, Network] | None = None
 
@@ -38,18 +39,16 @@ class Journal:
         """Whether it is time for another one: it is full, or the network was interrupted."""
         return self._telling or len(self._told) >= self._most
 
-    def visit(self, network: Network, t: int, letter: Sequence[bool], wanted: int | None) -> None:
-        """Tell the network of a position; see `Network.visit`."""
-        self._telling = True
-        network.visit(t, letter, wanted)
-        self._told.append((t, letter, wanted))
-        self._telling = False
+    def note(self, network: Network, t: int, letter: Sequence[bool]) -> None:
+        """Tell the network of a position; see `Network.note`."""
+        network.note(t, letter)
+        self._told.append((t, letter, None))
 
-    def grow(self, network: Network, limit: int) -> None:
+    def grow(self, network: Network, limit: int, wanted: int | None = None) -> None:
         """Tell the network of time; see `Network.grow`."""
         self._telling = True
-        network.grow(limit)
-        self._told.append((limit, None, None))
+        network.grow(limit, wanted)
+        self._told.append((limit, None, wanted))
         self._telling = False
 
     def after(self, count: int) -> Network:
@@ -60,8 +59,8 @@ class Journal:
             done, network = 0, begun.copy() if begun else Network(self._plan, self._gap)
         for at, letter, wanted in self._told[done:count]:
             if letter is None:
-                network.grow(at)
+                network.grow(at, wanted)
             else:
-                network.visit(at, letter, wanted)
+                network.note(at, letter)
         self._played = count, network
         return network

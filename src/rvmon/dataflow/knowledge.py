@@ -6,17 +6,15 @@ from collections.abc import Sequence
 from typing import Self, assert_never
 
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
-from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, stamp
+from rvmon.dataflow.piecewise import FAR, PAST, Pieces, stamp
 from rvmon.dataflow.positions import Positions
-from rvmon.dataflow.ranges import Range, Ranges, around, drop, overlapping
+from rvmon.dataflow.ranges import Range, Ranges, around, drop, on_stretch
 from rvmon.dataflow.ranges import add as add_to
 from rvmon.dataflow.sweep import Carried, Known
 from rvmon.formula.core import Core
 
 _SELDOM = 16
 """After so many positions it is looked what is still wanted."""
-
-NO_NEWS: Known = ((), ())
 
 
 class Knowledge:
@@ -33,11 +31,15 @@ class Knowledge:
         plan: its nodes.
         positions: those of the word.
         known: per node, where it is true and where it is false.
-        news: what of that became known last, and when; all the rest was known before.
+        news: what of that became known last, and when, per node of the true ones, then of the
+            false ones; all the rest was known before.
         grown: the stamp that time has come to.
         pending: per node, the first position that is wanted and not known.
         swept: per `until`, up to where its operands only lead on; per `since`, where it is known.
         carried: per `since`, what it is just before that.
+        watched: by index of a leaf, values that may make something known before it is due.
+        noted: the positions, with their letters, that time has not been let come to yet.
+        arrived: of sparse positions, one that comes in this step, with the integers before it.
     """
 
     def __init__(self, plan: NetworkPlan, gap: int | None) -> None:
@@ -45,14 +47,17 @@ class Knowledge:
         self.plan = plan
         self.positions = Positions(gap)
         self.known: list[tuple[Ranges, Ranges]] = [([], []) for _ in range(count)]
-        self.news: list[Known] = [NO_NEWS] * count
+        self.news: list[Pieces] = [()] * (2 * count)
         self.grown = -FAR
         self.pending = [-FAR] * count
         self.swept = [-FAR] * count
         self.carried: list[Carried] = [
             (isinstance(node, Sweep) and node.dual, PAST) for node in plan.nodes
         ]
+        self.arrived: Range | None = None
         self._letter: Sequence[bool] = ()
+        self.watched: list[tuple[int, bool]] = []
+        self.noted: list[tuple[int, Sequence[bool]]] = []
         self._visits = _SELDOM
 
     def copy(self) -> Self:
@@ -66,7 +71,10 @@ class Knowledge:
         made.pending = list(self.pending)
         made.swept = list(self.swept)
         made.carried = list(self.carried)
+        made.arrived = None
         made._letter = self._letter
+        made.watched = list(self.watched)
+        made.noted = list(self.noted)
         made._visits = self._visits
         return made
 
@@ -76,12 +84,10 @@ class Knowledge:
 
     def truth_at(self, place: int, integer: int) -> Carried:
         """What becomes known of a node at an integer, and its stamp."""
-        for value, ranges, news in zip(
-            (True, False), self.known[place], self.news[place], strict=True
-        ):
+        for side, ranges in enumerate(self.known[place]):
             if around(ranges, integer) is not None:
-                at = stamp(news, integer)
-                return value, PAST if at is None else at
+                at = stamp(self.news[2 * place + side], integer)
+                return not side, PAST if at is None else at
         return None
 
     def pieces(self, place: int, on: Range = (-FAR, FAR)) -> Known:
@@ -90,22 +96,7 @@ class Knowledge:
 
     def side(self, place: int, side: int, on: Range) -> Pieces:
         """Where on a stretch a node becomes known to be true (side 0), or false (1)."""
-        first, last = on
-        news = self.news[place][side]
-        if news and (news[-1][1] < first or news[0][0] > last):
-            news = ()
-        elif news and news[-1][0] <= first and last <= news[-1][1]:
-            return ((first, last, news[-1][2], news[-1][3]),)
-        made: list[Piece] = []
-        for left, right in overlapping(self.known[place][side], first, last):
-            start, end = max(left, first), min(right, last)
-            for its_left, its_right, at, slope in news:
-                if its_right >= start and its_left <= end:
-                    append(made, start, its_left - 1, PAST, 0)
-                    append(made, max(its_left, start), min(its_right, end), at, slope)
-                    start = its_right + 1
-            append(made, start, end, PAST, 0)
-        return made
+        return on_stretch(self.known[place][side], self.news[2 * place + side], on)
 
     def known_of(self, core: Core) -> Known:
         """What becomes known of a part of the formula."""
@@ -113,7 +104,8 @@ class Knowledge:
 
     def news_of(self, core: Core) -> Known:
         """What became known last of a part of the formula."""
-        return self.news[self.plan.places[core]]
+        place = self.plan.places[core]
+        return self.news[2 * place], self.news[2 * place + 1]
 
     def value_at(self, core: Core, position: int, limit: int) -> bool | None:
         """What is known of a part of the formula at a stamp."""
@@ -145,24 +137,9 @@ class Knowledge:
             for side in known
         )
 
-    # What becomes known.
-
     def tell(self, place: int, side: int, pieces: Pieces) -> None:
-        """Add to what becomes known of a node, ascending; it is not known yet."""
-        if not pieces:
-            return
-        ranges = self.known[place][side]
-        for left, right, _, _ in pieces:
-            if ranges and ranges[-1][1] == left - 1:
-                ranges[-1] = (ranges[-1][0], right)
-            else:
-                add_to(ranges, left, right)
-        true, false = self.news[place]
-        old = false if side else true
-        new: Pieces = (*old, *pieces) if old else pieces
-        if old and old[-1] > pieces[0]:
-            new = sorted(new)
-        self.news[place] = (true, new) if side else (new, false)
+        """Add to what becomes known of a node; see `tell`."""
+        tell(self.news, 2 * place + side, self.known[place][side], pieces)
 
     # What is wanted.
 
@@ -258,3 +235,34 @@ class Knowledge:
         for place, node in enumerate(self.plan.nodes):
             if isinstance(node, Sweep) and not node.future:
                 add_to(self.known[place][not node.dual], -FAR, self.positions.first - 1)
+
+
+def tell(news: list[Pieces], index: int, ranges: Ranges, pieces: Pieces) -> None:
+    """Add to what becomes known of a node, ascending; it is not known yet.
+
+    Args:
+        news: of the network.
+        index: where of that the node has its own.
+        ranges: where it is known with this value.
+        pieces: where it is from now on.
+    """
+    if not pieces:
+        return
+    for left, right, _, _ in pieces:
+        if not ranges:
+            ranges.append((left, right))
+            continue
+        start, end = ranges[-1]
+        if end == left - 1:
+            ranges[-1] = (start, right)
+        elif end < left:
+            ranges.append((left, right))
+        else:
+            add_to(ranges, left, right)
+    old = news[index]
+    if not old:
+        news[index] = pieces
+    elif old[-1] > pieces[0]:
+        news[index] = sorted((*old, *pieces))
+    else:
+        news[index] = (*old, *pieces)

@@ -14,12 +14,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.dataflow.knowledge import NO_NEWS, Knowledge
-from rvmon.dataflow.news import news_of_junction, news_of_shift, news_of_until, news_of_window
-from rvmon.dataflow.news_of_past import Step, news_of_past
+from rvmon.dataflow.knowledge import Knowledge
+from rvmon.dataflow.news import Work, junction_work, shift_work
+from rvmon.dataflow.news_of_past import past_work
+from rvmon.dataflow.news_of_until import until_work
+from rvmon.dataflow.news_of_window import sampled_window_work, window_work
+from rvmon.dataflow.next_news import NOTHING, Ask, asks_of
 from rvmon.dataflow.nodes import Junction, Shift, Sweep, Window
 from rvmon.dataflow.piecewise import FAR, Piece
-from rvmon.dataflow.ranges import Range
+from rvmon.dataflow.soonest_news import Soonest, soonest_of
+from rvmon.runtime.values import NEVER
+
+Noted = Sequence[tuple[int, Sequence[bool]]]
+"""Positions with their letters."""
+
+MOST_NOTED = 256
+"""So many positions are noted at most before they are worked out."""
 
 FOREVER = 1 << 200
 """Behind all stamps."""
@@ -35,92 +45,155 @@ class Network(Knowledge):
 
     STATE = (
         *("plan", "positions", "known", "news", "grown", "pending", "swept", "carried"),
-        *("_letter", "_visits"),
+        *("arrived", "_letter", "noted", "watched", "_visits"),
     )
 
-    def visit(self, t: int, letter: Sequence[bool], wanted: int | None) -> None:
-        """Come to a position with a letter, which stays until the next visit.
+    _works: Sequence[Work] | None = None
+    """What works out the news of the nodes but for leaves, bound to what is known of them."""
+
+    _heeds: Sequence[Ask] | None = None
+    """What tells when those nodes have news by time alone."""
+
+    _soonest: Soonest | None = None
+    """What tells before when a position is not known, whatever letters come."""
+
+    def note(self, t: int, letter: Sequence[bool]) -> None:
+        """Note a position with a letter, which stays until the next one.
+
+        What it brings is worked out when time is let come to it.
 
         Args:
             t: its instant.
             letter: the truth of each of the plan's leaves.
-            wanted: the instant of the first position whose value is wanted; `None`: this one.
         """
-        positions = self.positions
-        position = t // positions.gap
-        before = self._letter
-        first = positions.first == FAR
-        # Before there is a position: behind an interrupt, too, each has a letter.
-        self._letter = letter
-        behind = positions.visit(position)
-        self._tidy_up(position if wanted is None else wanted // positions.gap)
-        if first:
-            self.grown = max(self.grown, 2 * t)
-            self._begin()
-        self.news = [NO_NEWS] * len(self.plan.nodes)
-        if positions.sparse:
-            self._read(letter, (behind, position, 1 + 2 * position, 0))
-        else:
-            start = (self.grown - 1) // positions.slope + 1
-            if not first and start < position:
-                self._read_on(before, letter, start, position)
-            elif start <= position:
-                self._read(letter, (position, position, 1, positions.slope))
-        self._work_out(2 * t + 1, (behind, position) if positions.sparse else None)
+        self.noted.append((t // self.positions.gap, letter))
 
-    def grow(self, limit: int) -> None:
-        """Let time come to a stamp, the letter staying at the positions up to there."""
-        if limit <= self.grown:
-            return
-        positions = self.positions
-        if positions.first == FAR:
-            self.grown = limit
-            return
-        self.news = [NO_NEWS] * len(self.plan.nodes)
-        if not positions.sparse:
-            slope = positions.slope
-            first = max((self.grown - 1) // slope + 1, positions.first)
-            last = FAR if limit >= FOREVER else (limit - 1) // slope
-            if first <= last:
-                self._read(self._letter, (first, last, 1, slope))
-        self._work_out(limit, None)
-
-    def _read(self, letter: Sequence[bool], piece: Piece) -> None:
-        """Tell the leaves of positions with one letter."""
-        for (place, _), value in zip(self.plan.leaves, letter, strict=True):
-            self.tell(place, not value, (piece,))
-
-    def _read_on(
-        self, before: Sequence[bool], letter: Sequence[bool], start: int, position: int
-    ) -> None:
-        """Tell the leaves of the positions from `start` on, at the last of which a letter comes."""
-        slope = self.positions.slope
-        whole = ((start, position, 1, slope),)
-        old, new = ((start, position - 1, 1, slope),), ((position, position, 1, slope),)
-        for (place, _), was, value in zip(self.plan.leaves, before, letter, strict=True):
-            if was is value:
-                self.tell(place, not value, whole)
-            else:
-                self.tell(place, not was, old)
-                self.tell(place, not value, new)
-
-    def _work_out(self, limit: int, arrived: Range | None) -> None:
-        """Let the other nodes have what becomes known of them up to a stamp, operands first.
+    def grow(self, limit: int, wanted: int | None = None) -> None:
+        """Let time come to a stamp, the letters being as noted.
 
         Args:
             limit: the stamp.
-            arrived: of sparse positions, one that has come, with the integers before it.
+            wanted: the instant of the first position whose value is wanted, if it may have come.
         """
-        step = Step(self.grown, limit, arrived)
-        for place, node in self.plan.inner:
-            if isinstance(node, Window) and node.over is not None:
-                news_of_window(self, place, node, step)
-            elif isinstance(node, Junction):
-                news_of_junction(self, place, node)
-            elif isinstance(node, Sweep) and node.future:
-                news_of_until(self, place, node)
-            elif isinstance(node, Shift) and node.offset >= 0:
-                news_of_shift(self, place, node)
-            else:
-                news_of_past(self, place, node, step)
+        noted, positions, before = self.noted, self.positions, self._letter
+        if limit <= self.grown and not noted:
+            return
+        if noted:
+            self.noted = []
+            # Behind an interrupt, too, each position has a letter.
+            self._letter = noted[-1][1]
+        first = positions.first == FAR
+        if first:
+            if not noted:
+                self.grown = limit
+                return
+            before = noted[0][1]
+            positions.first = noted[0][0]
+        if wanted is not None:
+            self._tidy_up(wanted // positions.gap)
+        if first:
+            self.grown = max(self.grown, 2 * positions.first * positions.gap)
+            self._begin()
+        self.news[:] = [()] * len(self.news)
+        if positions.sparse:
+            self._read_samples(noted)
+        else:
+            self._read_held(before, noted, limit)
+        since = self.grown
+        for work in self._works or self._bound():
+            work(since, limit)
         self.grown = limit
+        self.arrived = None
+
+    def _read_samples(self, noted: Noted) -> None:
+        """Tell the leaves of samples."""
+        if not noted:
+            return
+        cells = []
+        for position, letter in noted:
+            behind = self.positions.visit(position)
+            cells.append(((behind, position, 1 + 2 * position, 0), letter))
+        self.arrived = cells[0][0][0], noted[-1][0]
+        for index, (place, _) in enumerate(self.plan.leaves):
+            true = [cell for cell, letter in cells if letter[index]]
+            false = [cell for cell, letter in cells if not letter[index]]
+            self.tell(place, 0, true)
+            self.tell(place, 1, false)
+
+    def _read_held(self, before: Sequence[bool], noted: Noted, limit: int) -> None:
+        """Tell the leaves of all positions up to a stamp, each with the letter that was last."""
+        slope = self.positions.slope
+        start = max((self.grown - 1) // slope + 1, self.positions.first)
+        end = FAR if limit >= FOREVER else (limit - 1) // slope
+        for index, (place, _) in enumerate(self.plan.leaves):
+            first, value = start, before[index]
+            sides: tuple[list[Piece], list[Piece]] = [], []
+            for position, letter in noted:
+                if letter[index] is not value:
+                    if first < position:
+                        sides[not value].append((first, position - 1, 1, slope))
+                        first = position
+                    value = letter[index]
+            if first <= end:
+                sides[not value].append((first, end, 1, slope))
+            self.tell(place, 0, sides[0])
+            self.tell(place, 1, sides[1])
+
+    def next_news(self, wanted: int) -> int:
+        """An instant before which time alone makes nothing known that is waited for.
+
+        It may be in vain.
+
+        Args:
+            wanted: the instant of the first position whose value is waited for.
+        """
+        positions = self.positions
+        now = min((self.grown - 1) // positions.slope, positions.last)
+        asked = [*NOTHING * (len(self.plan.nodes) - 1), *2 * (wanted // positions.gap, now)]
+        found = NEVER
+        if self._heeds is None:
+            self._heeds = asks_of(self)
+        for ask in self._heeds:
+            found = ask(self, asked, now, found)
+        return found
+
+    def soonest_news(self, wanted: int) -> int:
+        """An instant before which nothing becomes known that is waited for, whatever letters come.
+
+        But for one with a value that is watched for; see `is_roused`.
+
+        Args:
+            wanted: as for `next_news`.
+        """
+        self.watched.clear()
+        positions = self.positions
+        now = min((self.grown - 1) // positions.slope, positions.last)
+        if self._soonest is None:
+            self._soonest = soonest_of(self)
+        first = wanted // positions.gap
+        return min(self._soonest(self, side, first, now) for side in (0, 1))
+
+    def is_roused(self, letter: Sequence[bool]) -> bool:
+        """Whether a letter may make something known before the soonest news, or many are noted."""
+        return len(self.noted) >= MOST_NOTED or any(
+            letter[index] is value for index, value in self.watched
+        )
+
+    def _bound(self) -> Sequence[Work]:
+        self._works = [_work_of(self, place, node) for place, node in self.plan.inner]
+        return self._works
+
+
+def _work_of(network: Network, place: int, node: Junction | Window | Sweep | Shift) -> Work:
+    match node:
+        case Junction():
+            return junction_work(network, place, node)
+        case Window(over=int()):
+            made = sampled_window_work if network.positions.sparse else window_work
+            return made(network, place, node)
+        case Sweep(future=True):
+            return until_work(network, place, node)
+        case Shift() if node.offset >= 0:
+            return shift_work(network, place, node)
+        case _:
+            return past_work(network, place, node)

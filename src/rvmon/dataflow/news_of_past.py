@@ -7,48 +7,39 @@ their operands became known.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from rvmon.dataflow.evaluate import evaluated
 from rvmon.dataflow.knowledge import Knowledge
+from rvmon.dataflow.news import Work
 from rvmon.dataflow.nodes import Shift, Sweep, Window, operands_of
 from rvmon.dataflow.piecewise import FAR, up_to
 from rvmon.dataflow.ranges import Range, Ranges, gaps, merged
 from rvmon.dataflow.sweep import Carried
 
 
-class Step(NamedTuple):
-    """What happens to a network.
-
-    Attributes:
-        before: the stamp as of which all is known.
-        limit: the stamp as of which all is to be.
-        arrived: of sparse positions, one that has come, with the integers before it.
-    """
-
-    before: int
-    limit: int
-    arrived: Range | None
-
-
-def news_of_past(network: Knowledge, place: int, node: Window | Shift | Sweep, step: Step) -> None:
+def past_work(network: Knowledge, place: int, node: Window | Shift | Sweep) -> Work:
     """A window in the past, a `since`, or an operand further back."""
-    last = network.positions.last
-    base = network.swept[place] if isinstance(node, Sweep) else network.pending[place]
-    for start, end in _candidates(network, node, step):
-        on = max(start, base), min(end, last)
-        while on[0] <= on[1]:
-            for half in gaps(network.known[place][0], on):
-                for gap in gaps(network.known[place][1], half):
-                    _work_out(network, place, node, gap, step.limit)
-            base = on[1] + 1
-            if not isinstance(node, Sweep) or network.truth_at(place, on[1]) is None:
-                break
-            # What is known of it may lead on.
-            on = base, last
+
+    def work(before: int, limit: int) -> None:
+        last = network.positions.last
+        base = network.swept[place] if isinstance(node, Sweep) else network.pending[place]
+        for start, end in _candidates(network, node, before, limit):
+            on = max(start, base), min(end, last)
+            while on[0] <= on[1]:
+                for half in gaps(network.known[place][0], on):
+                    for gap in gaps(network.known[place][1], half):
+                        _work_out(network, place, node, gap, limit)
+                base = on[1] + 1
+                if not isinstance(node, Sweep) or network.truth_at(place, on[1]) is None:
+                    break
+                # What is known of it may lead on.
+                on = base, last
+
+    return work
 
 
-def _candidates(network: Knowledge, node: Window | Shift | Sweep, step: Step) -> Ranges:
+def _candidates(
+    network: Knowledge, node: Window | Shift | Sweep, before: int, limit: int
+) -> Ranges:
     """Where something may become known of a node: its operands changed, or positions come."""
     low = high = 0
     if isinstance(node, Window):
@@ -58,10 +49,10 @@ def _candidates(network: Knowledge, node: Window | Shift | Sweep, step: Step) ->
     sources: Ranges = [
         piece[:2]
         for operand in operands_of(node)
-        for pieces in network.news[operand]
+        for pieces in network.news[2 * operand : 2 * operand + 2]
         for piece in (network.positions.held_on(pieces) if isinstance(node, Shift) else pieces)
     ]
-    arrived = [] if step.arrived is None else [step.arrived]
+    arrived = [] if network.arrived is None else [network.arrived]
     found = [
         (first - high if first > -FAR else first, last - low if last < FAR else FAR)
         for first, last in [*sources, *arrived]
@@ -69,7 +60,7 @@ def _candidates(network: Knowledge, node: Window | Shift | Sweep, step: Step) ->
     found += arrived
     if not isinstance(node, Sweep):
         slope = network.positions.slope
-        found.append(((step.before - 1) // slope + 1, (step.limit - 1) // slope))
+        found.append(((before - 1) // slope + 1, (limit - 1) // slope))
     return merged(found)
 
 

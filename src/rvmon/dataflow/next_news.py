@@ -9,135 +9,174 @@ operand has news before. None of this holds of what looks back.
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from collections.abc import Callable, Sequence
 
-from rvmon.dataflow.network import Network
+from rvmon.dataflow.knowledge import Knowledge
 from rvmon.dataflow.nodes import Junction, Leaf, Shift, Sweep, Window, operands_of
 from rvmon.dataflow.piecewise import FAR
-from rvmon.dataflow.ranges import Range, Ranges, around
-from rvmon.runtime.values import NEVER
+from rvmon.dataflow.ranges import around, next_in
 
-Asked = list[list[int]]
-"""By node, the first and the last position of which it matters that it is true, then if false."""
+Asked = list[int]
+"""Of each node the first and the last position at which it matters that it is true, or false."""
 
+NOTHING = (FAR, -FAR, FAR, -FAR)
+"""Of a node of which nothing matters."""
 
-def next_news(network: Network, wanted: int) -> int:
-    """An instant before which nothing becomes known that is waited for; it may be in vain.
-
-    Args:
-        network: as far as time has come.
-        wanted: the instant of the first position whose value is waited for.
-    """
-    positions, nodes = network.positions, network.plan.nodes
-    now = min((network.grown - 1) // positions.slope, positions.last)
-    asked: Asked = [[FAR, -FAR, FAR, -FAR] for _ in nodes]
-    first = wanted // positions.gap
-    asked[-1] = [first, now, first, now]
-    found = NEVER
-    for place, node in reversed(network.plan.inner):
-        first_true, last_true, first_false, last_false = asked[place]
-        if isinstance(node, Junction):
-            for operand in node.operands:
-                if not isinstance(nodes[operand], Leaf):
-                    _ask(asked[operand], 0, first_true, last_true)
-                    _ask(asked[operand], 2, first_false, last_false)
-            continue
-        first = network.unknown_from(place, min(first_true, first_false))
-        last = max(last_true, last_false)
-        if first > last:
-            continue
-        if isinstance(node, Sweep) and node.future:
-            _ask_sweep(network, place, node, (first, min(last, now)), now, asked)
-            continue
-        if isinstance(node, Window) and node.over is not None:
-            low, high = node.low, node.high
-        elif isinstance(node, Shift) and node.offset >= 0:
-            low = high = node.offset
-        else:
-            for operand in operands_of(node):
-                asked[operand] = [-FAR, FAR, -FAR, FAR]
-            continue
-        own = asked[node.operand]
-        for side, start, end in ((0, first_true, last_true), (1, first_false, last_false)):
-            if start <= end and first <= end:
-                start = max(start, first)
-                _ask(own, 2 * side, start + low, end + high)
-                if isinstance(node, Window) and side != node.every:
-                    found = min(found, _over(network, place, node, side, (start, end), now))
-                elif low and not positions.sparse:
-                    on = start, end
-                    found = min(found, _opening(network, place, node, side, low, on, now))
-    return found
+Ask = Callable[[Knowledge, Asked, int, int], int]
+"""From a network, what matters, the last position that was read and an instant: an earlier one
+before which a node has no news by time alone, or that one. It notes what operands matter for."""
 
 
-def _ask(asked: list[int], index: int, first: int, last: int) -> None:
+def asks_of(network: Knowledge) -> list[Ask]:
+    """Those of a network's nodes that look ahead, operators before operands."""
+    return [
+        ask for place, node in reversed(network.plan.inner) for ask in _asks(network, place, node)
+    ]
+
+
+def _asks(network: Knowledge, place: int, node: Junction | Window | Sweep | Shift) -> Sequence[Ask]:
+    if isinstance(node, Junction):
+        return (_junction(network, place, node),)
+    if isinstance(node, Sweep) and node.future:
+        return (_until(network, place, node),)
+    if isinstance(node, Window) and node.over is not None:
+        over = _over(network, place, node)
+        passed_on = _passed_on(network, place, node.operand, node.low, node.high)
+        if node.low and not network.positions.sparse:
+            return passed_on, over, _opening(network, place, node.operand, node.low, node.every)
+        return passed_on, over
+    if isinstance(node, Shift) and node.offset >= 0:
+        offset = node.offset
+        passed_on = _passed_on(network, place, node.operand, offset, offset)
+        if offset and not network.positions.sparse:
+            openings = (_opening(network, place, node.operand, offset, side) for side in (0, 1))
+            return passed_on, *openings
+        return (passed_on,)
+    return (_behind(node),)
+
+
+def _note(asked: Asked, index: int, first: int, last: int) -> None:
     if first <= last:
         asked[index] = min(first, asked[index])
         asked[index + 1] = max(last, asked[index + 1])
 
 
-def _over(network: Network, place: int, node: Window, side: int, on: Range, now: int) -> int:
+def _behind(node: Window | Shift | Sweep) -> Ask:
+    """What looks back may have need of anything."""
+
+    def ask(_network: Knowledge, asked: Asked, _now: int, found: int) -> int:
+        for operand in operands_of(node):
+            asked[4 * operand : 4 * operand + 4] = (-FAR, FAR, -FAR, FAR)
+        return found
+
+    return ask
+
+
+def _junction(network: Knowledge, place: int, node: Junction) -> Ask:
+    nodes = network.plan.nodes
+    own = 4 * place
+    operands = [4 * one for one in node.operands if not isinstance(nodes[one], Leaf)]
+
+    def ask(_network: Knowledge, asked: Asked, _now: int, found: int) -> int:
+        for operand in operands:
+            _note(asked, operand, asked[own], asked[own + 1])
+            _note(asked, operand + 2, asked[own + 2], asked[own + 3])
+        return found
+
+    return ask
+
+
+def _passed_on(network: Knowledge, place: int, operand: int, low: int, high: int) -> Ask:
+    """Have the operand matter so much further on."""
+    own, theirs = 4 * place, 4 * operand
+    is_leaf = isinstance(network.plan.nodes[operand], Leaf)
+
+    def ask(network: Knowledge, asked: Asked, _now: int, found: int) -> int:
+        first = min(asked[own], asked[own + 2])
+        if first < FAR:
+            first = network.unknown_from(place, first)
+            for index in (own, own + 2):
+                if asked[index] < first:
+                    asked[index] = first
+                if not is_leaf:
+                    _note(asked, theirs + index - own, asked[index] + low, asked[index + 1] + high)
+        return found
+
+    return ask
+
+
+def _over(network: Knowledge, place: int, node: Window) -> Ask:
     """When the next window is over in which the operand is the same up to now."""
-    positions, over = network.positions, node.over or 0
-    start = max(on[0], (network.grown // 2 - over) // positions.gap + 1)
-    if node.low <= node.high:
-        run = around(network.known[node.operand][side], now)
-        if run is None and not positions.sparse:
-            return NEVER
-        # Where samples are positions, none may come.
-        start = max(start, (now + 1 if run is None else run[0]) - node.low)
-    first = network.unknown_from(place, start)
-    is_wanted = first <= min(on[1], positions.last)
-    return first * positions.gap + over if is_wanted else NEVER
+    positions, gap = network.positions, network.positions.gap
+    low, over, empty = node.low, node.over or 0, node.low > node.high
+    index = 4 * place + 2 * (not node.every)
+    ranges = network.known[node.operand][not node.every]
+
+    def ask(network: Knowledge, asked: Asked, now: int, found: int) -> int:
+        start, last = asked[index], asked[index + 1]
+        if start > last:
+            return found
+        start = max(start, (network.grown // 2 - over) // gap + 1)
+        if not empty:
+            run = around(ranges, now)
+            if run is not None:
+                start = max(start, run[0] - low)
+            elif positions.sparse:
+                start = max(start, now + 1 - low)  # none may come
+            else:
+                return found
+        last = min(last, positions.last)
+        if start * gap + over >= found or start > last:
+            return found
+        first = network.unknown_from(place, start)
+        return min(found, first * gap + over) if first <= last else found
+
+    return ask
 
 
-def _opening(
-    network: Network,
-    place: int,
-    node: Window | Shift,
-    side: int,
-    offset: int,
-    on: Range,
-    now: int,
-) -> int:
+def _opening(network: Knowledge, place: int, operand: int, offset: int, side: int) -> Ask:
     """When the next position comes that a window opens at, or that is so much further on."""
-    if around(network.known[node.operand][1 - side], now) is not None:
-        return NEVER
-    first = network.unknown_from(place, max(on[0], now - offset + 1))
-    return (first + offset) * network.positions.gap if first <= on[1] else NEVER
+    gap, index = network.positions.gap, 4 * place + 2 * side
+    opposite = network.known[operand][1 - side]
+
+    def ask(network: Knowledge, asked: Asked, now: int, found: int) -> int:
+        start, last = max(asked[index], now - offset + 1), asked[index + 1]
+        if start > last or (start + offset) * gap >= found or around(opposite, now) is not None:
+            return found
+        first = network.unknown_from(place, start)
+        return min(found, (first + offset) * gap) if first <= last else found
+
+    return ask
 
 
-def _ask_sweep(
-    network: Network, place: int, node: Sweep, on: Range, now: int, asked: Asked
-) -> None:
+def _until(network: Knowledge, place: int, node: Sweep) -> Ask:
     """Have the operands of an `until` matter where it is not known."""
-    first, last = on
-    known, start = network.known, max(first, network.swept[place])
+    own, left, right = 4 * place, 4 * node.left, 4 * node.right
     met, unmet = int(node.dual), int(not node.dual)
-    right = asked[node.right]
-    _ask(right, 2 * met, start, last)
-    if not isinstance(network.plan.nodes[node.left], Leaf):
-        _ask(right, 2 * unmet, start, last)
-        for side in (met, unmet):
-            _ask(asked[node.left], 2 * side, start, last)
-        return
-    # That it is not met is known of all up to where it does not lead on, or is known not to be met.
-    end = min(_next_in(known[node.left][unmet], start), _next_in(known[place][unmet], start))
-    if end <= now:
-        while (run := _around_either(network, node.right, end)) is not None:
-            end = run[0] - 1
-        _ask(right, 2 * unmet, max(start, end), last)
+    known, swept = network.known, network.swept
+    is_leaf = isinstance(network.plan.nodes[node.left], Leaf)
+    is_alone = isinstance(network.plan.nodes[node.right], Leaf)
+    left_unmet, own_unmet = known[node.left][unmet], known[place][unmet]
+    true, false = known[node.right]
 
+    def ask(network: Knowledge, asked: Asked, now: int, found: int) -> int:
+        last = min(max(asked[own + 1], asked[own + 3]), now)
+        first = min(asked[own], asked[own + 2])
+        if first > last or (is_leaf and is_alone):
+            return found
+        start = max(network.unknown_from(place, first), swept[place])
+        _note(asked, right + 2 * met, start, last)
+        if not is_leaf:
+            _note(asked, right + 2 * unmet, start, last)
+            _note(asked, left, start, last)
+            _note(asked, left + 2, start, last)
+            return found
+        # That it is not met is known of all up to where it does not lead on, or is known not to be.
+        end = min(next_in(left_unmet, start), next_in(own_unmet, start))
+        if end <= now:
+            while (run := around(true, end) or around(false, end)) is not None:
+                end = run[0] - 1
+            _note(asked, right + 2 * unmet, max(start, end), last)
+        return found
 
-def _next_in(ranges: Ranges, integer: int) -> int:
-    """The first integer in some ranges from one on; `FAR` if there is none."""
-    run = around(ranges, integer)
-    if run is not None:
-        return integer
-    index = bisect_right(ranges, (integer, FAR))
-    return ranges[index][0] if index < len(ranges) else FAR
-
-
-def _around_either(network: Network, place: int, integer: int) -> Range | None:
-    true, false = network.known[place]
-    return around(true, integer) or around(false, integer)
+    return ask

@@ -238,14 +238,14 @@ def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
     """
     if low > high or not pieces:
         return ()
-    if _rises(pieces):
+    if rises(pieces):
         return _soonest_first(pieces, low, high)
     ends = [(left, at + slope * left if slope else at) for left, _, at, slope in pieces]
     entered = _sliding(ends, low, high, keeps=lambda old, new: old < new)
     return soonest(shift(pieces, low), entered)
 
 
-def _rises(pieces: Pieces) -> bool:
+def rises(pieces: Pieces) -> bool:
     """Whether no stamp is before one further left."""
     if len(pieces) == 1:
         return True
@@ -277,7 +277,7 @@ def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
     if low > high:
         return EVER
     made: list[Piece] = []
-    if _rises(pieces):
+    if rises(pieces):
         # The last position of a window is the latest.
         moved = shift(pieces, high)
         for first, last in _runs(pieces):

@@ -17,6 +17,7 @@ class Positions:
         gap: ticks between two positions; `None` if only samples are positions.
 
     Attributes:
+        stamps: where they are sparse, those of which something may be asked.
         gap: ticks between two integers, 1 in sampled time.
         slope: what a stamp grows by from one integer to the next.
         sparse: whether there are integers between positions.
@@ -24,7 +25,7 @@ class Positions:
         last: the last position; `FAR` while it is taken that they go on.
     """
 
-    STATE = ("gap", "slope", "sparse", "first", "last", "_stamps")
+    STATE = ("gap", "slope", "sparse", "first", "last", "stamps")
 
     def __init__(self, gap: int | None) -> None:
         self.gap = gap or 1
@@ -32,7 +33,7 @@ class Positions:
         self.sparse = not gap
         self.first = FAR
         self.last = FAR if gap else -FAR
-        self._stamps: list[int] | None = None if gap else []
+        self.stamps: list[int] = []
 
     @property
     def distance(self) -> int | None:
@@ -44,7 +45,7 @@ class Positions:
         made = Positions.__new__(Positions)
         made.gap, made.slope, made.sparse = self.gap, self.slope, self.sparse
         made.first, made.last = self.first, self.last
-        made._stamps = None if self._stamps is None else list(self._stamps)
+        made.stamps = list(self.stamps)
         return made
 
     def visit(self, position: int) -> int:
@@ -54,11 +55,11 @@ class Positions:
         """
         if self.first == FAR:
             self.first = position
-        if self._stamps is None:
+        if not self.sparse:
             return position
         behind = self.last + 1 if self.last > -FAR else position
         if self.last < position:
-            self._stamps.append(position)
+            self.stamps.append(position)
             self.last = position
         return behind
 
@@ -68,33 +69,33 @@ class Positions:
 
     def forget(self, before: int) -> None:
         """Drop the positions before `before`, of which nothing will be asked, but for the last."""
-        if self._stamps:
-            del self._stamps[: max(bisect_left(self._stamps, before) - 1, 0)]
+        if self.stamps:
+            del self.stamps[: max(bisect_left(self.stamps, before) - 1, 0)]
 
     def following(self, integer: int) -> int:
         """The first position at or behind an integer, or the integer itself if there is none."""
-        if self._stamps is None:
+        if not self.sparse:
             return max(integer, self.first) if self.first < FAR else integer
-        index = bisect_left(self._stamps, integer)
-        return self._stamps[index] if index < len(self._stamps) else max(integer, self.last + 1)
+        index = bisect_left(self.stamps, integer)
+        return self.stamps[index] if index < len(self.stamps) else max(integer, self.last + 1)
 
     def standing_at(self, integer: int) -> int:
         """The last position not behind an integer, or the integer itself if there is none."""
-        if self._stamps is None:
+        if not self.sparse:
             return integer
-        index = bisect_right(self._stamps, integer)
-        return self._stamps[index - 1] if index else integer
+        index = bisect_right(self.stamps, integer)
+        return self.stamps[index - 1] if index else integer
 
     def within(self, left: int, right: int) -> list[int]:
         """The positions from `left` to `right` where they are sparse."""
-        stamps = self._stamps or []
+        stamps = self.stamps
         return stamps[bisect_left(stamps, left) : bisect_right(stamps, right)]
 
     def cells(self, pieces: Pieces) -> Pieces:
         """Of each piece its positions, where they are sparse with all integers back to others."""
-        if self._stamps is None:
+        if not self.sparse:
             return pieces
-        stamps = self._stamps
+        stamps = self.stamps
         made: list[Piece] = []
         for left, right, at, slope in pieces:
             index, end = bisect_left(stamps, left), bisect_right(stamps, right)
@@ -107,9 +108,9 @@ class Positions:
 
     def held_on(self, pieces: Pieces) -> Pieces:
         """Of each piece its positions, where they are sparse with all integers up to others."""
-        if self._stamps is None:
+        if not self.sparse:
             return pieces
-        stamps = self._stamps
+        stamps = self.stamps
         made: list[Piece] = []
         for left, right, at, slope in pieces:
             append(made, left, min(right, self.first - 1), at, slope)
@@ -128,7 +129,7 @@ class Positions:
             right: the last one.
         """
         found = clip(pieces, max(left, self.first), min(right, self.last))
-        if self._stamps is None:
+        if not self.sparse:
             return found
         made: list[Piece] = []
         for first, last, at, slope in found:
@@ -144,14 +145,14 @@ class Positions:
             left: the first integer that matters.
             right: the last one.
         """
-        if self._stamps is None and left >= self.first and right <= self.last:
+        if not self.sparse and left >= self.first and right <= self.last:
             return clip(pieces, left, right)
         made: list[Piece] = []
         append(made, left, min(right, self.first - 1), PAST, 0)
         behind = max(left, self.first)
         for first, last, at, slope in clip(pieces, behind, min(right, self.last)):
             self._fill(made, behind, first - 1)
-            if self._stamps is None or at == PAST:
+            if not self.sparse or at == PAST:
                 append(made, first, last, at, slope)
             else:
                 start = first
@@ -167,7 +168,7 @@ class Positions:
 
     def _fill(self, made: list[Piece], left: int, right: int) -> None:
         """Append the integers from `left` to `right` that are no positions."""
-        if self._stamps is None:
+        if not self.sparse:
             return
         for position in self.within(left, right):
             append(made, left, position - 1, PAST, 0)

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from operator import itemgetter
 
-from rvmon.dataflow.piecewise import FAR, Piece, Pieces, append
+from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append
 from rvmon.dataflow.sweep import Known
 
 Range = tuple[int, int]
@@ -72,6 +72,15 @@ def last_up_to(ranges: Ranges, integer: int) -> int:
     return min(ranges[index][1], integer) if index >= 0 else -FAR - 1
 
 
+def next_in(ranges: Ranges, integer: int) -> int:
+    """The first integer in some ranges from one on; `FAR` if there is none."""
+    if not ranges or ranges[-1][1] < integer:
+        return FAR
+    if around(ranges, integer) is not None:
+        return integer
+    return ranges[bisect_right(ranges, (integer, FAR))][0]
+
+
 def overlapping(ranges: Ranges, left: int, right: int) -> Sequence[Range]:
     """Those that have an integer from `left` to `right`, whole."""
     if not ranges or ranges[-1][1] < left or left > right:
@@ -104,6 +113,25 @@ def outside(pieces: Pieces, ranges: Ranges) -> Pieces:
             append(made, start, first - 1, at, slope)
             start = last + 1
         append(made, start, right, at, slope)
+    return made
+
+
+def on_stretch(ranges: Ranges, news: Pieces, on: Range) -> Pieces:
+    """Where on a stretch something is known, which is so since ever but for its news."""
+    first, last = on
+    if news and (news[-1][1] < first or news[0][0] > last):
+        news = ()
+    elif news and news[-1][0] <= first and last <= news[-1][1]:
+        return ((first, last, news[-1][2], news[-1][3]),)
+    made: list[Piece] = []
+    for left, right in overlapping(ranges, first, last):
+        start, end = max(left, first), min(right, last)
+        for its_left, its_right, at, slope in news:
+            if its_right >= start and its_left <= end:
+                append(made, start, its_left - 1, PAST, 0)
+                append(made, max(its_left, start), min(its_right, end), at, slope)
+                start = its_right + 1
+        append(made, start, end, PAST, 0)
     return made
 
 

@@ -32,8 +32,10 @@ def test_it_stood_so(time, gap, seed):
         if rng.random() < 0.3:
             journal.grow(network, 2 * t)
         else:
-            journal.visit(network, t, [rng.random() < 0.5 for _ in plan.leaves], 0)
-        stood[len(journal)] = network.relative(0), network.grown, network.news
+            journal.note(network, t, [rng.random() < 0.5 for _ in plan.leaves])
+            if rng.random() < 0.5:
+                journal.grow(network, 2 * t + 1, 0)
+        stood[len(journal)] = network.relative(0), network.grown, list(network.news)
     counts = list(stood)
     rng.shuffle(counts)
     for count in counts:
@@ -45,15 +47,17 @@ def test_an_interrupted_one_is_over():
     """What was told in part stands in no journal: another one is begun."""
     network = Network(plan_of("whenever a then F[2 ns, 5 ns] b", "held"), 1)
     journal = Journal(network)
-    journal.visit(network, 0, [True] * len(network.plan.leaves), None)
+    journal.note(network, 0, [True] * len(network.plan.leaves))
+    journal.grow(network, 1)
     assert not journal.is_over
+    journal.note(network, 3, _Broken())
     with pytest.raises(IndexError):
-        journal.visit(network, 3, _Broken(), None)
+        journal.grow(network, 7)
     assert journal.is_over
 
 
 class _Broken:
     """A letter that cannot be read."""
 
-    def __iter__(self):
+    def __getitem__(self, index):
         raise IndexError

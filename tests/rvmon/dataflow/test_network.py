@@ -10,7 +10,7 @@ from tests.tools.differential import campaign, case_of
 from tests.tools.generate_ltl import random_mtl
 
 import rvmon
-from rvmon.dataflow.network import Network
+from rvmon.dataflow.network import MOST_NOTED, Network
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.runtime.values import NEVER
@@ -120,7 +120,7 @@ def test_the_sample_before_is_kept(at):
 def count_steps(monkeypatch, case):
     """How often the network was told of a letter or of time."""
     count = 0
-    for name in ("visit", "grow"):
+    for name in ("note", "grow"):
         original = getattr(Network, name)
 
         def counted(self, *args, original=original):
@@ -157,6 +157,51 @@ def test_memory_is_bounded_by_the_window():
         monitor.step(k * 0.5, {"b": k % 2 == 0})
         sizes.append(sum(len(true) + len(false) for true, false in judge.worse.known))
     assert max(sizes[200:]) <= max(sizes[:200]) <= 150
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+def test_letters_that_decide_nothing_are_but_noted(time, monkeypatch):
+    """As long as no letter could decide, none is worked out, but for what would take much room."""
+    grown, original = [], Network.grow
+
+    def counted(self, *args):
+        grown.append(len(self.noted))
+        original(self, *args)
+
+    monkeypatch.setattr(Network, "grow", counted)
+    monitor = spec_of("upon e then F[0 s, 5 s] G[0 s, 4 s] a", time).monitor(engine="network")
+    monitor.step(0, {"e": True, "a": False})
+    before = len(grown)
+    for k in range(1, 390):
+        monitor.step(k * 0.01, {"a": k % 2 == 0})
+    assert len(grown) - before <= 3
+    assert max(grown) <= MOST_NOTED
+    [failed] = [one for k in range(390, 600) for one in monitor.step(k * 0.01, {"a": k % 2 == 0})]
+    assert (failed.verdict.value, failed.decided) == ("F", 5 * SECOND + SECOND // 100)
+
+
+def test_time_decides_under_another_letter_before_the_next_position():
+    """What an unknown occurrence left open is known as soon as another one is told."""
+    spec = spec_of("whenever e then F[1 ns, 1 ns] true", "sampled every 4 ns")
+    monitor = spec.monitor(engine="network")
+    monitor.step_ns(0, {"e": None})
+    monitor.step_ns(1, {"e": True})
+    [failed] = monitor.step_ns(10, {})
+    assert (failed.decided, failed.at_decision) == (6, {"e": True})
+
+
+def test_an_instance_fails_under_another_letter_before_its_next_trigger():
+    """So that the trigger begins an attempt of its own."""
+    monitor = rvmon.loads(
+        "spec s\ntime sampled every 4 ns\nsignal p : bool stale after 5 ns\nevent g(k: int)\n"
+        "requirement R1\n  whenever (p or (g.k == each))\n  then F[0 ns, 0 ns] false\n"
+        "  for each each in g.k\n"
+    ).monitor(engine="network")
+    monitor.step_ns(0, {"p": True})
+    for t in (15, 24, 28):
+        monitor.step_ns(t, {"g": {"k": 0}})
+    attempts = monitor.finish().attempts
+    assert [(one.triggered, one.decided) for one in attempts] == [(16, 17), (20, 25), (28, None)]
 
 
 def calls_per_change(low, high, time):

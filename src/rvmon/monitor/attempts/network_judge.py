@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Mapping
-from itertools import chain
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from rvmon.automaton.location import FAILED, PASSED
@@ -12,15 +11,14 @@ from rvmon.automaton.machine import Token
 from rvmon.dataflow.at_end import held_at_end
 from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import FOREVER, Network
-from rvmon.dataflow.next_news import next_news
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import Pieces, stamp
 from rvmon.dataflow.ranges import Range, merged
 from rvmon.dataflow.sweep import Carried
 from rvmon.dataflow.time_decisions import Moment
-from rvmon.formula.core import Constant, Sense
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
+from rvmon.monitor.attempts.network_letters import Letters, letter_reader
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.standing import Standing
 from rvmon.plan.stood import Stood
@@ -33,21 +31,6 @@ WAITING = PASSED + 1
 The token of an attempt is how it stands in a network, and the position whose value it is.
 """
 
-_VALUES = (FALSE, UNKNOWN, TRUE)
-
-_LETTERS = {
-    sense: (
-        tuple(value == (TRUE if sense is Sense.TRUE else FALSE) for value in _VALUES),
-        tuple(
-            value == (TRUE if sense is Sense.TRUE else FALSE)
-            or (value == UNKNOWN and sense is not Sense.KNOWN_FALSE)
-            for value in _VALUES
-        ),
-    )
-    for sense in Sense
-}
-"""By sense and value, whether a leaf is true, the unknown taken for the worse and the better."""
-
 
 class NetworkJudge(AttemptJudge):
     """Judges by a network, or by two as soon as something was unknown.
@@ -58,9 +41,11 @@ class NetworkJudge(AttemptJudge):
         better: the one that takes it for the better; `None` as long as both are the same.
         attempts: those whose value is not known.
         now: the stamp that the networks have come to.
+        sleeps: an instant before which nothing becomes known, whatever letters come: till then
+            these are but noted.
     """
 
-    STATE = (*AttemptJudge.STATE, "worse", "better", "now", "_letters", "_held")
+    STATE = (*AttemptJudge.STATE, "worse", "better", "now", "sleeps", "_letters", "_held")
 
     def __init__(
         self,
@@ -74,7 +59,7 @@ class NetworkJudge(AttemptJudge):
         self.plan: NetworkPlan = compiled.network_plan
         self.worse: Network | None = None
         self.better: Network | None = None
-        self._letters: tuple[list[bool], list[bool]] | None = None
+        self._letters: Letters | None = None
         self._held: Pieces | None = None
         self._journals: list[Journal | None] = [None, None]
         self._stood: tuple[tuple[int, ...], Stood] | None = None
@@ -83,23 +68,11 @@ class NetworkJudge(AttemptJudge):
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
         """Those that were asked for last, of each network one."""
         self.now = -1 << 64
+        self.sleeps = -NEVER
+        self._vain = 0
+        """How often it was woken in vain since the letter changed."""
         self.texts = tuple(text for _, text in self.leaves)
-        index = flow.graph.index
-        self._reads = tuple(
-            (-1, (core.value,), (core.value,))
-            if isinstance(core, Constant)
-            else (index[core.proposition], *_LETTERS[core.sense])
-            for _, core in self.plan.leaves
-        )
-
-    def read(self) -> tuple[list[bool], list[bool]]:
-        """The truth of the plan's leaves, the unknown taken for the worse and for the better."""
-        values = self.flow.values
-        reads = self._reads
-        return (
-            [worse[values[place] if place >= 0 else 0] for place, worse, _ in reads],
-            [better[values[place] if place >= 0 else 0] for place, _, better in reads],
-        )
+        self._read = letter_reader(self.plan, flow.graph)
 
     @property
     def watches(self) -> bool:  # type: ignore[override]
@@ -115,9 +88,15 @@ class NetworkJudge(AttemptJudge):
         self._begin_network()
         if self._letters is None or is_behind:
             self.visit(t)
-        self._look(2 * t + 1)
         self._note_doubt()
         self._stood = None
+        if self.sleeps > t and self.now <= 2 * t and self._letters is not None:
+            delay = min(map(self.compiled.network_delay, self._letters))
+            self.sleeps = min(self.sleeps, t + delay)
+            if delay > (self.flow.gap or 1):
+                self.due = min(self.due, self.sleeps)
+                return
+        self._look(2 * t + 1)
         # What was known of the position before the attempt began is no news.
         open_still = bool(self.attempts) and self.attempts[-1] is attempt
         if open_still and self.worse and self._judge(attempt, self.worse, self.better):
@@ -132,31 +111,37 @@ class NetworkJudge(AttemptJudge):
             self._letters = None
             self._journals = [None, None]
             self.now = -1 << 64
+            self.sleeps = -NEVER if self.plan.looks_back else NEVER
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, which the flow is at."""
         if self.plan.looks_back:
             self._begin_network()
-        if self.due <= t:
+        letters = self._read(self.flow.values)
+        if self.due <= t and letters[0] != letters[1]:
             self._look(2 * t)
         self.position = t
         if self.worse is not None:
-            letters = self.read()
+            roused = False
             if letters != self._letters or self.flow.gap is None:
                 self._turn(t, self.worse, letters)
-            elif self.due <= t:
-                self._look(2 * t + 1)
+                roused = any(map(Network.is_roused, self._networks, letters))
+                # What is due was worked out for the letter before; `sleeps` holds for all of them.
+                self.due = min(self.due, self.sleeps)
+            if self.due > t and self.sleeps > t and not roused:
+                self.restless = self.flow.gap is None
+                return
+            self._look(2 * t + 1)
         self._rest()
 
-    def _turn(self, t: int, worse: Network, letters: tuple[list[bool], list[bool]]) -> None:
-        self._letters = letters
+    def _turn(self, t: int, worse: Network, letters: Letters) -> None:
+        self._letters, self._vain = letters, 0
         if self.better is None and letters[0] != letters[1]:
             self.better, self._journals[1] = worse.copy(), None
         self._note_doubt()
-        self._journal(worse).visit(worse, t, letters[0], self._first_waiting(better=False))
+        self._journal(worse).note(worse, t, letters[0])
         if (better := self.better) is not None:
-            self._journal(better).visit(better, t, letters[1], self._first_waiting(better=True))
-        self._hear(2 * t + 1)
+            self._journal(better).note(better, t, letters[1])
 
     def _note_doubt(self) -> None:
         """Note in each attempt what was unknown first while it was open."""
@@ -177,7 +162,9 @@ class NetworkJudge(AttemptJudge):
         """Let time come to a stamp, and hear of the decisions that this brings."""
         if self.now < limit and self.worse is not None:
             for network in self._networks:
-                self._journal(network).grow(network, limit)
+                wanted = self._first_waiting(better=network is self.better)
+                wanted = limit // 2 if wanted is None else wanted
+                self._journal(network).grow(network, limit, wanted)
             self._hear(limit)
 
     def _journal(self, network: Network) -> Journal:
@@ -206,8 +193,10 @@ class NetworkJudge(AttemptJudge):
         worse, better = self.worse, self.better
         if worse is None:
             return
-        found = [span for network in self._networks for span in self._learnt(network)]
-        for start, end in reversed(merged(found)):
+        found = list(self._learnt(worse))
+        if better is not None:
+            found += self._learnt(better)
+        for start, end in reversed(merged(found) if len(found) > 1 else found):
             asked = self.attempts[start : end + 1]
             kept = [attempt for attempt in asked if not self._judge(attempt, worse, better)]
             self.attempts[start : end + 1] = kept
@@ -222,14 +211,22 @@ class NetworkJudge(AttemptJudge):
             self._foresee()
         else:
             self._bounded_at = self.now
-            waiting = [self._first_waiting(better=better) for better in (False, True)]
-            bounds = [
-                next_news(network, first)
-                for network, first in zip(self._networks, waiting, strict=False)
-                if first is not None
-            ]
-            self.due = min(bounds, default=NEVER)
+            if not self.plan.looks_back:
+                self.sleeps = self._bound(Network.soonest_news)
+            if self._vain or self.sleeps <= self.now // 2 + (self.flow.gap or 1):
+                self.due = self._bound(Network.next_news)
+            else:
+                self.due = self.sleeps
         self.restless = self.flow.gap is None and self.worse is not None
+
+    def _bound(self, bound_of: Callable[[Network, int], int]) -> int:
+        """The least bound of the networks, for what is waited for in each."""
+        found = NEVER
+        for network in self._networks:
+            first = self._first_waiting(better=network is self.better)
+            if first is not None:
+                found = min(found, bound_of(network, first))
+        return found
 
     def _foresee(self) -> None:
         """Set when time alone gives an attempt a value in a network, if the letter stays."""
@@ -265,12 +262,23 @@ class NetworkJudge(AttemptJudge):
         if not attempts:
             return
         oldest, youngest = (_position(attempts[end]) // gap for end in (0, -1))
-        for left, right, _, _ in chain(*network.news[-1]):
-            if right >= oldest and left <= youngest:
-                start = bisect_left(attempts, left * gap, key=_position)
-                end = bisect_right(attempts, right * gap, key=_position)
-                if start < end:
-                    yield start, end - 1
+        for pieces in network.news[-2:]:
+            start, position = 0, oldest
+            for left, right, _, _ in pieces:
+                if right < position:
+                    continue
+                if left > youngest:
+                    break
+                if left > position:
+                    start = bisect_left(attempts, left * gap, start, key=_position)
+                    position = _position(attempts[start]) // gap
+                    if right < position:
+                        continue
+                end = bisect_right(attempts, right * gap, start, key=_position)
+                yield start, end - 1
+                if end == len(attempts):
+                    break
+                start, position = end, _position(attempts[end]) // gap
 
     def _judge(self, attempt: Open, worse: Network, better: Network | None) -> bool:
         """Look at one attempt; returns whether it was decided."""
@@ -309,7 +317,7 @@ class NetworkJudge(AttemptJudge):
             ahead = network.copy()
             ahead.grow(FOREVER)
             gap = network.positions.gap
-            for value, pieces in zip((True, False), ahead.news[-1], strict=True):
+            for value, pieces in zip((True, False), ahead.news[-2:], strict=True):
                 for left, right, at, slope in pieces:
                     index = bisect_left(attempts, left * gap, key=_position)
                     if index < len(attempts):
@@ -335,7 +343,11 @@ class NetworkJudge(AttemptJudge):
         self._rest()
         if count == len(self.attempts) and self.due < NEVER:
             # Woken in vain, it sees to it that this does not go on while nothing changes.
-            self._foresee()
+            self._vain += 1
+            if self._vain > 1 or self.plan.looks_back:
+                self._foresee()
+            else:
+                self.due = self._bound(Network.next_news)
 
     @property
     def next_due(self) -> int:
@@ -344,7 +356,7 @@ class NetworkJudge(AttemptJudge):
 
     def moment(self, network: Network, now: int) -> Moment:
         """How one of the networks stands at a stamp, worked out once for all attempts."""
-        stands = (network.grown, network.positions.last, now)
+        stands = (network.grown, len(network.noted), now)
         for one, its_own, made in self._moments:
             if one is network and its_own == stands:
                 return made
@@ -354,6 +366,7 @@ class NetworkJudge(AttemptJudge):
 
     def situation(self, t: int) -> object:
         """What is known as seen from `t`; equal for runs that go on alike."""
+        self._look(2 * self.position + 1)
         standing = frozenset(
             (attempt.token[0], attempt.better and attempt.better[0], _position(attempt) - t)
             for attempt in self.attempts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,6 +18,7 @@ from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
+from rvmon.dataflow.soonest_news import delay_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.expand import expanded
@@ -208,6 +209,18 @@ class CompiledRequirement:
     def measured_plan(self) -> NetworkPlan:
         """The same of what it owes as far as that is measured, past operators included."""
         return plan_of(expanded(self.obligation.owed), self.gap)
+
+    def network_delay(self, letter: Sequence[bool]) -> int:
+        """Ticks that pass in its delay network until an attempt that begins can be decided."""
+        key = tuple(letter)
+        found = self._delays.get(key)
+        if found is None:
+            found = self._delays[key] = delay_of(self.network_plan, self.gap, letter)
+        return found
+
+    @cached_property
+    def _delays(self) -> dict[tuple[bool, ...], int]:
+        return {}
 
     @property
     def is_fed(self) -> bool:
