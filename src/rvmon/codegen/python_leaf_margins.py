@@ -44,7 +44,7 @@ def _margin(plan: Plan, leaf: Literal | Constant) -> str:
     if leaf.sense is Sense.KNOWN_FALSE:
         return f"(INF if {truth} == 0 else -INF)"
     found = f"KNOWN[{truth}]"
-    if isinstance(state.leaf, Compare) and _is_by_number(state.leaf):
+    if isinstance(state.leaf, Compare) and not _is_of_a_label(state.leaf):
         left, right = state.leaf.left, state.leaf.right
         numbers = f"{number_expression(plan, left)} - {number_expression(plan, right)}"
         difference = f"(({numbers}) * {base_factor(state.leaf, plan.spec)!r})"
@@ -52,7 +52,7 @@ def _margin(plan: Plan, leaf: Literal | Constant) -> str:
     return found if leaf.sense is Sense.TRUE else f"-{found}"
 
 
-def _is_by_number(leaf: Compare) -> bool:
-    """Whether a side is a number, so that the difference is one wherever the other side is."""
+def _is_of_a_label(leaf: Compare) -> bool:
+    """Whether a side is a label that is written out; two signals of labels have no difference."""
     sides = (leaf.left, leaf.right)
-    return any(isinstance(side, Number) and not isinstance(side.value, str) for side in sides)
+    return any(isinstance(side, Number) and isinstance(side.value, str) for side in sides)

@@ -278,3 +278,27 @@ def test_a_sample_of_plain_numbers_goes_on_from_one_that_was_not():
     found = {one.t // 10**9: one.robustness for one in monitor.finish() if one.number is None}
     assert found[7].high == INFINITE
     assert found[4].high == -0.5
+
+
+@pytest.mark.parametrize(("op", "low"), [("==", -3.0), ("!=", 3.0), ("<", -3.0), (">=", 3.0)])
+def test_two_signals_are_compared_by_their_difference(op, low):
+    """As a signal and a number are."""
+    spec = rvmon.loads(
+        f"spec s\nsignal x, y : real\nevent e\nrequirement R1\n  upon e then x {op} y\n"
+    )
+    monitor = spec.robustness_monitor()
+    monitor.step(0, {"x": 5.0, "y": 5.0})
+    monitor.step(1, {"y": 2.0})
+    [found] = monitor.step(2, {"e": True})
+    assert found.robustness.low == found.robustness.high == low
+
+
+@pytest.mark.parametrize("op", ["==", "!="])
+def test_labels_have_no_difference(op):
+    """One that is another is as far from it as can be, be it written out or of a signal."""
+    head = "spec s\nsignal a, b : {left, right}\nevent e\nrequirement R1\n  upon e then "
+    for other in ("b", "left"):
+        monitor = rvmon.loads(f"{head}a {op} {other}\n").robustness_monitor()
+        monitor.step(0, {"a": "right", "b": "left"})
+        [found] = monitor.step(1, {"e": True})
+        assert found.robustness.low == (INFINITE if op == "!=" else -INFINITE)
