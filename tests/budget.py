@@ -37,6 +37,7 @@ BUDGETS = {
     "tests/rvmon/monitor": 180,
     "tests/rvmon/readers": 60,
     "tests/rvmon/report": 12,
+    "tests/rvmon/results": 4,
     "tests/rvmon/spec": 35,
     "tests/rvmon/testing": 15,
     "tests/rvmon/timed": 45,

@@ -36,6 +36,30 @@ DEFINITIONS = {
 }
 """Of messages that ROS does not bring along."""
 
+SHOP = """
+spec shop
+signal speed : real
+signal ready : bool
+signal count : int
+signal mode  : {idle, busy}
+event  go
+event  pick(id: int, x: real)
+
+requirement R1
+  upon go
+  then within 20 ms ready
+requirement R2
+  always (mode == busy -> speed < 1.2)
+requirement R3
+  upon pick
+  then within 50 ms (ready and count > n)
+  for each n in pick.id
+"""
+"""Reads what `sent_at_random` sends."""
+
+HEADER = ["speed", "ready", "count", "mode", "go", "pick.id", "pick.x"]
+"""Its columns."""
+
 
 def sent_at_random(rng: Any, count: int) -> list[Sent]:
     """Messages of the first six topics; some at one instant."""

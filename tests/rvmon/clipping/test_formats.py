@@ -6,6 +6,8 @@ import random
 
 import pytest
 from tests.tools.bags import (
+    HEADER,
+    SHOP,
     START,
     sent_at_random,
     write_csv,
@@ -22,27 +24,7 @@ pytest.importorskip("rosbags")
 pytest.importorskip("mcap_protobuf")
 pytest.importorskip("pyarrow")
 
-SPEC = """
-spec shop
-signal speed : real
-signal ready : bool
-signal count : int
-signal mode  : {idle, busy}
-event  go
-event  pick(id: int, x: real)
-
-requirement R1
-  upon go
-  then within 20 ms ready
-requirement R2
-  always (mode == busy -> speed < 1.2)
-requirement R3
-  upon pick
-  then within 50 ms (ready and count > n)
-  for each n in pick.id
-"""
 FAST = "spec s\nsignal speed : real\nrequirement R\n  always speed < {}\n"
-HEADER = ["speed", "ready", "count", "mode", "go", "pick.id", "pick.x"]
 
 
 def write_parquet(path, sent):
@@ -91,8 +73,8 @@ FORMATS = {
 @pytest.mark.parametrize("name", FORMATS)
 def test_what_is_said_to_be_the_same_is_so(tmp_path, capsys, name):
     """The piece's verdict on the attempt is that of the whole, or the exit code says otherwise."""
-    (tmp_path / "shop.rv").write_text(SPEC)
-    spec = rvmon.loads(SPEC)
+    (tmp_path / "shop.rv").write_text(SHOP)
+    spec = rvmon.loads(SHOP)
     codes = []
     for seed in (0, 2):
         folder = tmp_path / str(seed)

@@ -32,7 +32,7 @@ from rvmon.verdict.report import Report
 if TYPE_CHECKING:
     from rvmon.monitor.online.evaluators import Evaluators
 
-_FEW, _MANY = 4, 4096
+_FEW, _MANY = 4, 256
 """So many samples at least and at most Python takes before it lends its state again: doubled each
 time that it had it back soon."""
 

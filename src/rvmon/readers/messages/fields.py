@@ -15,7 +15,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
 from rvmon.runtime.past import finite
-from rvmon.trace.binding import Applied, Bound, Constant, Elements, Field, Term
+from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
 from rvmon.trace.schema import Kind
 
 _STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]")
@@ -195,10 +195,3 @@ def stamp_getter(topic: Topic, *, mappings: bool) -> Callable[[Any], int]:
         f"topic {topic.name} ({topic.type}) has no header whose stamp could count: "
         'bind what it feeds with `clock = "log"`'
     )
-
-
-def terms_of(bound: Bound) -> Iterator[Term]:
-    """All that is read of a message."""
-    if bound.value is not None:
-        yield bound.value
-    yield from bound.fields.values()

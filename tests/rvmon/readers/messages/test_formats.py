@@ -5,6 +5,8 @@ import random
 
 import pytest
 from tests.tools.bags import (
+    HEADER,
+    SHOP,
     START,
     sent_at_random,
     write_csv,
@@ -19,26 +21,6 @@ import rvmon
 pytest.importorskip("rosbags")
 pytest.importorskip("mcap_protobuf")
 
-SPEC = """
-spec shop
-signal speed : real
-signal ready : bool
-signal count : int
-signal mode  : {idle, busy}
-event  go
-event  pick(id: int, x: real)
-
-requirement R1
-  upon go
-  then within 20 ms ready
-requirement R2
-  always (mode == busy -> speed < 1.2)
-requirement R3
-  upon pick
-  then within 50 ms (ready and count > n)
-  for each n in pick.id
-"""
-HEADER = ["speed", "ready", "count", "mode", "go", "pick.id", "pick.x"]
 
 FORMATS = {
     "a.bag": write_ros1,
@@ -54,7 +36,7 @@ FORMATS = {
 @pytest.mark.parametrize("name", FORMATS)
 def test_the_same_data_gives_the_records_that_csv_gives(tmp_path, name):
     """Samples, attempts, decision instants and health, whatever holds the messages."""
-    spec = rvmon.loads(SPEC)
+    spec = rvmon.loads(SHOP)
     verdicts = set()
     for seed in range(8):
         sent = sent_at_random(random.Random(seed), 120)
