@@ -64,6 +64,7 @@ def run_test(
     world = World(
         stream(test.seed, "world"),
         faults=test.faults,
+        scene_faults=test.scene,
         jump=jump,
         record_poses=record_poses,
         observer=observer,

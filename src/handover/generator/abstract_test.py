@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from handover.world.faults import SensorFaults
+from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import Test
 
 HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
@@ -79,6 +79,7 @@ class AbstractTest(Test, frozen=True, kw_only=True):
         horizon_s: simulated seconds.
         startup_loss: whether the human's signals may get lost as the processes start.
         faults: what is wrong with the sensors.
+        scene: what the scene has in store for the robot.
     """
 
     strategy: Strategy
@@ -87,3 +88,4 @@ class AbstractTest(Test, frozen=True, kw_only=True):
     horizon_s: Annotated[float, msgspec.Meta(gt=0, le=3600)] = 200.0
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
+    scene: SceneFaults = SceneFaults()

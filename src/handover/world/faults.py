@@ -1,10 +1,12 @@
-"""What may be wrong with the sensors; by default nothing."""
+"""What may be wrong with sensors and scene; by default nothing."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
 import msgspec
+
+from handover.world.parameters import FRICTION
 
 Sensor = Literal["gaze", "pressure", "location", "distance"]
 
@@ -21,3 +23,18 @@ class SensorFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit
     noise_m: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     delay_s: Annotated[float, msgspec.Meta(ge=0, le=10)] = 0.0
     dropout: tuple[Sensor, ...] = ()
+
+
+class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+    """What the scene has in store for the robot.
+
+    Attributes:
+        friction: of the piece's surface; a slippery piece gets lost on the way.
+        plan_failure: probability that the arm's planner finds no path where there is one.
+        hand_in_plane: whether the hand is beside the gripper, so that they collide, and not in
+            front of it.
+    """
+
+    friction: Annotated[float, msgspec.Meta(ge=0.01, le=2)] = FRICTION
+    plan_failure: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
+    hand_in_plane: bool = False

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from handover.world import parameters as p
 from handover.world.grasp import Grasp
 from handover.world.limb import Limb
-from handover.world.measures import contact_force, seen_piece
+from handover.world.measures import contact_force, gripper_force, seen_piece
 from handover.world.scene import Scene
 
 
@@ -88,6 +88,14 @@ class Human:
         """N between hand and piece, by grasp and by touch."""
         grasp = 0.0 if self._grasp is None else self._grasp.force()
         return grasp + contact_force(self._scene.hand, self._scene.piece)
+
+    def holds(self) -> bool:
+        """Whether the hand has taken hold of the piece."""
+        return self._grasp is not None
+
+    def shares_piece(self) -> bool:
+        """Whether robot and human both hold the piece, by the forces between them and it."""
+        return min(gripper_force(self._scene), self.holding_force()) >= p.PRESSURE_MIN
 
     def _start_to_look(self, offset: float, distance: float, angle: float) -> None:
         piece_x, piece_z = seen_piece(self._scene)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import random
 from collections import deque
 
 from handover.world import parameters as p
 from handover.world.faults import SensorFaults
 from handover.world.human import Human
-from handover.world.measures import contact_force, hand_offset
+from handover.world.measures import gaze_is_ok, hand_offset, location_is_ok
 from handover.world.reading import Reading
 from handover.world.scene import Scene
 
@@ -74,39 +73,10 @@ class Sensors:
         hand_known = human.location_taken_up and not hand_moves and not self.is_dead("location")
         force_known = human.pressure_taken_up and not hand_moves and not self.is_dead("pressure")
         return Reading(
-            gaze=self._gaze_is_ok() if gaze_known else None,
-            pressure=self._pressure_is_ok() if force_known else None,
-            location=self._location_is_ok() if hand_known else None,
+            gaze=gaze_is_ok(self._scene, self._noise) if gaze_known else None,
+            pressure=self._human.shares_piece() if force_known else None,
+            location=location_is_ok(self._scene, self._noise) if hand_known else None,
         )
-
-    def _gaze_is_ok(self) -> bool:
-        """Whether the head is close to the piece and turned towards it.
-
-        Offset is the head's height over the piece, distance is along x, and the angle is that
-        between the line of sight and the direction from head to piece.
-        """
-        head, piece = self._scene.head.position, self._scene.piece.position
-        towards = math.atan2(piece.y - head.y, piece.x - head.x)
-        turn = (self._scene.head.angle - towards + math.pi) % math.tau - math.pi
-        return (
-            abs(head.y - piece.y + self._noise()) <= p.GAZE_MAX_OFFSET
-            and abs(head.x - piece.x + self._noise()) <= p.GAZE_MAX_DISTANCE
-            and math.degrees(abs(turn)) < p.GAZE_MAX_ANGLE
-        )
-
-    def _location_is_ok(self) -> bool:
-        """Whether the hand is near the piece on both axes."""
-        hand, piece = self._scene.hand.position, self._scene.piece.position
-        return (
-            abs(hand.x - piece.x + self._noise()) <= p.LOCATION_MAX
-            and abs(hand.y - piece.y + self._noise()) <= p.LOCATION_MAX
-        )
-
-    def _pressure_is_ok(self) -> bool:
-        """Whether robot and human both hold the piece, by the forces between them and it."""
-        piece = self._scene.piece
-        by_robot = min(contact_force(piece, finger) for finger in self._scene.fingers)
-        return min(by_robot, self._human.holding_force()) >= p.PRESSURE_MIN
 
     def _noise(self) -> float:
         sd = self._faults.noise_m
