@@ -137,6 +137,17 @@ class Gripper:
         self._note("close_commanded")
         self._turn(p.FINGER_SPEED)
 
+    def control(self) -> None:
+        """Stop a finger at its stop: a motor that went on pressing would jerk the arm."""
+        palm = self._scene.links[2].angle
+        fingers = zip(self._scene.fingers, self._scene.finger_motors, (1, -1), strict=True)
+        for finger, motor, side in fingers:
+            angle, closing = side * (finger.angle - palm), side * motor.rate
+            if (closing < 0 and angle > p.FINGER_OPEN - p.AT_STOP) or (
+                closing > 0 and angle < p.FINGER_OVERCLOSED + p.AT_STOP
+            ):
+                motor.rate = 0.0
+
     def _turn(self, closing_speed: float) -> None:
         left, right = self._scene.finger_motors
         left.rate, right.rate = closing_speed, -closing_speed

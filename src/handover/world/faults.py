@@ -17,11 +17,13 @@ class SensorFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit
     Attributes:
         noise_m: standard deviation of every measured length, metres.
         delay_s: age of what the robot reads of gaze, pressure and location, seconds.
+        loss: probability that a sensor gives no reading when it is read.
         dropout: sensors that are dead: the robot gets no reading, the signal is unknown.
     """
 
     noise_m: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     delay_s: Annotated[float, msgspec.Meta(ge=0, le=10)] = 0.0
+    loss: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     dropout: tuple[Sensor, ...] = ()
 
 

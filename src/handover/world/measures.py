@@ -45,13 +45,29 @@ def gaze_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
         error: what to add to each measured length, m.
     """
     head, piece = scene.head.position, scene.piece.position
-    towards = math.atan2(piece.y - head.y, piece.x - head.x)
-    turn = (scene.head.angle - towards + math.pi) % math.tau - math.pi
     return (
         abs(head.y - piece.y + error()) <= p.GAZE_MAX_OFFSET
         and abs(head.x - piece.x + error()) <= p.GAZE_MAX_DISTANCE
-        and math.degrees(abs(turn)) < p.GAZE_MAX_ANGLE
+        and _turn_from_piece(scene) < p.GAZE_MAX_ANGLE
     )
+
+
+def face_is_seen(scene: Scene) -> bool:
+    """Whether the head is turned to the piece so far that a tracker finds its eyes."""
+    return _turn_from_piece(scene) < p.FACE_MAX_ANGLE
+
+
+def hand_is_seen(scene: Scene) -> bool:
+    """Whether a tracker can tell the hand from the chest."""
+    return (scene.hand.position - p.HAND_REST).length > p.HAND_MIN_OFFSET
+
+
+def _turn_from_piece(scene: Scene) -> float:
+    """Degrees between the line of sight and the direction from head to piece."""
+    head, piece = scene.head.position, scene.piece.position
+    towards = math.atan2(piece.y - head.y, piece.x - head.x)
+    turn = (scene.head.angle - towards + math.pi) % math.tau - math.pi
+    return math.degrees(abs(turn))
 
 
 def location_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:

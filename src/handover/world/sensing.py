@@ -8,7 +8,13 @@ from collections import deque
 from handover.world import parameters as p
 from handover.world.faults import SensorFaults
 from handover.world.human import Human
-from handover.world.measures import gaze_is_ok, hand_offset, location_is_ok
+from handover.world.measures import (
+    face_is_seen,
+    gaze_is_ok,
+    hand_is_seen,
+    hand_offset,
+    location_is_ok,
+)
 from handover.world.reading import Reading
 from handover.world.scene import Scene
 
@@ -41,8 +47,9 @@ class Sensors:
     def read(self, t_ns: int) -> Reading:
         """Read gaze, pressure and location.
 
-        A sensor has a reading once the human has begun to take part in its respect, and not
-        while the tracked head or hand is moving. The value comes from the bodies alone.
+        A sensor has a reading while the tracked head or hand is in view and still: a face that
+        is turned away, or a hand at the chest, is not seen. Pressure is that of a hand which
+        has opened or closed: a slack one has not made up its mind.
 
         Args:
             t_ns: the instant of the reading.
@@ -68,15 +75,22 @@ class Sensors:
 
     def _read(self) -> Reading:
         head_moves, hand_moves = self._human.is_moving()
-        human = self._human
-        gaze_known = human.gaze_taken_up and not head_moves and not self.is_dead("gaze")
-        hand_known = human.location_taken_up and not hand_moves and not self.is_dead("location")
-        force_known = human.pressure_taken_up and not hand_moves and not self.is_dead("pressure")
+        head_known = face_is_seen(self._scene) and not head_moves
+        hand_known = hand_is_seen(self._scene) and not hand_moves
+        force_known = hand_known and not self._human.hand_is_slack
         return Reading(
-            gaze=gaze_is_ok(self._scene, self._noise) if gaze_known else None,
-            pressure=self._human.shares_piece() if force_known else None,
-            location=location_is_ok(self._scene, self._noise) if hand_known else None,
+            gaze=gaze_is_ok(self._scene, self._noise) if self._says("gaze", head_known) else None,
+            pressure=self._human.shares_piece() if self._says("pressure", force_known) else None,
+            location=location_is_ok(self._scene, self._noise)
+            if self._says("location", hand_known)
+            else None,
         )
+
+    def _says(self, sensor: str, known: bool) -> bool:
+        """Whether a sensor has a reading, of what it could know."""
+        if not known or self.is_dead(sensor):
+            return False
+        return not self._faults.loss or self._rng.random() >= self._faults.loss
 
     def _noise(self) -> float:
         sd = self._faults.noise_m

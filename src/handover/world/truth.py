@@ -27,9 +27,16 @@ class Truth:
     def __init__(self, scene: Scene, human: Human) -> None:
         self._scene = scene
         self._human = human
+        self._peak = 0.0
+
+    def step(self) -> None:
+        """Keep the greatest force on the hand between two measurements."""
+        self._peak = max(self._peak, self._human.hand_force())
 
     def measure(self) -> dict[str, SampleValue]:
         """All signals now: lengths in m, to 1 mm, forces in N, speeds in m/s."""
+        self.step()
+        peak, self._peak = self._peak, 0.0
         scene = self._scene
         grip = gripper_force(scene)
         return {
@@ -37,7 +44,7 @@ class Truth:
             "gripper_holds": grip >= p.PRESSURE_MIN,
             "person_holds": self._human.holds(),
             "gripper_opening": round(gripper_opening(scene), 3),
-            "hand_force": round(self._human.holding_force()),
+            "hand_force": round(peak),
             "hand_clearance": round(hand_clearance(scene), 3),
             "true_gaze": gaze_is_ok(scene),
             "true_pressure": self._human.shares_piece(),
