@@ -11,7 +11,6 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.explain.cubes import ANY, Cube, cubes_of
 from rvmon.formula.core import Core, Literal, Sense
-from rvmon.formula.residual import Clause
 from rvmon.formula.state import FALSE, TRUE, Shown, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
@@ -108,10 +107,6 @@ def _owed(compiled: CompiledRequirement, automaton: Automaton, index: int) -> st
         texts = [_obligation(compiled, node) for _, _, node in ordered]
         clauses.append(" and ".join(dict.fromkeys(texts)))
     return ", or ".join(dict.fromkeys(clauses))
-
-
-def _in_order(clause: Clause) -> list[tuple[int, int, Core]]:
-    return sorted((clock, node.id, node) for node, clock in clause)
 
 
 def _obligation(compiled: CompiledRequirement, node: Core) -> str:
