@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
-from rvmon.spec.rules.syntax import short
+from rvmon.spec.rules.rule import Rule, finding, short
 
 NO_VALUE = Rule(
     "RV028",
