@@ -17,9 +17,9 @@ import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.held import held_values
 from rvmon.readers.line_chunks import BLOCK, whole_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
+from rvmon.readers.plain import held_values
 from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.stamps import stamps_of

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.report.afterword import full_reason, without_attempts
-from rvmon.report.forecast import forecast_sentence
+from rvmon.report.afterword import forecast_sentence, full_reason, without_attempts
 from rvmon.report.wrapped import wrapped
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks

@@ -36,7 +36,7 @@ from rvmon.timed.observation.propositions import Labelling, NotExpressibleError
 from rvmon.timed.search.explore import explore
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.problem import UNLIMITED, Budget, Node, Watch
-from rvmon.timed.zones.start import check_start
+from rvmon.timed.zones.deadlock import check_start
 from rvmon.trace.time import TICKS_PER_UNIT
 
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"

@@ -21,8 +21,8 @@ from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Network, Query
 from rvmon.timed.model.operators import PathOp
 from rvmon.timed.model.rules import model_error
+from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.successors import Space
 from rvmon.timed.zones.zone_unions import (
     Constraint,
