@@ -18,14 +18,7 @@ def row_of(automaton: Automaton, location: int, regions: Regions) -> int:
 
 
 def after_edge(automaton: Automaton, location: int, regions: Regions, edge: int) -> Regions:
-    """The least regions behind an edge; locations may cut the age of one clock differently.
-
-    Args:
-        automaton: the automaton.
-        location: where the edge starts.
-        regions: of its clocks.
-        edge: number of the edge.
-    """
+    """The least regions behind an edge; locations may cut the age of one clock differently."""
     ours = automaton.locations[location].cuts
     theirs = automaton.locations[automaton.targets[edge]].cuts
     found = []

@@ -167,12 +167,7 @@ class WatchedRequirements:
     def hits(
         self, run: RequirementRun, reports: Sequence[Report]
     ) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-        """What a run that is over has hit, by group.
-
-        Args:
-            run: of the requirements.
-            reports: on it, and on what else was judged.
-        """
+        """What a run that is over has hit, by group."""
         attempts: dict[str, list[Attempt]] = {}
         for attempt in (attempt for report in reports for attempt in report.attempts):
             if not attempt.in_doubt:

@@ -21,12 +21,7 @@ def every_rule() -> Mapping[str, Rule]:
 
 
 def findings_about(rule: Rule, text: str) -> tuple[Diagnostic, ...]:
-    """What is found in a text by the pass that a rule belongs to: the check, or the analysis.
-
-    Args:
-        rule: the rule.
-        text: a small specification, such as the rule's example.
-    """
+    """What is found in a text by the pass that a rule belongs to: the check, or the analysis."""
     try:
         checked, found = compile_text(text, name="demo.rv")
     except SpecError as error:

@@ -25,10 +25,6 @@ Known = dict[tuple[str, ForEach | None, tuple[tuple[str, Scalar], ...]], Spans]
 def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
     """What a failed attempt had awaited when its window closed.
 
-    Args:
-        requirement: of the attempt.
-        attempt: any.
-
     Returns:
         `None` if that is not why it failed, or if what was awaited spoke of the future itself.
     """

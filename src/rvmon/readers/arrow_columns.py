@@ -52,10 +52,6 @@ def block_of_arrays(
 def array_of(cells: Any, kinds: str) -> NDArray[Any]:
     """An array without nulls.
 
-    Args:
-        cells: of Arrow.
-        kinds: of NumPy that it may have.
-
     Raises:
         NotPlainError: it has another one.
     """

@@ -65,12 +65,7 @@ def _is_telling(summary: Summary, group: Group) -> bool:
 
 
 def hitters_list(summary: Summary, listed: Collection[int]) -> ET.Element:
-    """By item the tests that hit it: a cell's address opens one of these over the page.
-
-    Args:
-        summary: with the items.
-        listed: the tests that the page has a line of.
-    """
+    """By item the tests that hit it: a cell's address opens one of these over the page."""
     lines = []
     numbers = {name: number for number, name in enumerate(summary.coverage.model.groups)}
     for place, tests in sorted(summary.hitters.items()):

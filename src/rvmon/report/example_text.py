@@ -26,11 +26,6 @@ def picture_of(example: Example, spec: CheckedSpec, concerned: Collection[str]) 
     """The lines of a drawing, at most 80 columns wide if that is possible.
 
     Times are not to scale: every instant at which something happens has a column.
-
-    Args:
-        example: what to draw.
-        spec: declares the names.
-        concerned: the signals and events to draw.
     """
     from rich.text import Text
 

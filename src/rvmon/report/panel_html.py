@@ -23,13 +23,7 @@ from rvmon.verdict.verdict import Verdict
 
 
 def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET.Element:
-    """Draw a panel.
-
-    Args:
-        panel: what to draw.
-        panels: all of the page, for links between them.
-        content: of the page.
-    """
+    """Draw a panel."""
     report = content.run.report
     requirement = content.spec.requirements[panel.requirement]
     sentence = headline(content.run.name, panel, report.origin)

@@ -47,13 +47,7 @@ class Listed:
 
 
 def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailures) -> str:
-    """Write the list; without scripts it is whole, but cannot be filtered.
-
-    Args:
-        spec: that judged.
-        recordings: in the order in which they were named.
-        known: failures that are accepted.
-    """
+    """Write the list; without scripts it is whole, but cannot be filtered."""
     places = list(_GROUPS)
     rows = [(_group(one, known), one) for one in recordings]
     rows.sort(key=lambda row: places.index(row[0]))

@@ -32,11 +32,6 @@ def print_reports(
     """Print the verdicts on each recording, and for several the counts of runs.
 
     Every F comes with cause, window and spec line; every I with what is still owed.
-
-    Args:
-        reports: of the recordings.
-        spec: that judged.
-        counts_only: whether only the counts are printed, of one recording too.
     """
     from rvmon.report.terminal import Terminal
 

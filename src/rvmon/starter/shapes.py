@@ -159,9 +159,6 @@ def _without_rare_objects(seen: Mapping[str, Seen], lines: int) -> dict[str, See
 def message_shapes(path: str) -> Shapes:
     """Look at the topics of a bag or MCAP file, and at the texts in it.
 
-    Args:
-        path: of it.
-
     Raises:
         TraceError: it cannot be read.
     """

@@ -162,13 +162,7 @@ class ColumnJudge:
 def _assembled(
     ids: Sequence[str], rules: Sequence[ColumnRule], kept: Sequence[Attempt]
 ) -> tuple[JudgedAttempts, Mapping[str, Counter[Verdict]]]:
-    """All attempts in the order of reports, and the count of their verdicts by requirement.
-
-    Args:
-        ids: of all requirements, in the order of the file.
-        rules: with the attempts that they have decided.
-        kept: all other attempts.
-    """
+    """All attempts in the order of reports, and the count of their verdicts by requirement."""
     rank = {name: index for index, name in enumerate(ids)}
     counts = {name: Counter[Verdict]() for name in ids}
     parts = []

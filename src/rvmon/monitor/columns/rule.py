@@ -102,10 +102,6 @@ class ColumnRule:
     def take(self, piece: Piece, limit: int) -> None:
         """Judge a piece.
 
-        Args:
-            piece: of the trace.
-            limit: the instant that time comes to.
-
         Raises:
             NotByColumnsError: there are attempts in doubt that have to be judged one by one.
         """
@@ -220,14 +216,7 @@ class ColumnRule:
         )
 
     def finish(self, timeline: Timeline, end: int, last: int, outages_at: OutagesAt) -> None:
-        """Settle what is undecided.
-
-        Args:
-            timeline: has come to the end.
-            end: the last instant of the trace.
-            last: the last position.
-            outages_at: gives by name what was not known at an instant.
-        """
+        """Settle what is undecided."""
         if not len(self._open) and not self._void:
             return
         values = {leaf: timeline.value_here(leaf) for leaf in self._deferred.leaves}

@@ -188,11 +188,7 @@ class Evaluators(EvaluatorMaker):
         return name, next(kind for kind, one in found.items() if one is compiled)
 
     def rebuild(self, shape: Shape) -> None:
-        """Make the evaluators that another run had; what they hold is to be set afterwards.
-
-        Args:
-            shape: of the other run.
-        """
+        """Make the evaluators that another run had; what they hold is to be set afterwards."""
         instances, evaluators = shape
         for name, found in instances:
             keyed = self.instances.keyed[name]

@@ -63,14 +63,7 @@ class DeferredReasons:
         position: int,
         attempts: list[Open],
     ) -> MachineJudge:
-        """The judge of the requirement, as it would stand if it had judged.
-
-        Args:
-            flow: as it stood.
-            letters: of the position.
-            position: the instant that the values are of.
-            attempts: the open ones.
-        """
+        """The judge of the requirement, as it would stand if it had judged."""
         judge = MachineJudge(self.compiled, self._machine, flow, self._clerk, {})
         judge.letter, judge.other = letters
         judge.position = position

@@ -37,10 +37,6 @@ from rvmon.trace.schema import Kind
 def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
     """Check everything that a specification says.
 
-    Args:
-        spec: with all names known.
-        findings: takes what is wrong.
-
     Returns:
         What could be checked; it is fit for use if no finding is an error.
     """

@@ -17,12 +17,7 @@ MOST_FINDINGS = 5
 
 
 def rule_page(rule: Rule, found: Sequence[Diagnostic]) -> str:
-    """A rule's page as Markdown: what, why, an example with its message, the same mended.
-
-    Args:
-        rule: the rule.
-        found: what is found in its example.
-    """
+    """A rule's page as Markdown: what, why, an example with its message, the same mended."""
     return "\n".join(
         (
             f"# {rule.code} {rule.name}",

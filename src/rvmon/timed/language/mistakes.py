@@ -23,13 +23,7 @@ _BEGINS = re.compile(rf"^[ \t]*(?:(?P<alone>{_ALONE})\b|(?:{_OTHERS})\b|\}})", r
 def all_mistakes(
     text: str, first: ModelError, read: Callable[[str], object]
 ) -> tuple[Diagnostic, ...]:
-    """The mistakes that are found when each part with one is left out in turn.
-
-    Args:
-        text: a whole model.
-        first: what reading it raised.
-        read: reads a text of the same length.
-    """
+    """The mistakes that are found when each part with one is left out in turn."""
     found = list(first.diagnostics)
     error: ModelError | None = first
     while error is not None and len(found) < MOST and len(text) <= LONGEST:
