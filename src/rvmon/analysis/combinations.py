@@ -71,11 +71,7 @@ class Table(Generic[T]):
 
 
 class Letters:
-    """What groups of formulas of one specification can be, alone and together.
-
-    Args:
-        spec: declares the names.
-    """
+    """What groups of formulas of one specification can be, alone and together."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec

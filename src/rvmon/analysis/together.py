@@ -48,11 +48,7 @@ class Aim:
 
 
 class Together:
-    """Answers about groups of requirements of one specification.
-
-    Args:
-        spec: declares the names.
-    """
+    """Answers about groups of requirements of one specification."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec

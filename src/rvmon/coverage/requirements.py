@@ -82,11 +82,7 @@ def _steps(graph: Graph) -> Iterator[tuple[str, str]]:
 
 
 class WatchedRequirement:
-    """A requirement and what may be seen of it.
-
-    Args:
-        compiled: the requirement.
-    """
+    """A requirement and what may be seen of it."""
 
     def __init__(self, compiled: CompiledRequirement) -> None:
         self.compiled = compiled
@@ -130,9 +126,6 @@ def deadline_of(owed: Formula) -> int | None:
 
 class WatchedRequirements:
     """The requirements and cover goals of a specification, ready to be watched on any runs.
-
-    Args:
-        spec: has them.
 
     Attributes:
         groups: what may be hit.

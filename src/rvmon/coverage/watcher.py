@@ -55,9 +55,6 @@ class WatchingUnit(Unit):
 class Bins:
     """The bins of a specification, ready to be watched on any number of runs.
 
-    Args:
-        spec: has them.
-
     Attributes:
         groups: what may be hit.
         plan: has a rule for each bin, and for each place where some are looked at.

@@ -99,12 +99,7 @@ def created(path: Path) -> Iterator[BinaryIO]:
 
 
 class _Unpacked(RawIOBase):
-    """The text of a packed file.
-
-    Args:
-        raw: the file.
-        packed: its ending.
-    """
+    """The text of a packed file."""
 
     def __init__(self, raw: BinaryIO, packed: str) -> None:
         import zlib

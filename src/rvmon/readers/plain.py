@@ -29,9 +29,6 @@ def expect_plain_columns(layout: Layout) -> None:
 class Seam:
     """What the rows before a block leave to it.
 
-    Args:
-        layout: of the recording.
-
     Attributes:
         held: by signal its last value.
     """

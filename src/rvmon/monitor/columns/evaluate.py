@@ -35,12 +35,6 @@ _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 class ColumnJudge:
     """Judges requirements by columns: those that `rvmon.monitor.compiled.refusal.of_columns` lets.
 
-    Args:
-        compiled: the specification.
-        chosen: ids of the requirements that are judged, by this or otherwise.
-        ids: of those that this judges.
-        names: of the columns.
-
     Attributes:
         ids: of the requirements that this judges.
     """

@@ -21,10 +21,6 @@ class ColumnOutages:
     """The outages of columns in which every row updates every signal.
 
     What becomes stale is read by no requirement that columns are asked for.
-
-    Args:
-        spec: declares the names.
-        names: of the columns.
     """
 
     def __init__(self, spec: CheckedSpec, names: Set[str]) -> None:

@@ -46,12 +46,6 @@ OutagesAt = Callable[[int], Mapping[str, Outage]]
 class ColumnRule:
     """Starts the attempts of a requirement and drives them, a piece of the trace at a time.
 
-    Args:
-        compiled: the requirement, or what judges its attempts in doubt.
-        plan: that it is part of.
-        ledger: takes the records of what the end settles.
-        hidden: whether these are its attempts in doubt.
-
     Attributes:
         id: of the requirement.
         is_determined: whether its trigger was ever true or false.

@@ -26,13 +26,6 @@ from rvmon.trace.sample import Scalar, Value
 class Evaluators(EvaluatorMaker):
     """All evaluators of one run.
 
-    Args:
-        spec: gives the names and the time model.
-        requirements: to be judged.
-        engine: judges them.
-        sources: the names that can arrive; `None`: all.
-        ledger: takes the records.
-
     Attributes:
         main: the evaluator of all requirements without `for each`; its inputs are those of the run.
         instances: the evaluators of those with it, an instance each.

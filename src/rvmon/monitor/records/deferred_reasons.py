@@ -26,11 +26,6 @@ class DeferredReasons:
 
     A record costs little until someone asks for its reason: what that needs is noted.
 
-    Args:
-        compiled: the requirement.
-        plan: that it is part of.
-        clerk: whom a judge would tell.
-
     Attributes:
         leaves: the nodes of the plan that it reads of the input.
         places: the nodes of the plan that its letters are made of.

@@ -45,10 +45,6 @@ class Reasons:
     """Finds the reasons of the decisions of one requirement.
 
     What was owed, in which of its windows, and the letter: more makes no difference to a reason.
-
-    Args:
-        compiled: the requirement.
-        machine: that decides.
     """
 
     def __init__(self, compiled: CompiledRequirement, machine: Machine) -> None:

@@ -15,11 +15,7 @@ from rvmon.timed.zones.symbolic import Steps, settle_in
 
 
 class Deadlocks:
-    """The valuations of each discrete state from which an edge can be taken, found once.
-
-    Args:
-        space: the discrete states.
-    """
+    """The valuations of each discrete state from which an edge can be taken, found once."""
 
     def __init__(self, space: Space) -> None:
         self._space = space
