@@ -8,6 +8,7 @@ from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.layout import row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.explain.cubes import ANY, Cube, cubes_of
 from rvmon.formula.core import Core, Literal, Sense
@@ -157,7 +158,7 @@ class _Reader:
         never = self.letters.keys() - can_be
         found: dict[tuple[int, tuple[int, ...], tuple[Cube, ...]], list[tuple[int, ...]]] = {}
         for regions in product(*(range(len(own) + 1) for own in cuts)):
-            row = automaton.bases[index] + sum(map(int.__mul__, regions, automaton.strides[index]))
+            row = row_of(automaton, index, regions)
             groups: dict[tuple[int, tuple[int, ...]], list[Cube]] = {}
             for cube in sorted(can_be, reverse=True):
                 letter = self.letters[cube]

@@ -10,7 +10,7 @@ from itertools import product
 from rvmon.coverage.model import Group, Item, combination
 from rvmon.report.coverage_summary import Summary, cell_text, is_grid
 from rvmon.report.coverage_tests import test_link
-from rvmon.report.markup import Child, e, with_code
+from rvmon.report.markup import Child, e, scroll, with_code
 from rvmon.spec.checked.goals import BinKind
 
 SHORT, LONG = 8, 40
@@ -112,7 +112,7 @@ def _list(summary: Summary, group: Group) -> ET.Element:
     names = ("item", "hits", "tests", "first hit by")
     head = e("tr", None, *(e("th", None, name) for name in names))
     grid = e("table", {"class": "items"}, e("thead", None, head), e("tbody", None, *rows))
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+    return scroll(grid)
 
 
 def _first(summary: Summary, place: int) -> Child:
@@ -142,7 +142,7 @@ def _heat_map(summary: Summary, group: Group) -> ET.Element:
         rows.append(e("tr", None, *cells))
     head = e("thead", None, above, e("tr", None, *heads))
     grid = e("table", {"class": "heat"}, head, e("tbody", None, *rows))
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+    return scroll(grid)
 
 
 def _row_heads(axes: Sequence[Sequence[str]], number: int) -> list[Child]:

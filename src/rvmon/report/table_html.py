@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 
-from rvmon.report.markup import Child, e
+from rvmon.report.markup import Child, e, scroll
 from rvmon.report.table import Counts, VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
 
@@ -38,7 +38,7 @@ def table_html(
             row.set("class", "beside")
         body.append(e("tbody", None, *rows))
     grid = e("table", {"class": "counts"}, _head(table, has_checked=has_checked), *body)
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+    return scroll(grid)
 
 
 def legend(of: str = "Number of tests") -> ET.Element:
