@@ -1,4 +1,4 @@
-"""Findings as text: in full for people, one line each for tools, JSON for programs."""
+"""Findings as text: in full and in colour for people, a line each for tools, JSON for programs."""
 
 from __future__ import annotations
 

@@ -10,8 +10,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.errors import SpecError, UnknownNameError
 from rvmon.explain.model_codes import model_codes
 from rvmon.spec.compile import compile_text
-from rvmon.spec.rules.pages import rule_page
-from rvmon.spec.rules.registry import all_rules
+from rvmon.spec.rules.pages import all_rules, rule_page
 from rvmon.spec.rules.rule import Rule
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 
-from rvmon.report.afterword import forecast_sentence
+from rvmon.report.afterword import forecast_sentence, with_afterword, without_attempts
 from rvmon.report.concerned import blamed_names
-from rvmon.report.headline import headline
 from rvmon.report.markup import Child, e, with_code
 from rvmon.report.panel import Panel
 from rvmon.report.parts_html import parts_details
@@ -15,7 +14,7 @@ from rvmon.report.run_page import RunPage
 from rvmon.report.style import MARKS
 from rvmon.report.timeline import timeline
 from rvmon.report.tracks import Track, TrackKind
-from rvmon.report.view import View, moment
+from rvmon.report.view import View, moment, with_moments
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt, Blame
@@ -212,3 +211,30 @@ def _marked(line: str, position: int, blame: Blame | None) -> list[Child]:
         return [line]
     failed = e("mark", {"title": "this part failed"}, line[start:end])
     return [line[:start], failed, line[end:]]
+
+
+def headline(run: str, panel: Panel, origin: int) -> str:
+    """What became of a requirement in a run, or of one attempt.
+
+    Args:
+        run: its name.
+        panel: about the attempt.
+        origin: the instant from which people count seconds, ticks.
+
+    >>> from rvmon.report.view import View
+    >>> from rvmon.verdict.attempt import Attempt
+    >>> from rvmon.verdict.verdict import Verdict
+    >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
+    >>> view = View(0, 20_000_000_000)
+    >>> panel = Panel("R2-1", "R2", failed, failed.verdict, view, (), None)
+    >>> headline("test 17", panel, 0)
+    'R2 failed, test 17, 14.25 s: `released` too soon'
+    """
+    attempt = panel.attempt
+    if attempt is None:
+        why = without_attempts(panel.verdict, with_moments(panel.miss, panel.view))
+        return f"{panel.requirement} {MARKS[panel.verdict].word}, {run}: {why}"
+    when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
+    why = with_afterword(attempt, panel.late)
+    reason = f": {with_moments(why, panel.view)}" if why else ""
+    return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

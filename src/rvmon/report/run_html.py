@@ -6,12 +6,10 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from rvmon.report.choose import opening
-from rvmon.report.headline import headline
 from rvmon.report.markup import Child, data, e, page
 from rvmon.report.panel import Panel
-from rvmon.report.panel_html import panel_section
-from rvmon.report.panels_of import panel_id, panels_of
+from rvmon.report.panel_html import headline, panel_section
+from rvmon.report.panels_of import opening, panel_id, panels_of
 from rvmon.report.run_page import RunPage
 from rvmon.report.scene_html import scene_data, scene_svg
 from rvmon.report.style import MARKS

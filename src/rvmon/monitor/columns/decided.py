@@ -54,7 +54,7 @@ class DecidedAttempts(Sequence[Attempt]):
     """The decided attempts of one requirement, by number.
 
     Attributes:
-        decisions: the same.
+        decisions: what was noted of each.
         id: of the requirement.
     """
 
