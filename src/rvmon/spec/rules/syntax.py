@@ -160,13 +160,7 @@ def syntax_error(message: str, span: Span, mend: str = "") -> Diagnostic:
 
 
 def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
-    """The operator can be read as reaching over its operand alone or on to `end`.
-
-    Args:
-        operator: the operator with its interval.
-        operand: what it applies to.
-        end: the last operand of the connective that follows.
-    """
+    """The operator can be read as reaching over its operand alone or on to `end`."""
     head = short(operator.text)
     near = short(operand.text)
     rest = Span(end.source, operand.end, end.end)

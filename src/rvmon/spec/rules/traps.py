@@ -123,14 +123,7 @@ def no_value(span: Span, event: str) -> Diagnostic:
 
 
 def false_at_trigger(span: Span, part: str, escape: str, mend: str) -> Diagnostic:
-    """What is owed contradicts its trigger.
-
-    Args:
-        span: of what is owed.
-        part: what is false of it, as text.
-        escape: what would have to hold at once for it not to fail; empty: nothing helps.
-        mend: how to say it.
-    """
+    """What is owed contradicts its trigger."""
     unless = f" unless `{short(escape)}` holds at that very instant" if escape else ""
     return finding(
         AT_TRIGGER,

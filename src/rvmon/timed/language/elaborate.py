@@ -28,10 +28,6 @@ MAX_EDGES = 100_000
 def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = None) -> Network:
     """Make the network that a model describes.
 
-    Args:
-        document: the model as written.
-        constants: other values for constants that it declares outside its automata.
-
     Raises:
         ModelError: with everything that is wrong with the model.
     """
