@@ -30,7 +30,8 @@ def table_html(
     has_checked = any(one.checked for one in (table, *others.values()))
     body: list[Child] = []
     for name, text in table.requirements.items():
-        rows = [_row(table, name, _name_cell(name, text), link, has_checked=has_checked)]
+        heading = e("th", {"scope": "row", "title": text}, name)
+        rows = [_row(table, name, heading, link, has_checked=has_checked)]
         for label, other in others.items():
             heading = e("th", {"scope": "row"}, label)
             rows.append(_row(other, name, heading, None, has_checked=has_checked, like=table))
@@ -73,10 +74,6 @@ def _head(table: VerdictTable, *, has_checked: bool) -> ET.Element:
             for verdict in Verdict
         )
     return e("thead", None, e("tr", None, *top), e("tr", None, *below))
-
-
-def _name_cell(name: str, text: str) -> ET.Element:
-    return e("th", {"scope": "row", "title": text}, name)
 
 
 def _row(
