@@ -31,8 +31,8 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.spec.checked.formula import Binary, Formula, Unary
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.formula import Shape, formula
-from rvmon.testing.show import show
 
 SHAPE = Shape(mixed=False, past=False)
 
@@ -89,9 +89,9 @@ def main(argv: Sequence[str]) -> int:
             sizes.append(own)
         except DoesNotCloseError as error:
             refused[str(error)] += 1
-        seconds.append((time.process_time() - began, show(owed)))
+        seconds.append((time.process_time() - began, format_formula(owed)))
         if found is not None:
-            forecasts += [(spent, show(owed)) for spent in _forecast(found, rng)]
+            forecasts += [(spent, format_formula(owed)) for spent in _forecast(found, rng)]
     _print(options, sizes, refused, seconds)
     print(f"  {len(forecasts)} forecasts, of what may be owed at the end of a trace")
     _print_seconds(forecasts)

@@ -26,9 +26,9 @@ from rvmon.monitor import compile_spec
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.rng import Rng, chance
 from rvmon.testing.generate.vocabulary import BOOLS
-from rvmon.testing.show import show
 from rvmon.trace.schema import Kind
 from rvmon.verdict.verdict import Verdict
 
@@ -67,7 +67,7 @@ def main(argv: Sequence[str]) -> int:
                 elif value is not wanted:
                     letters = " ".join("".join(sorted(x)) or "-" for x in word[:length])
                     found.append(
-                        f"formula {number}: {show(formula)} on {letters}: "
+                        f"formula {number}: {format_formula(formula)} on {letters}: "
                         f"tableau {_word_of(wanted)}, engine {_word_of(value)}"
                     )
     print(f"seed {options.seed}, engine {options.engine}, {time.perf_counter() - began:.0f} s")

@@ -37,12 +37,12 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.rng import Rng, chance
 from rvmon.testing.generate.vocabulary import BOOLS
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import both, no, to_core, until
 from rvmon.testing.peers.dialects import LTLF, spelling, translate
-from rvmon.testing.show import show
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Decision
@@ -126,7 +126,7 @@ def compare(
             if marked is not accepted or plain not in (None, accepted):
                 letters = " ".join("".join(sorted(letter)) or "-" for letter in word)
                 found.append(
-                    f"formula {number}, {name}: {show(formula)} on {letters}: "
+                    f"formula {number}, {name}: {format_formula(formula)} on {letters}: "
                     f"MONA {accepted}, marked {marked}, plain {plain}"
                 )
     return found

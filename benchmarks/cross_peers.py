@@ -22,9 +22,9 @@ from benchmarks.peers.environment import prepare
 from benchmarks.peers.positions import Judge, Question, answers, ask_engine, ask_oracle
 
 from rvmon.errors import RvmonError
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.dialects import translate
-from rvmon.testing.show import show
 
 JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
 
@@ -102,7 +102,7 @@ def _show(
 ) -> str:
     width = max(6, *(len(name) for name in question.columns))
     asked = translate(question.formula, contest.way.dialect)
-    lines = [f"{show(question.formula)}   as   {asked}"]
+    lines = [f"{format_formula(question.formula)}   as   {asked}"]
     rows = {**question.columns, "ours": ours, "theirs": theirs}
     for name, column in rows.items():
         cells = ["." if value is None else f"{value:g}" for value in column]

@@ -32,11 +32,11 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.testing.peers.core import UntranslatableError
 from rvmon.testing.peers.dialects import spelling, translate
 from rvmon.testing.peers.ways import WAYS, Way
-from rvmon.testing.show import show
 from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.schema import Kind
 
@@ -122,7 +122,7 @@ def compare(way: Way, peer: Peer, rng: random.Random, tally: Tally) -> None:
         if value != other:
             wrong.append(f"tick {tick}: {value:g}, theirs {other:g}")
     if wrong:
-        tally.disagreements.append(f"{show(formula)}   as   {text}\n{columns}\n{wrong}")
+        tally.disagreements.append(f"{format_formula(formula)}   as   {text}\n{columns}\n{wrong}")
 
 
 def main(argv: list[str]) -> int:

@@ -37,7 +37,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.testing.show import show
+from rvmon.spec.print.printer import format_formula
 from rvmon.trace.schema import Kind
 
 ROWS = 24
@@ -114,7 +114,9 @@ def compare(sentil: Any, number: int, rng: random.Random, tally: Tally) -> None:
         if value != other:
             wrong.append(f"at {t}: {value:g}, theirs {other:g}")
     if wrong:
-        tally.disagreements.append(f"{show(formula)}   as   {text}\n{times}\n{columns}\n{wrong}")
+        tally.disagreements.append(
+            f"{format_formula(formula)}   as   {text}\n{times}\n{columns}\n{wrong}"
+        )
 
 
 def main(argv: list[str]) -> int:

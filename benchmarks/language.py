@@ -30,7 +30,7 @@ from rvmon.explain.codes import every_rule
 from rvmon.monitor import compile_spec
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
-from rvmon.spec.rules.registry import all_rules
+from rvmon.spec.rules.pages import all_rules
 from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[1]

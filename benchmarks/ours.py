@@ -19,7 +19,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.show import show
+from rvmon.spec.print.printer import format_formula
 
 _CALLED = (UnaryOp.RISE, UnaryOp.FALL, UnaryOp.HELD)
 
@@ -53,13 +53,13 @@ def text(formula: Formula) -> str:
     """
     match formula:
         case Unary(op=op) if op in _CALLED:
-            return show(formula)
+            return format_formula(formula)
         case Unary(op=op, operand=operand, interval=interval):
             return f"({op.value}{_window(interval)} {text(operand)})"
         case Binary(op=op, left=left, right=right, interval=interval):
             return f"({text(left)} {op.value}{_window(interval)} {text(right)})"
         case Constant() | SignalAtom() | EventAtom() | Compare() | ProbeAtom() | BoundAtom():
-            return f"({show(formula)})"
+            return f"({format_formula(formula)})"
         case _:
             assert_never(formula)
 

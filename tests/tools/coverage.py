@@ -4,18 +4,133 @@ from __future__ import annotations
 
 import random
 from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
 
 from rvmon.coverage.model import combination
 from rvmon.coverage.monitor import SpecCoverage
+from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
+from rvmon.spec.checked.goals import Bin, BinKind, Coverpoint, Cross
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.generate.coverage import with_random_coverage
-from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-from rvmon.testing.law.coverage import hits_on
+from rvmon.testing.law.kleene import Truth, conjunction
+from rvmon.testing.law.pulse import is_pulse
 from rvmon.testing.law.sample_words import word_of
+from rvmon.testing.law.truths import Truths
+from rvmon.testing.law.word import Word
 from rvmon.trace.sample import Sample
 
 Counted = dict[str, dict[str, tuple[int, int | None]]]
+Found = dict[tuple[str, ...], tuple[int, int]]
+"""By combination of bins, how often it was hit and when first."""
+
+
+def with_random_coverage(rng: Rng, profile: Profile) -> CheckedSpec:
+    """A random specification that has coverpoints and, if there are several, a cross.
+
+    What bins ask for is asked for by its requirements, too, so that traces are drawn for it.
+
+    Args:
+        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
+        profile: of the requirements.
+    """
+    spec = random_spec(rng, profile)
+    shape = Shape(step=spec.time is not TimeModel.HELD, future=False)
+    points = {
+        name: Coverpoint(name, _bins(rng, shape), _upon(rng, shape), rng.randint(1, 3))
+        for name in (f"C{place}" for place in range(rng.randint(1, 3)))
+    }
+    crosses = {}
+    if len(points) > 1:
+        crosses["X"] = Cross("X", tuple(points), upon=_upon(rng, shape))
+    asked = {
+        f"{point.name}.{one.name}": one.formula for point in points.values() for one in point.bins
+    }
+    requirements = {
+        name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), wanted)
+        for name, wanted in asked.items()
+    }
+    return replace(spec, requirements=requirements, coverpoints=points, crosses=crosses)
+
+
+def _bins(rng: Rng, shape: Shape) -> tuple[Bin, ...]:
+    kinds = (BinKind.GOAL, BinKind.GOAL, BinKind.IGNORE, BinKind.ILLEGAL)
+    return tuple(
+        Bin(f"b{place}", formula(rng, shape, rng.randint(0, 2)), pick(rng, kinds))
+        for place in range(rng.randint(1, 3))
+    )
+
+
+def _upon(rng: Rng, shape: Shape) -> Formula | None:
+    return formula(rng, shape, rng.randint(0, 2)) if chance(rng, 40) else None
+
+
+def hits_on(spec: CheckedSpec, word: Word) -> dict[str, Found]:
+    """What a word hits, by the name of the coverpoint or cross; what hits nothing is left out.
+
+    Args:
+        spec: has the coverpoints and crosses.
+        word: the trace, position by position.
+    """
+    found = {
+        point.name: _hits(word, [point.bins], point.upon) for point in spec.coverpoints.values()
+    }
+    for cross in spec.crosses.values():
+        axes = [spec.coverpoints[name].bins for name in cross.points]
+        found[cross.name] = _hits(word, axes, cross.upon)
+    return {name: own for name, own in found.items() if own}
+
+
+def _hits(word: Word, axes: Sequence[Sequence[Bin]], upon: Formula | None) -> Found:
+    found: Found = {}
+    for bins in product(*axes):
+        truths = [
+            conjunction([_truth(word, bin_.formula, k) for bin_ in bins])
+            for k in range(len(word.letters))
+        ]
+        if upon is not None:
+            instants = [k for k in _starts(word, upon) if truths[k] is Truth.TRUE]
+        elif any(is_pulse(bin_.formula) for bin_ in bins):
+            instants = [k for k, truth in enumerate(truths) if truth is Truth.TRUE]
+        else:
+            instants = [*_stretches(truths)]
+        if instants:
+            name = tuple(bin_.name for bin_ in bins)
+            found[name] = (len(instants), word.letters[instants[0]].instant)
+    return found
+
+
+def _truth(word: Word, formula: Formula, k: int) -> Truth:
+    """As of a trigger: what is not born is false."""
+    found = Truths(word, {}).state(formula, k)
+    return Truth.FALSE if found is Truth.UNBORN else found
+
+
+def _starts(word: Word, upon: Formula) -> list[int]:
+    """Where an attempt `upon` it would surely start."""
+    truths = [_truth(word, upon, k) for k in range(len(word.letters))]
+    return [
+        k
+        for k, truth in enumerate(truths)
+        if truth is Truth.TRUE and (is_pulse(upon) or k == 0 or truths[k - 1] is Truth.FALSE)
+    ]
+
+
+def _stretches(truths: Sequence[Truth]) -> list[int]:
+    """Where it is true, and was false since it last was, or was never true."""
+    found = []
+    for k, truth in enumerate(truths):
+        if truth is not Truth.TRUE:
+            continue
+        earlier = [j for j in range(k) if truths[j] is Truth.TRUE]
+        if not earlier or any(truths[j] is Truth.FALSE for j in range(earlier[-1], k)):
+            found.append(k)
+    return found
 
 
 def by_law(case: Case) -> Counted:

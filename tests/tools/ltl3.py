@@ -182,9 +182,9 @@ def unrolled(formula: Formula) -> Formula:
     """The same formula without bounds, where every tick is a position: windows as nests of `X`.
 
     >>> from tests.tools.build import eventually, p
-    >>> from rvmon.testing.show import show
-    >>> show(unrolled(eventually(p, 1, 2)))
-    '(X (p or (X p)))'
+    >>> from rvmon.spec.print.printer import format_formula
+    >>> format_formula(unrolled(eventually(p, 1, 2)))
+    'next (p or next p)'
     """
     return _unrolled(to_core(formula))
 

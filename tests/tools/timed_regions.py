@@ -17,18 +17,27 @@ from math import floor
 
 import networkx as nx
 
-from rvmon.timed.model.expressions import BinaryOperation, Constant, Expression, PathFormula
-from rvmon.timed.model.guards import normal_form, with_deadlock
+from rvmon.timed.model.evaluate import evaluator
+from rvmon.timed.model.expressions import (
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    Constant,
+    Expression,
+    PathFormula,
+    UnaryOperation,
+)
+from rvmon.timed.model.guards import is_discrete, normal_form, with_deadlock
 from rvmon.timed.model.network import Edge, LeadsToFormula, Network, Query
-from rvmon.timed.model.operators import BinaryOp, PathOp
+from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.runs.concrete import (
     Configuration,
     InvalidRunError,
     act,
     channel_index,
+    compares,
     initial_configuration,
     is_ready,
-    satisfies,
     wait,
 )
 from rvmon.timed.runs.run import Action
@@ -37,6 +46,31 @@ from rvmon.timed.zones.zone_unions import compares_of, has_paths, speaks_of_dead
 
 class TooManyRegionsError(Exception):
     """A network has more regions than were asked to be walked through."""
+
+
+def satisfies(now: Configuration, formula: Expression) -> bool:
+    """Whether a state formula without `deadlock` holds."""
+    if is_discrete(formula):
+        return bool(evaluator(formula)(now.locations, now.values))
+    match formula:
+        case ClockCompare():
+            return compares(now, formula)
+        case UnaryOperation(UnaryOp.NOT, operand):
+            return not satisfies(now, operand)
+        case BinaryOperation(BinaryOp.AND, left, right):
+            return satisfies(now, left) and satisfies(now, right)
+        case BinaryOperation(BinaryOp.OR, left, right):
+            return satisfies(now, left) or satisfies(now, right)
+        case BinaryOperation(BinaryOp.IMPLY, left, right):
+            return not satisfies(now, left) or satisfies(now, right)
+        case BinaryOperation(BinaryOp.EQ, left, right):
+            return satisfies(now, left) == satisfies(now, right)
+        case BinaryOperation(BinaryOp.NE, left, right):
+            return satisfies(now, left) != satisfies(now, right)
+        case Choice(condition, then, otherwise):
+            return satisfies(now, then if satisfies(now, condition) else otherwise)
+        case _:
+            raise AssertionError(f"{formula} is no state formula")
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,13 +13,12 @@ from rvmon.timed.runs.concrete import (
     act,
     initial_configuration,
     replay,
-    satisfies,
     wait,
 )
 from rvmon.timed.runs.run import Run
 from rvmon.timed.search.outcome import Outcome
 from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
-from tests.tools.timed_regions import RegionGraph
+from tests.tools.timed_regions import RegionGraph, satisfies
 
 Instants = list[tuple[Fraction, Configuration]]
 

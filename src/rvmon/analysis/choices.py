@@ -70,14 +70,7 @@ def choices_of(
     concerned: Collection[str],
     captured: Sequence[Numeric] = (),
 ) -> Choices:
-    """The samples worth trying.
-
-    Args:
-        spec: declares the names.
-        leaves: what is read of the input.
-        concerned: the names to speak of.
-        captured: the expressions of `let`.
-    """
+    """The samples worth trying."""
     names = tuple(name for name in (*spec.signals, *spec.events) if name in concerned)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered)
@@ -94,13 +87,7 @@ def choices_of(
 
 
 def values_of(spec: CheckedSpec, leaves: Sequence[Leaf], name: str) -> list[Value | Silence]:
-    """What one name can say that some leaf tells apart; of an event `False` if it does not occur.
-
-    Args:
-        spec: declares the name.
-        leaves: those that read it.
-        name: of a signal or event.
-    """
+    """What a name can say that some leaf tells apart; of an event `False` if it does not occur."""
     return _Options(spec, leaves, (), frozenset()).of(name)
 
 

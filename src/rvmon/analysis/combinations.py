@@ -47,10 +47,6 @@ def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> Combinations 
     What remembers, and what compares in other ways than a name with a constant, is taken to be
     true or false at will, so that a combination that is not found is impossible indeed.
 
-    Args:
-        spec: declares the names.
-        states: any.
-
     Returns:
         The combinations; `None` if there are too many to look at.
     """
@@ -75,23 +71,14 @@ class Table(Generic[T]):
 
 
 class Letters:
-    """What groups of formulas of one specification can be, alone and together.
-
-    Args:
-        spec: declares the names.
-    """
+    """What groups of formulas of one specification can be, alone and together."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
         self._seen: dict[tuple[Source, tuple[State, ...]], tuple[Truths, ...]] = {}
 
     def table(self, states: Sequence[State], view: Callable[[Truths], T]) -> Table[T] | None:
-        """What some formulas can be; `None` if there is too much to look at.
-
-        Args:
-            states: the formulas.
-            view: what matters of their truths.
-        """
+        """What some formulas can be; `None` if there is too much to look at."""
         nodes = _nodes(states)
         leaves = _leaves_by_source(nodes, self.spec)
         shown = [self._shown(source, own) for source, own in leaves.items()]
@@ -114,11 +101,7 @@ class Letters:
         return Table(tuple(leaves), tuple(leaves.values()), rows)
 
     def joint(self, tables: Sequence[Table[T] | None]) -> frozenset[tuple[T, ...]] | None:
-        """What several groups can be together; `None` if there is too much to look at.
-
-        Args:
-            tables: of the groups.
-        """
+        """What several groups can be together; `None` if there is too much to look at."""
         known = [table for table in tables if table is not None]
         if len(known) < len(tables):
             return None

@@ -11,21 +11,8 @@ Regions = tuple[int, ...]
 """For each clock of a location how many of its cuts have been passed."""
 
 
-def row_of(automaton: Automaton, location: int, regions: Regions) -> int:
-    """The row of the tables for a location and regions."""
-    strides = automaton.strides[location]
-    return automaton.bases[location] + sum(map(int.__mul__, regions, strides))
-
-
 def after_edge(automaton: Automaton, location: int, regions: Regions, edge: int) -> Regions:
-    """The least regions behind an edge; locations may cut the age of one clock differently.
-
-    Args:
-        automaton: the automaton.
-        location: where the edge starts.
-        regions: of its clocks.
-        edge: number of the edge.
-    """
+    """The least regions behind an edge; locations may cut the age of one clock differently."""
     ours = automaton.locations[location].cuts
     theirs = automaton.locations[automaton.targets[edge]].cuts
     found = []

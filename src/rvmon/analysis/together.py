@@ -15,9 +15,10 @@ from itertools import product
 
 from rvmon.analysis.combinations import Letters, Table, Truths
 from rvmon.analysis.possible import automaton_letter
-from rvmon.analysis.regions import Regions, after_edge, row_of
+from rvmon.analysis.regions import Regions, after_edge
 from rvmon.analysis.subject import Subject
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.layout import row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 
@@ -48,11 +49,7 @@ class Aim:
 
 
 class Together:
-    """Answers about groups of requirements of one specification.
-
-    Args:
-        spec: declares the names.
-    """
+    """Answers about groups of requirements of one specification."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec

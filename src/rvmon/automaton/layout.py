@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import Location
 
 
@@ -22,3 +23,9 @@ def layout_of(
         strides.append(tuple(reversed(own)))
         total += size
     return tuple(bases), tuple(strides), total
+
+
+def row_of(automaton: Automaton, location: int, regions: Iterable[int]) -> int:
+    """The row of a location, for each clock of which so many of its cuts have been passed."""
+    strides = automaton.strides[location]
+    return automaton.bases[location] + sum(map(int.__mul__, regions, strides))

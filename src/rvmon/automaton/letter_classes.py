@@ -30,11 +30,7 @@ class LetterDiagram:
         return node
 
     def renamed(self, classes: Sequence[int]) -> LetterDiagram:
-        """The same with other numbers for the classes.
-
-        Args:
-            classes: the new number of each.
-        """
+        """The same with other numbers for the classes."""
         made: dict[int, Tree] = {}
 
         def rename(node: Tree) -> Tree:

@@ -76,12 +76,7 @@ class Proposal:
 
 
 def propose(spec: CheckedSpec, topics: Mapping[str, Topic]) -> Proposal:
-    """Find for each declared name the topic and field whose words and type are most like it.
-
-    Args:
-        spec: declares the names.
-        topics: of the recording, by name.
-    """
+    """Find for each declared name the topic and field whose words and type are most like it."""
     lines = ['clock = "log"  # or "header": the stamps of the headers count']
     missed: list[str] = []
     for name, signal in spec.signals.items():

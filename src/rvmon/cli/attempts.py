@@ -43,11 +43,6 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
 def chosen_attempt(report: Report, name: str, exact: str | None) -> Attempt:
     """The attempt that is meant: without a name the first failed, else open, else any.
 
-    Args:
-        report: on the recording.
-        name: of the requirement.
-        exact: of the attempt.
-
     Raises:
         RvmonError: the requirement has no attempt.
         UnknownNameError: it has others.

@@ -146,8 +146,13 @@ def _engines(checked: CheckedSpec) -> tuple[dict[str, Any], str]:
 def _show(
     form: str, findings: list[Diagnostic], engines: Mapping[str, dict[str, Any]] | None
 ) -> None:
-    from rvmon.diagnostics.colour import coloured, wants_colour
-    from rvmon.diagnostics.render import render_concise, render_full, render_json
+    from rvmon.diagnostics.render import (
+        coloured,
+        render_concise,
+        render_full,
+        render_json,
+        wants_colour,
+    )
 
     match form:
         case "json" if engines is not None:

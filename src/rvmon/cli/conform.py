@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
@@ -173,14 +174,5 @@ def _data(answer: Conformance) -> dict[str, object]:
         "conforms": answer.conforms,
         "explained": answer.explained,
         "remark": answer.undecided,
-        "divergence": None
-        if divergence is None
-        else {
-            "at": divergence.at,
-            "label": divergence.label,
-            "allowed": [
-                {"label": one.label, "earliest": one.earliest, "latest": one.latest}
-                for one in divergence.allowed
-            ],
-        },
+        "divergence": None if divergence is None else asdict(divergence),
     }

@@ -96,10 +96,6 @@ def constants_of(texts: Iterable[str]) -> dict[str, str]:
 def refuse_over(written: Iterable[str | None], read: Iterable[str]) -> None:
     """Say before anything is done that it would write over what it reads.
 
-    Args:
-        written: files, some of which are not asked for.
-        read: files.
-
     Raises:
         RvmonError: one is the same as another.
     """

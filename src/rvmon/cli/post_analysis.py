@@ -49,12 +49,6 @@ def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals
     That is what the triggers lacked that never came true, and what came after its deadline.
 
     Streams cannot be read again.
-
-    Args:
-        spec: the specification.
-        recording: was judged.
-        report: on it.
-        goals: whether the cover goals are asked for.
     """
     trace, names, end = recording.path, recording.names, report.end
     if end is None or not can_be_read_again(trace):

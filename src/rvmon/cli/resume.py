@@ -57,12 +57,7 @@ class Unfinished:
     known: dict[str, Judged] = field(default_factory=dict)
 
     def judged(self, traces: Sequence[str], fresh: Iterable[Judged]) -> Iterator[Judged]:
-        """The recordings in their order, of which those that are fresh are kept.
-
-        Args:
-            traces: their paths.
-            fresh: those that are not known, in their order.
-        """
+        """The recordings in their order, of which those that are fresh are kept."""
         new = iter(fresh)
         for trace in traces:
             one = self.known.get(trace)

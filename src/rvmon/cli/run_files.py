@@ -49,13 +49,6 @@ def write_files(
 ) -> None:
     """Write what else was asked for: coverage, JUnit, MCAP, pages.
 
-    Args:
-        arguments: of the command line.
-        spec: that judged.
-        judged: the recordings.
-        known: failures that are accepted.
-        reproducer: that the recording came out of, or empty.
-
     Raises:
         RvmonError: a file cannot be written.
     """

@@ -129,7 +129,7 @@ def _refuse_unused(arguments: argparse.Namespace) -> None:
 
 
 def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
-    from rvmon.timed.language.queries import chosen_queries
+    from rvmon.timed.language.elaborate import chosen_queries
     from rvmon.timed.search.outcome import Policy
     from rvmon.timed.search.verify import verify
 
@@ -216,7 +216,7 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
 
 
 def _simulate(network: Network, arguments: argparse.Namespace) -> int:
-    from rvmon.timed.language.queries import chosen_queries
+    from rvmon.timed.language.elaborate import chosen_queries
     from rvmon.timed.runs.simulate import estimate
 
     answers = []

@@ -17,10 +17,6 @@ from rvmon.writing import beside
 def refuse_place(path: str, out: str) -> None:
     """Say, before any work is done for it, that a piece of a recording cannot go to a place.
 
-    Args:
-        path: of the recording.
-        out: of the piece.
-
     Raises:
         RvmonError: it has the ending of another format, or is a folder that is there.
         TraceError: the recording has no known format.

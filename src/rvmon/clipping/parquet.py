@@ -17,11 +17,6 @@ from rvmon.trace.stamps import ticks_of_stamp
 def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
     """Write a piece of a file, and tell what is in it.
 
-    Args:
-        path: of the recording.
-        piece: what is cut out.
-        out: the new file.
-
     Raises:
         RvmonError: there is no pyarrow.
         TraceError: the file cannot be read.

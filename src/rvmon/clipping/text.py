@@ -42,12 +42,6 @@ class _Copied:
 def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
     """Write a piece of a text, and tell what is in it.
 
-    Args:
-        path: of the recording.
-        piece: what is cut out.
-        out: the new file; packed as its ending says.
-        is_csv: whether it is CSV, else JSON lines.
-
     Raises:
         TraceError: a row up to the end of the piece cannot be read.
         OSError: a file cannot be read or written.

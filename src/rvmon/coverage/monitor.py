@@ -22,11 +22,7 @@ from rvmon.trace.time import ticks_of_seconds
 
 
 class SpecCoverage:
-    """The coverage model of a specification, ready to watch any number of runs.
-
-    Args:
-        spec: has coverpoints, crosses, cover goals and requirements.
-    """
+    """The coverage model of a specification, ready to watch any number of runs."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec

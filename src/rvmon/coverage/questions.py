@@ -100,12 +100,7 @@ def by_strategy(coverage: Coverage) -> dict[str, list[int]]:
 
 
 def unique(coverage: Coverage, counts: NDArray[np.int64]) -> list[list[int]]:
-    """By test, the items that would not be covered without it.
-
-    Args:
-        coverage: with the tests.
-        counts: hits of each item in all.
-    """
+    """By test, the items that would not be covered without it."""
     goals = goals_of(coverage)
     covered = goals.wanted & (counts >= goals.goal)
     found = []

@@ -82,11 +82,7 @@ def _steps(graph: Graph) -> Iterator[tuple[str, str]]:
 
 
 class WatchedRequirement:
-    """A requirement and what may be seen of it.
-
-    Args:
-        compiled: the requirement.
-    """
+    """A requirement and what may be seen of it."""
 
     def __init__(self, compiled: CompiledRequirement) -> None:
         self.compiled = compiled
@@ -131,9 +127,6 @@ def deadline_of(owed: Formula) -> int | None:
 class WatchedRequirements:
     """The requirements and cover goals of a specification, ready to be watched on any runs.
 
-    Args:
-        spec: has them.
-
     Attributes:
         groups: what may be hit.
     """
@@ -167,12 +160,7 @@ class WatchedRequirements:
     def hits(
         self, run: RequirementRun, reports: Sequence[Report]
     ) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-        """What a run that is over has hit, by group.
-
-        Args:
-            run: of the requirements.
-            reports: on it, and on what else was judged.
-        """
+        """What a run that is over has hit, by group."""
         attempts: dict[str, list[Attempt]] = {}
         for attempt in (attempt for report in reports for attempt in report.attempts):
             if not attempt.in_doubt:

@@ -43,11 +43,6 @@ _READ = f"SELECT {_COLUMNS} FROM tests"  # noqa: S608 - our words
 def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]) -> Entry:
     """A test with its hits as it is written.
 
-    Args:
-        test: what became of it.
-        hits: what it hit.
-        places: of the items of the model.
-
     Raises:
         CoverageError: it hit what is not in the model, or a figure makes no sense.
     """

@@ -60,12 +60,7 @@ class Watched:
         }
 
     def look(self, t: int, values: Sequence[int]) -> None:
-        """See a position.
-
-        Args:
-            t: its instant.
-            values: the truth of all formulas there.
-        """
+        """See a position."""
         occasion = self._occasion
         if occasion is not None:
             before, self._before = self._before, values[self._places[occasion]]

@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import product
 
 from rvmon.codegen.python_unit import unit_class
-from rvmon.coverage.of_spec import bin_groups
+from rvmon.coverage.model import Group, Item, Subject, combination
 from rvmon.coverage.watched import Watched
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
@@ -19,6 +19,7 @@ from rvmon.plan.planning import plan_of
 from rvmon.runtime.unit import Unit
 from rvmon.runtime.values import NEVER, TRUE
 from rvmon.spec.checked.formula import Constant, Formula
+from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.checked.tense import is_pulse
 
@@ -53,9 +54,6 @@ class WatchingUnit(Unit):
 
 class Bins:
     """The bins of a specification, ready to be watched on any number of runs.
-
-    Args:
-        spec: has them.
 
     Attributes:
         groups: what may be hit.
@@ -133,3 +131,40 @@ def _plan_of(spec: CheckedSpec, formulas: Sequence[Formula]) -> Plan:
         for number, formula in enumerate(formulas)
     ]
     return plan_of(spec, rules)
+
+
+def bin_groups(spec: CheckedSpec) -> Iterator[Group]:
+    """The coverpoints and crosses of a specification as groups of a model.
+
+    Args:
+        spec: a coverpoint and a cross of it never share a name.
+    """
+    for point in spec.coverpoints.values():
+        yield _of_point(point)
+    for cross in spec.crosses.values():
+        yield _of_cross(cross, spec)
+
+
+def _of_point(point: Coverpoint) -> Group:
+    items = {bin_.name: Item(bin_.name, bin_.kind, point.goal) for bin_ in point.bins}
+    return Group(point.name, Subject.COVERPOINT, items, point.weight)
+
+
+def _of_cross(cross: Cross, spec: CheckedSpec) -> Group:
+    """A combination with a bin that counts for nothing does so itself, as with one that is illegal.
+
+    An illegal bin is told of by its coverpoint.
+    """
+    points = [spec.coverpoints[name] for name in cross.points]
+    items = {}
+    for bins in product(*(point.bins for point in points)):
+        names = tuple(bin_.name for bin_ in bins)
+        kind = BinKind.GOAL
+        if names in cross.illegal:
+            kind = BinKind.ILLEGAL
+        elif names in cross.ignored or any(bin_.kind is not BinKind.GOAL for bin_ in bins):
+            kind = BinKind.IGNORE
+        name = combination(names)
+        items[name] = Item(name, kind, cross.goal)
+    axes = {point.name: tuple(bin_.name for bin_ in point.bins) for point in points}
+    return Group(cross.name, Subject.CROSS, items, cross.weight, axes)

@@ -10,8 +10,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.errors import SpecError, UnknownNameError
 from rvmon.explain.model_codes import model_codes
 from rvmon.spec.compile import compile_text
-from rvmon.spec.rules.pages import rule_page
-from rvmon.spec.rules.registry import all_rules
+from rvmon.spec.rules.pages import all_rules, rule_page
 from rvmon.spec.rules.rule import Rule
 
 
@@ -21,12 +20,7 @@ def every_rule() -> Mapping[str, Rule]:
 
 
 def findings_about(rule: Rule, text: str) -> tuple[Diagnostic, ...]:
-    """What is found in a text by the pass that a rule belongs to: the check, or the analysis.
-
-    Args:
-        rule: the rule.
-        text: a small specification, such as the rule's example.
-    """
+    """What is found in a text by the pass that a rule belongs to: the check, or the analysis."""
     try:
         checked, found = compile_text(text, name="demo.rv")
     except SpecError as error:

@@ -13,10 +13,6 @@ ANY = -1
 def cubes_of(vectors: Iterable[Cube], never: Collection[Cube] = ()) -> tuple[Cube, ...]:
     """Cubes that cover these vectors: prime ones, chosen greedily.
 
-    Args:
-        vectors: all of them.
-        never: vectors that may be covered as well.
-
     Source: Quine 1952, McCluskey 1956; the choice of primes is greedy.
 
     >>> cubes_of([(0, 0), (0, 1), (1, 1)])

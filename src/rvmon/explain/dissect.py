@@ -49,13 +49,7 @@ def dissect(
 
 
 def strands_of(eye: Eye, start: int, stop: int) -> tuple[Strand, ...]:
-    """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time.
-
-    Args:
-        eye: sees an attempt's requirement on its recording.
-        start: the first tick.
-        stop: the last tick.
-    """
+    """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time."""
     requirement = eye.requirement
     strands = []
     parts: list[tuple[str, Formula]] = [("owed", requirement.consequent)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.horizon import horizon
-from rvmon.formula.state import State, StateOp
+from rvmon.formula.state import StateOp
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import graph_of
 from rvmon.spec.print.printer import format_duration
@@ -57,15 +57,12 @@ def _past(compiled: CompiledRequirement) -> str:
     nodes = graph_of(states).nodes
     since = [node for node in nodes if node.op is StateOp.SINCE]
     if not since:
-        return "to the position before" if any(map(_is_previous, nodes)) else ""
+        steps = any(node.op is StateOp.PREVIOUS for node in nodes)
+        return "to the position before" if steps else ""
     bounds = [node.high for node in since if node.high is not None]
     if len(bounds) < len(since):
         return "over all that was"
     return f"over the last {format_duration(sum(bounds) if len(bounds) > 1 else bounds[0])} at most"
-
-
-def _is_previous(node: State) -> bool:
-    return node.op is StateOp.PREVIOUS
 
 
 def _counted(count: int, noun: str, plural: str = "") -> str:

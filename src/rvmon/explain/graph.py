@@ -8,10 +8,10 @@ from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.layout import row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.explain.cubes import ANY, Cube, cubes_of
 from rvmon.formula.core import Core, Literal, Sense
-from rvmon.formula.residual import Clause
 from rvmon.formula.state import FALSE, TRUE, Shown, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
@@ -110,10 +110,6 @@ def _owed(compiled: CompiledRequirement, automaton: Automaton, index: int) -> st
     return ", or ".join(dict.fromkeys(clauses))
 
 
-def _in_order(clause: Clause) -> list[tuple[int, int, Core]]:
-    return sorted((clock, node.id, node) for node, clock in clause)
-
-
 def _obligation(compiled: CompiledRequirement, node: Core) -> str:
     requirement = compiled.requirement
     if requirement.mode is not Mode.WHENEVER or node is not compiled.obligation.owed:
@@ -162,7 +158,7 @@ class _Reader:
         never = self.letters.keys() - can_be
         found: dict[tuple[int, tuple[int, ...], tuple[Cube, ...]], list[tuple[int, ...]]] = {}
         for regions in product(*(range(len(own) + 1) for own in cuts)):
-            row = automaton.bases[index] + sum(map(int.__mul__, regions, automaton.strides[index]))
+            row = row_of(automaton, index, regions)
             groups: dict[tuple[int, tuple[int, ...]], list[Cube]] = {}
             for cube in sorted(can_be, reverse=True):
                 letter = self.letters[cube]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 from rvmon.explain.spans import Spans
 from rvmon.explain.state_truths import state_truths
 from rvmon.explain.states import state_of
-from rvmon.explain.truth_over_trace import positions_of, subformulas
+from rvmon.explain.truth_over_trace import instance_of, positions_of, subformulas
 from rvmon.formula.factory import Factory
-from rvmon.monitor.attempts.instance import Instance
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement
 from rvmon.spec.checked.tense import has_future
@@ -24,10 +23,6 @@ Known = dict[tuple[str, ForEach | None, tuple[tuple[str, Scalar], ...]], Spans]
 
 def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
     """What a failed attempt had awaited when its window closed.
-
-    Args:
-        requirement: of the attempt.
-        attempt: any.
 
     Returns:
         `None` if that is not why it failed, or if what was awaited spoke of the future itself.
@@ -86,7 +81,7 @@ def late_arrivals(
         key = (format_formula(formula), requirement.for_each, tuple(attempt.captured.items()))
         if key not in seen:
             state = state_of(formula, Factory(), spec)
-            instance = _instance(requirement, attempt.captured, begin)
+            instance = instance_of(requirement, attempt.captured, begin)
             truths = state_truths(spec, [state], samples, end, instance, attempt.captured, names)
             seen[key] = truths[state].sure
         deadline = attempt.blame.window[1] or 0
@@ -107,10 +102,3 @@ def _first_after(deadline: int, spans: Spans, positions: Sequence[int] | None) -
         if index < len(positions) and positions[index] <= high:
             return positions[index]
     return None
-
-
-def _instance(
-    requirement: Requirement, captured: Mapping[str, Scalar], begin: int
-) -> Instance | None:
-    each = requirement.for_each
-    return None if each is None else Instance(1, each.value, captured[each.name], begin)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.explain.spans import Spans
+from rvmon.explain.spans import holds
 from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.explain.states import state_of, values_read
 from rvmon.formula.factory import Factory
@@ -105,16 +104,11 @@ def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
     """The moment at which most parts were true; of equals one with more events, then the first."""
     best: tuple[tuple[int, int, int], tuple[Formula, ...]] = ((0, 0, 0), ())
     for at in sorted({low for part in parts for low, _ in seen[part].sure}):
-        there = tuple(part for part in parts if _holds(seen[part].sure, at))
+        there = tuple(part for part in parts if holds(seen[part].sure, at))
         events = sum(isinstance(part, EventAtom) for part in there)
         best = max(best, ((len(there), events, -at), there), key=lambda found: found[0])
     (_, _, at), there = best
     return _Miss(parts, there, -at if there else None)
-
-
-def _holds(spans: Spans, t: int) -> bool:
-    place = bisect_right(spans, t, key=lambda span: span[0])
-    return place > 0 and t <= spans[place - 1][1]
 
 
 def _sentence(miss: _Miss, seen: Mapping[Formula, Truth]) -> str:
@@ -126,7 +120,7 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth]) -> str:
     rest = miss.there[0]
     for part in miss.there[1:]:
         rest = Binary(BinaryOp.AND, rest, part)
-    unknown = any(_holds(seen[part].may, at) for part in miss.missing)
+    unknown = any(holds(seen[part].may, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
     while_ = f"while `{format_formula(rest)}` was (first at {format_ticks(at)})"
     return f"{_listed(miss.missing)} {lacking} {while_}"

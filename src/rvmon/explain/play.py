@@ -42,7 +42,7 @@ def play(
     samples: Sequence[Sample],
     end: int,
 ) -> Played:
-    """MachineJudge a short run.
+    """Judge a short run.
 
     Args:
         compiled: the specification.

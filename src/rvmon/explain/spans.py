@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable
 from itertools import pairwise
 
@@ -27,6 +28,12 @@ def union(intervals: Iterable[tuple[int, int]]) -> Spans:
         else:
             merged.append((low, high))
     return tuple(merged)
+
+
+def holds(spans: Spans, t: int) -> bool:
+    """Whether a tick lies in one of the spans."""
+    place = bisect_right(spans, t, key=lambda span: span[0])
+    return place > 0 and t <= spans[place - 1][1]
 
 
 def both(left: Spans, right: Spans) -> Spans:

@@ -6,23 +6,15 @@ from collections.abc import Iterable, Iterator
 
 from rvmon.spec.checked.formula import Binary, Formula, Interval, Unary
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
+from rvmon.spec.checked.tense import subformulas
 from rvmon.trace.time import TICKS_PER_SECOND
 
 
 def intervals_of(formula: Formula) -> Iterator[Interval]:
     """The intervals of a formula's operators."""
-    waiting = [formula]
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, Unary | Binary) and node.interval is not None:
-            yield node.interval
-        match node:
-            case Unary(operand=operand):
-                waiting.append(operand)
-            case Binary(left=left, right=right):
-                waiting += (left, right)
-            case _:
-                pass
+    for part in subformulas(formula):
+        if isinstance(part, Unary | Binary) and part.interval is not None:
+            yield part.interval
 
 
 def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import assert_never
 
-from rvmon.explain.spans import FOREVER, Spans, both, outside, since, union, until
+from rvmon.explain.spans import FOREVER, Spans, both, holds, outside, since, union, until
 from rvmon.explain.state_truths import Truth, state_truths
 from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.core import Literal, Sense
@@ -27,7 +27,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.reading import read
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.spec.checked.tense import has_future
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Sample, Scalar
 from rvmon.verdict.attempt import Attempt
 
 
@@ -75,16 +75,16 @@ class Eye:
                 self._note(formula)
         roots = [state for state in self.states.values() if isinstance(state, State)]
         self.log = state_truths(
-            spec, roots, samples, end, self._instance(attempt), attempt.captured, names
+            spec,
+            roots,
+            samples,
+            end,
+            instance_of(requirement, attempt.captured, self.begin),
+            attempt.captured,
+            names,
         )
         self.positions = positions_of(spec, samples, end)
         self.made: dict[int, Truth] = {}
-
-    def _instance(self, attempt: Attempt) -> Instance | None:
-        each = self.requirement.for_each
-        if each is None:
-            return None
-        return Instance(1, each.value, attempt.captured[each.name], self.begin)
 
     def _note(self, formula: Formula) -> None:
         """Bring what speaks of present and past only into the form that the flow reads."""
@@ -186,7 +186,7 @@ class Eye:
         kept = [
             (here, after - 1)
             for before, here, after in zip(edges, edges[1:], edges[2:], strict=False)
-            if _holds(spans, before)
+            if holds(spans, before)
         ]
         return union([*kept, *self._behind(spans)])
 
@@ -196,18 +196,18 @@ class Eye:
 
     def _next_of(self, spans: Spans) -> Spans:
         steps = pairwise([*(self.positions or ()), self.end + 1])
-        kept = [(here, after - 1) for here, after in steps if _holds(spans, after)]
+        kept = [(here, after - 1) for here, after in steps if holds(spans, after)]
         return union([*kept, *self._behind(spans)])
 
     def _at_positions(self, spans: Spans) -> Spans:
         """Of a set only the positions; behind the last one all ticks may be one."""
         positions = self.positions or ()
-        return union([*((p, p) for p in positions if _holds(spans, p)), *self._behind(spans)])
+        return union([*((p, p) for p in positions if holds(spans, p)), *self._behind(spans)])
 
     def _lasting(self, spans: Spans) -> Spans:
         """The truth at each position, until the next."""
         steps = pairwise([*(self.positions or ()), self.end + 1])
-        kept = [(here, after - 1) for here, after in steps if _holds(spans, here)]
+        kept = [(here, after - 1) for here, after in steps if holds(spans, here)]
         return union([*kept, *self._behind(spans)])
 
     def _behind(self, spans: Spans) -> Spans:
@@ -215,8 +215,12 @@ class Eye:
         return both(spans, ((self.end + 1, FOREVER),))
 
 
-def _holds(spans: Spans, t: int) -> bool:
-    return any(low <= t <= high for low, high in spans)
+def instance_of(
+    requirement: Requirement, captured: Mapping[str, Scalar], begin: int
+) -> Instance | None:
+    """The instance of a `for each` that an attempt belongs to, by what it captured."""
+    each = requirement.for_each
+    return None if each is None else Instance(1, each.value, captured[each.name], begin)
 
 
 def positions_of(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequence[int] | None:

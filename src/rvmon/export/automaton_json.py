@@ -13,10 +13,6 @@ from rvmon.verdict.verdict import Verdict
 def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str, object]:
     """Locations with what is owed there, edges with their conditions; ages in ticks.
 
-    Args:
-        compiled: the requirement.
-        spec: it belongs to.
-
     Raises:
         RvmonError: it has no automaton.
     """

@@ -34,14 +34,7 @@ def foxglove_layout(
     names: Collection[str],
     scene: Scene | None,
 ) -> dict[str, Any]:
-    """The states of requirements above the numbers that they read above the log of attempts.
-
-    Args:
-        spec: that judged.
-        requirements: ids of those that it judged.
-        names: of the signals and events whose values are there.
-        scene: stands at the right, if there is one.
-    """
+    """The states of requirements above the numbers that they read above the log of attempts."""
     judged = list(requirements)
     states = [_path("requirements", name, "state", f"{name} {spec.requirements[name].text}")
               for name in judged]  # fmt: skip

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 from rvmon.errors import RvmonError
-from rvmon.export.network_dot import network_dot
-from rvmon.export.uppaal import uppaal_xml
-from rvmon.timed.model.network import Network
+from rvmon.explain.graph_text import quoted
+from rvmon.export.names import Names
+from rvmon.export.uppaal import condition_text, sync_text, updates_text, uppaal_xml
+from rvmon.timed.model.network import Automaton, Network
+from rvmon.timed.model.operators import LocationKind
 from rvmon.writing import write_whole
 
 PATIENCE_S = 120
@@ -63,3 +66,35 @@ def network_svg(network: Network) -> str:
         reason = error.stderr.decode("utf-8", errors="replace").strip()
         raise RvmonError(f"`dot` cannot draw this: {reason}") from None
     return drawn.stdout.decode("utf-8")
+
+
+_MARKS = {LocationKind.NORMAL: "", LocationKind.URGENT: "U ", LocationKind.COMMITTED: "C "}
+
+
+def network_dot(network: Network) -> str:
+    """One cluster for each automaton; urgent locations are marked U, committed ones C."""
+    names = Names(network)
+    lines = ["digraph network {", "  rankdir=LR;", "  node [shape=box, style=rounded];"]
+    for index, automaton in enumerate(network.automata):
+        lines += _cluster(names, index, automaton)
+    return "\n".join([*lines, "}", ""])
+
+
+def _cluster(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
+    yield f"  subgraph cluster_{index} {{"
+    yield f"    label={quoted(automaton.name)};"
+    for place, location in enumerate(automaton.locations):
+        invariant = condition_text(names, location.invariant)
+        text = _MARKS[location.kind] + location.name + (f"\n{invariant}" if invariant else "")
+        bold = ", penwidth=2" if place == automaton.initial else ""
+        yield f"    l{index}_{place} [label={quoted(text)}{bold}];"
+    for edge in automaton.edges:
+        parts = [
+            condition_text(names, edge.guard),
+            sync_text(names, edge),
+            updates_text(names, edge),
+            f"weight {edge.weight}" if edge.weight != 1 else "",
+        ]
+        text = "\n".join(filter(None, parts))
+        yield f"    l{index}_{edge.source} -> l{index}_{edge.target} [label={quoted(text)}];"
+    yield "  }"

@@ -140,12 +140,7 @@ class _Step:
 
 
 def instance(node: Core, read: ReadLiteral) -> Residual:
-    """What a formula that is instantiated at a position owes after it.
-
-    Args:
-        node: the formula.
-        read: what a literal is at this position.
-    """
+    """What a formula that is instantiated at a position owes after it."""
     return _Step((), read, None).instance(node)
 
 

@@ -29,12 +29,6 @@ def open_trace(
 ) -> Recording:
     """A trace as a recording that has what is read; it need not be read yet.
 
-    Args:
-        checked: the specification.
-        trace: as `Spec.evaluate` takes it.
-        reading: how.
-        only: ids of the requirements; default all.
-
     Raises:
         MissingNameError: it is in columns, and lacks a name that a requirement reads.
         TraceError: it cannot be read.

@@ -17,10 +17,6 @@ from rvmon.trace.time import whole_ticks
 def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
     """The monitor that a snapshot was taken of.
 
-    Args:
-        compiled: the specification.
-        data: from `Monitor.snapshot`.
-
     Raises:
         SnapshotError: the bytes are no snapshot, or one of another specification or version.
     """

@@ -26,11 +26,7 @@ class Input(Protocol):
 
 
 class OneSample:
-    """The input of a run that begins with one sample: an `Input`.
-
-    Args:
-        values: of the sample.
-    """
+    """The input of a run that begins with one sample: an `Input`."""
 
     def __init__(self, values: Mapping[str, Reported]) -> None:
         self._values = values

@@ -39,12 +39,6 @@ def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: 
 
     Occurrences of its event that an instance of no value sees are unknown, and so are comparisons
     of their fields, with whatever value.
-
-    Args:
-        graph: of its state formulas, but of those of attempts with captured values.
-        each: of the requirement.
-        trigger: the same.
-        looks_back: whether what it owes looks back at what lies ahead.
     """
     event = each.value.event
     leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}

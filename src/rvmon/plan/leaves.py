@@ -65,10 +65,6 @@ def captured_names(leaf: Leaf) -> frozenset[str]:
 def truth_of(leaf: Leaf, inputs: Input) -> int:
     """The truth of a leaf that reads the values of signals and events, no captured ones.
 
-    Args:
-        leaf: a proposition or a comparison.
-        inputs: at the position.
-
     Raises:
         ValueError: the leaf reads something else.
     """

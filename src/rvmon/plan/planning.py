@@ -15,12 +15,7 @@ from rvmon.spec.checked.specification import CheckedSpec
 
 
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
-    """Share the state formulas of requirements and see what they ask of the input.
-
-    Args:
-        spec: they belong to.
-        rules: in the order of the file.
-    """
+    """Share the state formulas of requirements and see what they ask of the input."""
     graph = graph_of(state for rule in rules for state in rule.states)
     names = (tuple(spec.signals), tuple(spec.events))
     captured = [one.value for rule in rules for one in rule.requirement.captures]
@@ -29,12 +24,7 @@ def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
 
 
 def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
-    """As `plan_of`, those with captured values apart: each attempt or instance is a run of its own.
-
-    Args:
-        spec: they belong to.
-        rules: in the order of the file.
-    """
+    """As `plan_of`, those with captured values apart: each attempt or instance is its own run."""
     shared = plan_of(spec, [rule for rule in rules if not rule.is_apart])
     units = tuple(plan_of(spec, [rule]) for rule in rules if rule.is_apart)
     return replace(shared, units=units, asked=tuple(rules))
@@ -43,14 +33,7 @@ def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
 def plan_of_evaluator(
     spec: CheckedSpec, graph: Graph, names: Iterable[str], uses: Mapping[str, Uses]
 ) -> Plan:
-    """The plan of what only evaluates state formulas: somebody else judges.
-
-    Args:
-        spec: they belong to.
-        graph: the formulas.
-        names: the signals and events to keep something of.
-        uses: what is asked of them.
-    """
+    """The plan of what only evaluates state formulas: somebody else judges."""
     kept = frozenset(names)
     signals = tuple(name for name in spec.signals if name in kept)
     events = tuple(name for name in spec.events if name in kept)
@@ -58,12 +41,7 @@ def plan_of_evaluator(
 
 
 def uses_of(graphs: Iterable[Graph], captured: Iterable[Numeric]) -> dict[str, Uses]:
-    """What is asked of signals and events.
-
-    Args:
-        graphs: the formulas.
-        captured: the expressions of `let`.
-    """
+    """What is asked of signals and events."""
     leaves: dict[str, list[State]] = {}
     for graph in graphs:
         for name, places in graph.by_name.items():

@@ -9,7 +9,7 @@ import numpy as np
 
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_rows import Column, Layout
-from rvmon.readers.held import held_values
+from rvmon.readers.plain import held_values
 from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.gaps import Gaps
 from rvmon.trace.schema import Kind, Schema

@@ -9,7 +9,7 @@ import numpy as np
 
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_rows import Column, Layout
-from rvmon.readers.held import held_values
+from rvmon.readers.plain import held_values
 from rvmon.trace.schema import Kind
 
 if TYPE_CHECKING:
@@ -51,10 +51,6 @@ def block_of_arrays(
 
 def array_of(cells: Any, kinds: str) -> NDArray[Any]:
     """An array without nulls.
-
-    Args:
-        cells: of Arrow.
-        kinds: of NumPy that it may have.
 
     Raises:
         NotPlainError: it has another one.

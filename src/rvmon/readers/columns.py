@@ -104,12 +104,7 @@ class TableRecording:
 
 
 def values_of_cells(layout: Layout, cells: Sequence[Any]) -> dict[str, Value]:
-    """What a row of values says; `None` is absent.
-
-    Args:
-        layout: what the columns are.
-        cells: in the order of its columns.
-    """
+    """What a row of values says; `None` is absent."""
     found = zip(layout.columns, map(plain, cells), strict=True)
     return row_values(((column, cell) for column, cell in found if cell is not None), layout.gaps)
 

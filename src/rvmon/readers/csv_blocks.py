@@ -15,9 +15,8 @@ from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, decimals, instants, truth_values, whole_numbers
-from rvmon.readers.held import held_values
 from rvmon.readers.line_chunks import BLOCK, whole_lines
-from rvmon.readers.plain import Seam, expect_plain_columns, is_short_of_memory
+from rvmon.readers.plain import Seam, expect_plain_columns, held_values, is_short_of_memory
 from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:

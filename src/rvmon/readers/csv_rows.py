@@ -184,10 +184,6 @@ def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Val
     A signal is updated by its cell. An event with a payload cell occurs unless its own cell says
     false; one without occurs where its own cell is true.
 
-    Args:
-        cells: those that are not absent.
-        gaps: the values that stand for no update.
-
     >>> from rvmon.trace.gaps import NO_GAPS
     >>> columns = [Column(1, "pick", None, Kind.BOOL), Column(2, "pick", "id", Kind.INT)]
     >>> [row_values(zip(columns, cells), NO_GAPS) for cells in ([True, 7.0], [False, 7], [1])]

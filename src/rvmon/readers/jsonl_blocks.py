@@ -17,9 +17,9 @@ import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.held import held_values
 from rvmon.readers.line_chunks import BLOCK, whole_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
+from rvmon.readers.plain import held_values
 from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.stamps import stamps_of
@@ -141,15 +141,7 @@ def _struct(fields: Sequence[Any], names: Mapping[str, str]) -> Any:
 def _fields(
     found: Mapping[str, Any], prefix: str, place: str, schema: Schema, shape: _Shape
 ) -> tuple[list[Any], dict[str, str]]:
-    """The fields of an object: name, type, default; and the keys that they stand for.
-
-    Args:
-        found: the object.
-        prefix: of its names.
-        place: where it is in the line.
-        schema: the declared names.
-        shape: is told of what is found.
-    """
+    """The fields of an object: name, type, default; and the keys that they stand for."""
     fields: list[Any] = []
     names = {}
     for number, (key, value) in enumerate(found.items()):

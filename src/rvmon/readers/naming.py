@@ -30,15 +30,6 @@ def read_as(
 ) -> Schema:
     """A schema for recordings that tell things otherwise; see `rvmon.session.Spec.reading`.
 
-    Args:
-        schema: what is not given stays as it says.
-        time: the column of stamps and its unit.
-        columns: by declared name the column.
-        nan: what NaN says.
-        no_update: a further value that stands for no update.
-        binding: which topics and fields of messages stand for what.
-        clock: which stamps of messages count.
-
     Raises:
         UnknownNameError: `columns` names what is not declared, or there is no such reading of NaN,
             or no such clock.
@@ -70,11 +61,6 @@ def read_as(
 
 def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> Stamps:
     """The column of stamps of a recording that has these columns.
-
-    Args:
-        names: of its columns.
-        schema: says which one it is, if a person did.
-        remark: what else may be wrong if there is none.
 
     Raises:
         TraceError: there is none, or there are two.

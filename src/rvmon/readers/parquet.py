@@ -15,7 +15,7 @@ from rvmon.readers.columns import values_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
 from rvmon.readers.plain import Seam, expect_plain_columns, is_short_of_memory
 from rvmon.readers.tables import arrow_cells
-from rvmon.readers.values import shorten
+from rvmon.readers.values import first_line
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
@@ -47,7 +47,7 @@ def parquet_file(path: str | Path) -> Any:
     except MemoryError:  # of Arrow, too: the file may be as it should be
         raise
     except pyarrow.ArrowException as error:
-        raise TraceError(f"not a Parquet file ({_first_line(error)})") from None
+        raise TraceError(f"not a Parquet file ({first_line(error)})") from None
     except OSError as error:
         if error.errno is not None:  # the system says why it cannot be opened
             raise
@@ -98,11 +98,7 @@ def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
 def _damage(error: Exception) -> TraceError:
     if "launch worker thread" in str(error):  # its stack needs memory, too
         raise MemoryError
-    return TraceError(f"damaged Parquet file ({_first_line(error)}): write or copy it again")
-
-
-def _first_line(error: Exception) -> str:
-    return shorten(str(error).partition("\n")[0], 120)
+    return TraceError(f"damaged Parquet file ({first_line(error)}): write or copy it again")
 
 
 def parquet_layout(path: str | Path, schema: Schema) -> Layout:

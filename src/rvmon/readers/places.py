@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from rvmon.errors import RvmonError, TraceError
-from rvmon.readers.values import shorten
+from rvmon.readers.values import first_line
 
 PACKED = (".gz", ".zst")
 """Endings of text that is packed."""
@@ -99,12 +99,7 @@ def created(path: Path) -> Iterator[BinaryIO]:
 
 
 class _Unpacked(RawIOBase):
-    """The text of a packed file.
-
-    Args:
-        raw: the file.
-        packed: its ending.
-    """
+    """The text of a packed file."""
 
     def __init__(self, raw: BinaryIO, packed: str) -> None:
         import zlib
@@ -131,7 +126,7 @@ class _Unpacked(RawIOBase):
         except self._damage as error:
             cut = isinstance(error, EOFError)
             mend = "was it cut off? Copy it again" if cut else "is it packed as its ending says?"
-            raise TraceError(f"cannot be unpacked ({_line(error)}): {mend}") from None
+            raise TraceError(f"cannot be unpacked ({first_line(error)}): {mend}") from None
         return count
 
     def close(self) -> None:
@@ -238,10 +233,6 @@ def _remote_errors(address: str) -> Iterator[None]:
     except FileNotFoundError:
         raise TraceError(f"{address}: there is nothing at this address") from None
     except ImportError as error:
-        raise RvmonError(f"{address}: {_line(error)}") from None
+        raise RvmonError(f"{address}: {first_line(error)}") from None
     except Exception as error:  # noqa: BLE001 - each kind of place has errors of its own
-        raise TraceError(f"{address}: cannot be read ({_line(error)})") from None
-
-
-def _line(error: Exception) -> str:
-    return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)
+        raise TraceError(f"{address}: cannot be read ({first_line(error)})") from None

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.csv_rows import Layout
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 def expect_plain_columns(layout: Layout) -> None:
@@ -23,9 +28,6 @@ def expect_plain_columns(layout: Layout) -> None:
 
 class Seam:
     """What the rows before a block leave to it.
-
-    Args:
-        layout: of the recording.
 
     Attributes:
         held: by signal its last value.
@@ -62,3 +64,24 @@ def is_short_of_memory() -> bool:
     except ImportError:
         return False
     return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
+
+
+def held_values(some: NDArray[Any], given: NDArray[np.bool_], before: Any | None) -> NDArray[Any]:
+    """A column of which gaps hold the value above them.
+
+    Args:
+        some: the values that are given, in order.
+        given: bool[n], where there is one.
+        before: the value above the first row; `None` if there is none.
+
+    Raises:
+        NotPlainError: there is no value for the first row, or some are NaN: in the gaps these would
+            count as further ones.
+    """
+    if before is None and not given[:1].all():
+        raise NotPlainError("a signal has no value in the first row")
+    if before != before or (some.dtype.kind == "f" and np.isnan(some).any()):
+        raise NotPlainError("NaN stands above gaps")
+    first = np.array([] if before is None else [before], some.dtype if len(some) else None)
+    filled: NDArray[Any] = np.concatenate((first, some))[np.cumsum(given) - 1 + len(first)]
+    return filled

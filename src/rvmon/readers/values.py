@@ -150,3 +150,8 @@ def shorten(text: str, width: int = 40) -> str:
     """
     line = shown_line(text[: width + 1])
     return line if len(line) <= width else line[: width - 1] + "…"
+
+
+def first_line(error: Exception) -> str:
+    """What an error of another library says first."""
+    return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)

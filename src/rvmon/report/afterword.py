@@ -53,3 +53,14 @@ def with_afterword(attempt: Attempt, came: int | None) -> str:
     late = came - attempt.blame.window[1]
     span = format_duration(late) if late < TICKS_PER_SECOND else format_ticks(late)
     return f"{attempt.reason}; it came at {format_ticks(came)}, {span} after the deadline"
+
+
+def forecast_sentence(forecast: Verdict) -> str:
+    """What an undecided attempt comes to, however the run goes on.
+
+    >>> forecast_sentence(Verdict.FAIL)
+    'forecast F: no continuation can fulfil it'
+    """
+    if forecast is Verdict.PASS:
+        return "forecast P: every continuation fulfils it"
+    return "forecast F: no continuation can fulfil it"

@@ -13,11 +13,7 @@ _HEAD = ("", "engine", "locations", "clocks", "letters", "decided within", "open
 
 
 def costs_text(reports: Mapping[str, CompileReport]) -> str:
-    """A line per requirement: its engine, its size, what an open attempt costs.
-
-    Args:
-        reports: by id.
-    """
+    """A line per requirement: its engine, its size, what an open attempt costs."""
     return plain_table([_HEAD, *(_row(name, report) for name, report in reports.items())])
 
 

@@ -10,7 +10,7 @@ from itertools import product
 from rvmon.coverage.model import Group, Item, combination
 from rvmon.report.coverage_summary import Summary, cell_text, is_grid
 from rvmon.report.coverage_tests import test_link
-from rvmon.report.markup import Child, e, with_code
+from rvmon.report.markup import Child, e, scroll, with_code
 from rvmon.spec.checked.goals import BinKind
 
 SHORT, LONG = 8, 40
@@ -65,12 +65,7 @@ def _is_telling(summary: Summary, group: Group) -> bool:
 
 
 def hitters_list(summary: Summary, listed: Collection[int]) -> ET.Element:
-    """By item the tests that hit it: a cell's address opens one of these over the page.
-
-    Args:
-        summary: with the items.
-        listed: the tests that the page has a line of.
-    """
+    """By item the tests that hit it: a cell's address opens one of these over the page."""
     lines = []
     numbers = {name: number for number, name in enumerate(summary.coverage.model.groups)}
     for place, tests in sorted(summary.hitters.items()):
@@ -117,7 +112,7 @@ def _list(summary: Summary, group: Group) -> ET.Element:
     names = ("item", "hits", "tests", "first hit by")
     head = e("tr", None, *(e("th", None, name) for name in names))
     grid = e("table", {"class": "items"}, e("thead", None, head), e("tbody", None, *rows))
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+    return scroll(grid)
 
 
 def _first(summary: Summary, place: int) -> Child:
@@ -147,7 +142,7 @@ def _heat_map(summary: Summary, group: Group) -> ET.Element:
         rows.append(e("tr", None, *cells))
     head = e("thead", None, above, e("tr", None, *heads))
     grid = e("table", {"class": "heat"}, head, e("tbody", None, *rows))
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+    return scroll(grid)
 
 
 def _row_heads(axes: Sequence[Sequence[str]], number: int) -> list[Child]:

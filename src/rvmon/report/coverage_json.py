@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict
 from typing import Any
 
 from rvmon.coverage.record import UNKNOWN
@@ -93,15 +94,4 @@ def _items(summary: Summary, places: Iterable[int]) -> list[tuple[str, str]]:
 
 def _compared(summary: Summary) -> dict[str, Any] | None:
     found = summary.comparison
-    if found is None:
-        return None
-    return {
-        "with": summary.earlier_name,
-        "before": found.before,
-        "after": found.after,
-        "gained": found.gained,
-        "lost": found.lost,
-        "illegal": found.illegal,
-        "dropped": found.dropped,
-        "verdicts": found.verdicts,
-    }
+    return None if found is None else {"with": summary.earlier_name, **asdict(found)}

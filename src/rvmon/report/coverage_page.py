@@ -17,7 +17,7 @@ from rvmon.report.coverage_summary import (
     strategy_name,
 )
 from rvmon.report.coverage_tests import letter, listed_tests, test_link, tests_section
-from rvmon.report.markup import Child, e, page, with_code
+from rvmon.report.markup import Child, e, page, scroll, with_code
 from rvmon.report.percent import percent_text
 from rvmon.report.table_html import legend, table_html
 from rvmon.verdict.verdict import Verdict
@@ -128,7 +128,7 @@ def _overview(summary: Summary) -> ET.Element:
         "section",
         None,
         e("h2", None, "Covered"),
-        _scroll(e("table", {"class": "groups"}, e("tbody", None, *rows))),
+        scroll(e("table", {"class": "groups"}, e("tbody", None, *rows))),
     )
 
 
@@ -247,10 +247,6 @@ def _list(lines: Sequence[ET.Element]) -> list[ET.Element]:
 def _bar(share: float) -> ET.Element:
     filled = e("span", {"style": f"width:{share:.2%}"})
     return e("span", {"class": "bar", "aria-hidden": "true"}, filled)
-
-
-def _scroll(table: ET.Element) -> ET.Element:
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table)
 
 
 def _count(items: Iterable[object]) -> ET.Element:

@@ -38,15 +38,7 @@ LISTED = 5
 
 
 class Summary:
-    """Answers about coverage.
-
-    Args:
-        name: of the database, for people.
-        coverage: what it holds.
-        earlier: what it is compared with.
-        earlier_name: of that, for people.
-        pages: addresses of pages of runs, by the name of the test.
-    """
+    """Answers about coverage."""
 
     def __init__(
         self,

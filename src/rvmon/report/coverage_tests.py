@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 
 from rvmon.coverage.record import TestRecord
 from rvmon.report.coverage_summary import Summary, counted, share_text
-from rvmon.report.markup import Child, e
+from rvmon.report.markup import Child, e, scroll
 from rvmon.verdict.verdict import Verdict
 
 MOST = 2_000
@@ -69,7 +69,7 @@ def tests_section(summary: Summary, listed: Collection[int]) -> ET.Element:
         None,
         e("h2", None, "Tests"),
         e("p", {"class": "soft"}, f"Alone: items that no other test covers.{note}"),
-        e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table),
+        scroll(table),
     )
 
 

@@ -7,7 +7,6 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from rvmon.coverage.answers import Comparison
-from rvmon.coverage.hits import Score
 from rvmon.coverage.model import Group, combination
 from rvmon.report.coverage_summary import (
     Summary,
@@ -150,14 +149,10 @@ def _groups(summary: Summary, console: Console) -> Table:
         name = group.name if group.weight else f"{group.name} (not in the total)"
         cells: list[str | Text] = [name]
         cells += [group.subject.value] if wide else []
-        cells += [f"{score.covered:,} of {score.items:,}", _percent(score)]
+        cells += [f"{score.covered:,} of {score.items:,}", percent_text(score.covered, score.items)]
         cells += [_bar(score.covered / score.items if score.items else 1, console)] if wide else []
         table.add_row(*cells)
     return table
-
-
-def _percent(score: Score) -> str:
-    return percent_text(score.covered, score.items)
 
 
 def _bar(share: float, console: Console) -> Text:

@@ -23,9 +23,6 @@ def engines_text(choices: Mapping[str, EngineChoice]) -> str:
 
     Below them, if something compiled ahead would be taken, when; and if `c` refuses not all, why it
     is not taken all the same.
-
-    Args:
-        choices: by id, see `rvmon.monitor.engines.choice.choices`.
     """
     rows = [
         (shown_line(name), choice.online, choice.recording, _why(choice))
@@ -49,9 +46,5 @@ def _why(choice: EngineChoice) -> str:
 
 
 def engines_data(choices: Mapping[str, EngineChoice]) -> dict[str, Any]:
-    """The same as plain data.
-
-    Args:
-        choices: by id.
-    """
+    """The same as plain data."""
     return {name: asdict(choice) for name, choice in choices.items()}

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.explain.example import Example
-from rvmon.explain.instants import label_of, legend_of
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.print.printer import format_duration
 from rvmon.trace.sample import Scalar, Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
@@ -26,11 +26,6 @@ def picture_of(example: Example, spec: CheckedSpec, concerned: Collection[str]) 
     """The lines of a drawing, at most 80 columns wide if that is possible.
 
     Times are not to scale: every instant at which something happens has a column.
-
-    Args:
-        example: what to draw.
-        spec: declares the names.
-        concerned: the signals and events to draw.
     """
     from rich.text import Text
 
@@ -154,3 +149,23 @@ def _attempt(attempt: Attempt, example: Example, instants: Sequence[int], width:
     if first == last:
         return " " * (first * width) + "▼ "
     return " " * (first * width) + "▼" + "┄" * ((last - first) * width - 2) + " "
+
+
+def label_of(t: int) -> str:
+    """An instant; one that is a tick beside a rounder one takes a sign for that.
+
+    >>> label_of(3_000_000_001), label_of(199_999_999), label_of(0), label_of(1_500_000_000)
+    ('3 s⁺', '200 ms⁻', '0 s', '1500 ms')
+    """
+    if t < 1000 or not (t + 1) % 1000:
+        return f"{format_duration(t + 1)}⁻" if t >= 1000 else format_duration(t)
+    return f"{format_duration(t - 1)}⁺" if t % 1000 == 1 else format_duration(t)
+
+
+def legend_of(labels: list[str]) -> str:
+    """What the signs in some labels mean, or empty."""
+    signs = {"⁺": "after", "⁻": "before"}
+    used = [
+        f"{sign} a tick {word}" for sign, word in signs.items() if any(sign in x for x in labels)
+    ]
+    return ", ".join(used)

@@ -28,12 +28,6 @@ def junit_xml(
     F is a failure, as is a bin that must not be hit; NT, I, and F that is known are skipped with
     their reason, since none of them is a pass. A recording that could not be read to its end is an
     error, lest it count as nothing to complain of.
-
-    Args:
-        reports: of the recordings that were judged.
-        spec: that they were judged by.
-        broken: the other recordings, each with what is wrong with it.
-        known: failures that are accepted.
     """
     root = ET.Element("testsuites", name=shown(spec.name))
     for report in reports:

@@ -77,13 +77,7 @@ def occurrences(track: Track, view: View) -> list[tuple[float, Scalar]]:
 
 
 def polylines(pieces: Sequence[Stretch], lowest: float, highest: float) -> list[list[Point]]:
-    """The steps of a number as lines, interrupted where it is unknown.
-
-    Args:
-        pieces: its stretches, all of them.
-        lowest: value at the lower edge.
-        highest: value at the upper edge, greater.
-    """
+    """The steps of a number as lines, interrupted where it is unknown."""
     lines = []
     for known, group in groupby(pieces, key=lambda one: one.value is not None):
         if known:

@@ -98,6 +98,11 @@ def asset(name: str) -> str:
     return (resources.files("rvmon.report") / "assets" / name).read_text(encoding="utf-8").strip()
 
 
+def scroll(table: ET.Element) -> ET.Element:
+    """A table that is scrolled, by keys too, where it is wider than the page."""
+    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table)
+
+
 def with_code(sentence: str) -> list[Child]:
     """A sentence whose `quoted` words become code.
 

@@ -43,12 +43,6 @@ def nearest_passing(
     Both are laid over each other at their triggers. Two tracks differ by the share of the view
     over which their values are different, numbers by their mean distance over their range, events
     by how far apart they occur.
-
-    Args:
-        attempt: the failed one.
-        tracks: of the signals concerned in its run.
-        view: over which to compare.
-        candidates: where to look; the first `MOST` passing attempts are compared.
     """
     best: tuple[float, Candidate, Attempt] | None = None
     for candidate, passed in islice(_passing(attempt.requirement, candidates), MOST):

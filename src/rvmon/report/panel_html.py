@@ -5,31 +5,24 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 
+from rvmon.report.afterword import forecast_sentence, with_afterword, without_attempts
 from rvmon.report.concerned import blamed_names
-from rvmon.report.forecast import forecast_sentence
-from rvmon.report.headline import headline
 from rvmon.report.markup import Child, e, with_code
 from rvmon.report.panel import Panel
 from rvmon.report.parts_html import parts_details
 from rvmon.report.run_page import RunPage
-from rvmon.report.spec_html import spec_lines
 from rvmon.report.style import MARKS
 from rvmon.report.timeline import timeline
 from rvmon.report.tracks import Track, TrackKind
-from rvmon.report.view import View, moment
+from rvmon.report.view import View, moment, with_moments
+from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.sample import Scalar
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.attempt import Attempt, Blame
 from rvmon.verdict.verdict import Verdict
 
 
 def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET.Element:
-    """Draw a panel.
-
-    Args:
-        panel: what to draw.
-        panels: all of the page, for links between them.
-        content: of the page.
-    """
+    """Draw a panel."""
     report = content.run.report
     requirement = content.spec.requirements[panel.requirement]
     sentence = headline(content.run.name, panel, report.origin)
@@ -183,3 +176,65 @@ def _scalar(value: Scalar) -> str:
     if value is None:
         return "unknown"
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def spec_lines(requirement: Requirement, blame: Blame | None) -> ET.Element | None:
+    """The requirement's text with line numbers; `None` if its place is not known."""
+    span = requirement.span
+    if span is None:
+        return None
+    text = span.source.text
+    first = text.rfind("\n", 0, span.start) + 1
+    last = span.start + len(text[span.start : span.end].rstrip())
+    block = e("pre", {"class": "spec"})
+    position = first
+    lines = text[first:last].split("\n")
+    for number, line in enumerate(lines, span.line):
+        if number == span.line and len(lines) > 1 and line.endswith(f'"{requirement.text}"'):
+            position += len(line) + 1  # only id and text, which the page has already
+            continue
+        content = _marked(line, position, blame)
+        gutter = e("span", {"class": "gutter", "aria-hidden": "true"}, f"{number:>3}  ")
+        block.append(e("span", {"class": "line"}, gutter, *content))
+        position += len(line) + 1
+    place = f"{span.source.name}:{span.line}"
+    return e("figure", {"class": "source"}, e("figcaption", None, place), block)
+
+
+def _marked(line: str, position: int, blame: Blame | None) -> list[Child]:
+    """A line that starts at `position` of the text, in three parts if it is to blame."""
+    if blame is None:
+        return [line]
+    start = min(max(blame.start - position, 0), len(line))
+    end = min(max(blame.end - position, 0), len(line))
+    if not line[start:end].strip():
+        return [line]
+    failed = e("mark", {"title": "this part failed"}, line[start:end])
+    return [line[:start], failed, line[end:]]
+
+
+def headline(run: str, panel: Panel, origin: int) -> str:
+    """What became of a requirement in a run, or of one attempt.
+
+    Args:
+        run: its name.
+        panel: about the attempt.
+        origin: the instant from which people count seconds, ticks.
+
+    >>> from rvmon.report.view import View
+    >>> from rvmon.verdict.attempt import Attempt
+    >>> from rvmon.verdict.verdict import Verdict
+    >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
+    >>> view = View(0, 20_000_000_000)
+    >>> panel = Panel("R2-1", "R2", failed, failed.verdict, view, (), None)
+    >>> headline("test 17", panel, 0)
+    'R2 failed, test 17, 14.25 s: `released` too soon'
+    """
+    attempt = panel.attempt
+    if attempt is None:
+        why = without_attempts(panel.verdict, with_moments(panel.miss, panel.view))
+        return f"{panel.requirement} {MARKS[panel.verdict].word}, {run}: {why}"
+    when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
+    why = with_afterword(attempt, panel.late)
+    reason = f": {with_moments(why, panel.view)}" if why else ""
+    return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

@@ -1,15 +1,16 @@
-"""Which panels the page of a run has."""
+"""Which panels the page of a run has, and on which it opens."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 
+from rvmon.errors import RvmonError
 from rvmon.explain.anatomy import Strand
 from rvmon.explain.dissect import strands_of
 from rvmon.explain.late import late_arrivals
 from rvmon.explain.not_triggered import why_not_triggered
 from rvmon.explain.truth_over_trace import Eye
-from rvmon.report.choose import shown_attempts
 from rvmon.report.nearest import Candidate, nearest_passing
 from rvmon.report.panel import Panel
 from rvmon.report.run_page import JudgedRun, RunPage
@@ -18,6 +19,7 @@ from rvmon.report.tracks_of import tracks_of
 from rvmon.report.view import View, view_of, whole_run
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
 MOST_DISSECTED = 50_000
@@ -134,3 +136,35 @@ def panel_id(requirement: str, attempt: Attempt | None) -> str:
     if attempt is None:
         return requirement
     return f"{requirement}-{'in-doubt-' if attempt.in_doubt else ''}{attempt.number}"
+
+
+SHOWN = {Verdict.FAIL: 4, Verdict.INCONCLUSIVE: 2, Verdict.PASS: 2}
+"""Attempts per requirement and verdict that are shown, the first ones; the rest is counted."""
+
+
+def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
+    """By requirement, the attempts that get a timeline, in order of trigger."""
+    shown = {}
+    for name in report.verdicts:
+        some = [
+            attempt
+            for verdict, most in SHOWN.items()
+            for attempt in islice(report.of(name, verdict), most)
+        ]
+        shown[name] = sorted(some, key=lambda one: one.number)
+    return shown
+
+
+def opening(report: Report) -> tuple[str, Attempt | None]:
+    """The requirement and attempt that a page opens on: the first F, else I, else any.
+
+    Raises:
+        RvmonError: there is no requirement.
+    """
+    if not report.verdicts:
+        raise RvmonError("a page shows requirements, and the specification has none: add one")
+    for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
+        for attempt in report.attempts:
+            if attempt.verdict is verdict:
+                return attempt.requirement, attempt
+    return next(iter(report.verdicts)), None

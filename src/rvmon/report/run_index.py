@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.report.markup import Child, e, page
+from rvmon.report.markup import Child, e, page, scroll
 from rvmon.report.style import MARKS
 from rvmon.report.table_html import legend
 from rvmon.report.wrapped import in_short
@@ -47,13 +47,7 @@ class Listed:
 
 
 def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailures) -> str:
-    """Write the list; without scripts it is whole, but cannot be filtered.
-
-    Args:
-        spec: that judged.
-        recordings: in the order in which they were named.
-        known: failures that are accepted.
-    """
+    """Write the list; without scripts it is whole, but cannot be filtered."""
     places = list(_GROUPS)
     rows = [(_group(one, known), one) for one in recordings]
     rows.sort(key=lambda row: places.index(row[0]))
@@ -81,7 +75,7 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
                 "section",
                 None,
                 _filters(counts),
-                e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table),
+                scroll(table),
             ),
             e("footer", None, legend("Verdicts")),
         ],

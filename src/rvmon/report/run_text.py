@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.report.afterword import full_reason, without_attempts
-from rvmon.report.forecast import forecast_sentence
+from rvmon.report.afterword import forecast_sentence, full_reason, without_attempts
 from rvmon.report.wrapped import wrapped
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks
@@ -33,11 +32,6 @@ def print_reports(
     """Print the verdicts on each recording, and for several the counts of runs.
 
     Every F comes with cause, window and spec line; every I with what is still owed.
-
-    Args:
-        reports: of the recordings.
-        spec: that judged.
-        counts_only: whether only the counts are printed, of one recording too.
     """
     from rvmon.report.terminal import Terminal
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 
-from rvmon.report.markup import Child, e
+from rvmon.report.markup import Child, e, scroll
 from rvmon.report.table import Counts, VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
 
@@ -30,7 +30,8 @@ def table_html(
     has_checked = any(one.checked for one in (table, *others.values()))
     body: list[Child] = []
     for name, text in table.requirements.items():
-        rows = [_row(table, name, _name_cell(name, text), link, has_checked=has_checked)]
+        heading = e("th", {"scope": "row", "title": text}, name)
+        rows = [_row(table, name, heading, link, has_checked=has_checked)]
         for label, other in others.items():
             heading = e("th", {"scope": "row"}, label)
             rows.append(_row(other, name, heading, None, has_checked=has_checked, like=table))
@@ -38,7 +39,7 @@ def table_html(
             row.set("class", "beside")
         body.append(e("tbody", None, *rows))
     grid = e("table", {"class": "counts"}, _head(table, has_checked=has_checked), *body)
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+    return scroll(grid)
 
 
 def legend(of: str = "Number of tests") -> ET.Element:
@@ -73,10 +74,6 @@ def _head(table: VerdictTable, *, has_checked: bool) -> ET.Element:
             for verdict in Verdict
         )
     return e("thead", None, e("tr", None, *top), e("tr", None, *below))
-
-
-def _name_cell(name: str, text: str) -> ET.Element:
-    return e("th", {"scope": "row", "title": text}, name)
 
 
 def _row(

@@ -14,11 +14,7 @@ from rvmon.diagnostics.shown import shown
 
 
 class Terminal(Console):
-    """A console to which no text is an escape, markup or the name of an emoji.
-
-    Args:
-        options: of `rich.console.Console`.
-    """
+    """A console to which no text is an escape, markup or the name of an emoji."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, markup=False, emoji=False, **options)

@@ -26,14 +26,7 @@ def tracks_of(
     samples: Sequence[Sample],
     health: Sequence[Health] = (),
 ) -> tuple[Track, ...]:
-    """The tracks of the signals and events that a requirement reads, in its order.
-
-    Args:
-        spec: declares them.
-        requirement: of the spec.
-        samples: of one run, in time order.
-        health: says which names have no source.
-    """
+    """The tracks of the signals and events that a requirement reads, in its order."""
     updates = _updates(spec, samples, concerned_names(requirement))
     absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
     return tuple(

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.explain.anatomy import Anatomy, Strand
 from rvmon.explain.spans import Spans
-from rvmon.report.afterword import with_afterword
-from rvmon.report.forecast import forecast_sentence
+from rvmon.report.afterword import forecast_sentence, with_afterword
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.wrapped import wrapped
 from rvmon.spec.checked.specification import Requirement

@@ -91,10 +91,6 @@ def compare(before: Iterable[Kept], after: Iterable[Kept]) -> Comparison:
     Recordings are the same that have the same name. If no name stands in both files, the folder
     that all recordings of a file lie in is left out: the recordings were moved.
 
-    Args:
-        before: rows of the older file.
-        after: rows of the newer one.
-
     >>> old = Kept("a.csv", "R1", "R1#1", "P", "", "")
     >>> compare([old], [old._replace(verdict="F", reason="late")]).differences[0].change.value
     'fails anew'

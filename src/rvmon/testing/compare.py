@@ -58,10 +58,6 @@ def differences(expected: Report, actual: Report) -> list[str]:
 
     Compared are the verdicts of requirements, and of each attempt requirement, number, trigger
     and decision instants, verdict, what settled it, captured values, and the order of the report.
-
-    Args:
-        expected: mostly the oracle's.
-        actual: an engine's.
     """
     lines = [
         f"{name}: verdict {_show(expected, name)}, got {_show(actual, name)}"

@@ -39,10 +39,6 @@ class OnlineMonitor(Monitored, Protocol):
 def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:
     """Tell a monitor the actions of a case, then finish.
 
-    Args:
-        monitor: fresh, for the spec and the sources of the case.
-        case: what to tell.
-
     Returns:
         The report, and what each action returned.
     """

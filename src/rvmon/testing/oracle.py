@@ -75,11 +75,6 @@ def evaluate(
 def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dict[str, Followings]:
     """What is judged of each requirement on a word, with its attempts.
 
-    Args:
-        spec: gives the requirements.
-        word: the trace, position by position.
-        samples: what it was made from.
-
     Raises:
         TraceError: two payloads of an event, though not every requirement is a `for each`.
         RvmonError: a requirement's `pulse` is not what its trigger's syntax says.
@@ -91,14 +86,7 @@ def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dic
 def report_on(
     spec: CheckedSpec, followings: Mapping[str, Followings], *, origin: int, end: int | None
 ) -> Report:
-    """The report on attempts that were followed to the end of the trace.
-
-    Args:
-        spec: gives the requirements.
-        followings: by requirement, from `judge_views`.
-        origin: the instant of the first sample.
-        end: the last instant whose letter is known.
-    """
+    """The report on attempts that were followed to the end of the trace."""
     attempts = [
         record
         for one in followings.values()

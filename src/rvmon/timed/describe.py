@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from fractions import Fraction
 from typing import Any
 
@@ -107,15 +108,9 @@ def position_data(network: Network, position: Position) -> dict[str, Any]:
 
 def step_data(network: Network, step: RunStep) -> dict[str, Any]:
     """A step: `delay` in units of the model, its `window`, `edge`, and the `state` behind."""
-    window = step.window
     return {
         "delay": float(step.delay),
-        "window": {
-            "low": window.low,
-            "high": window.high,
-            "low_strict": window.low_strict,
-            "high_strict": window.high_strict,
-        },
+        "window": asdict(step.window),
         "edge": None if step.action is None else action_text(network, step.action),
         "state": position_data(network, step.position),
     }

@@ -12,11 +12,7 @@ from rvmon.verdict.verdict import Verdict
 
 
 def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
-    """A specification whose requirements are the cover goals of another, for samples in order.
-
-    Args:
-        spec: the other one.
-    """
+    """A specification whose requirements are the cover goals of another, for samples in order."""
     requirements = {
         name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), cover.formula, span=cover.span)
         for name, cover in spec.covers.items()
@@ -28,9 +24,6 @@ def goal_verdicts(report: Report) -> Mapping[str, Verdict]:
     """What a run says of each goal: `P` shown, `I` still possible at its end, else `NT`.
 
     No single run fails a goal.
-
-    Args:
-        report: on the goals as requirements.
     """
     verdicts = dict.fromkeys(report.verdicts, Verdict.NOT_TRIGGERED)
     for attempt in report.attempts:

@@ -23,10 +23,6 @@ def column_types() -> dict[str, type]:
 def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow.Table:
     """Rows as a table of Arrow.
 
-    Args:
-        rows: the verdicts.
-        about: what its metadata say.
-
     Raises:
         RvmonError: pyarrow is needed.
     """

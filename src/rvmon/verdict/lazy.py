@@ -21,12 +21,7 @@ class LazyAttempts(Sequence[Attempt]):
 
     @abstractmethod
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
-        """Those of one requirement with one verdict, in their order, each made as it is asked for.
-
-        Args:
-            requirement: its id.
-            verdict: `P`, `F` or `I`.
-        """
+        """Those of a requirement with one verdict, in their order, each made as it is asked for."""
 
     @abstractmethod
     def texts(self, origin: int) -> Iterator[tuple[str, str]]:

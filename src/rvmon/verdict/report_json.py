@@ -82,11 +82,6 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
     """Write as JSON text what is known of a recording that broke off.
 
     It has no verdicts: what comes behind the break could still have changed them.
-
-    Args:
-        trace: its path.
-        error: what was wrong with it.
-        before: the attempts that were decided before the break.
     """
     attempts: dict[str, list[dict[str, object]]] = {}
     for attempt in before:

@@ -56,11 +56,6 @@ def broken_rows(recording: str, error: str, before: Iterable[Attempt]) -> Iterat
     """The rows of a recording that broke off: that it did, then what was decided before.
 
     Its attempts have no seconds, as these are counted from an origin that is told at the end.
-
-    Args:
-        recording: its name.
-        error: what was wrong.
-        before: the attempts that were decided before the break.
     """
     yield VerdictRow(recording, error=error)
     for attempt in before:

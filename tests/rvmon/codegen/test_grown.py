@@ -6,8 +6,8 @@ import pytest
 
 import rvmon
 from rvmon.runtime.nodes import Nodes
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.formula import Shape, formula
-from rvmon.testing.show import show
 
 SIGNALS = "time sampled\nsignal p : bool\nsignal q : bool\nsignal r : bool\nevent e\n"
 
@@ -182,7 +182,8 @@ def test_random_requirements_wait_for_a_signal_that_is_born_late(time, count):
     for seed in range(25):
         rng = random.Random(f"{time}/{count}/{seed}")
         texts = [
-            f"requirement R{n}\n  always ({show(formula(rng, shape, 3))})" for n in range(count)
+            f"requirement R{n}\n  always ({format_formula(formula(rng, shape, 3))})"
+            for n in range(count)
         ]
         signals = [f"signal {name} : bool" for name in "pqr"]
         spec = rvmon.loads("\n".join([f"time {time}", *signals, *texts]))

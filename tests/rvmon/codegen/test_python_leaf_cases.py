@@ -8,8 +8,8 @@ import rvmon
 from rvmon.codegen import python_leaf_cases
 from rvmon.errors import TraceError
 from rvmon.runtime.unit import Unit, closures
+from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.formula import Shape, formula
-from rvmon.testing.show import show
 from rvmon.trace.time import TIME_LIMIT
 
 pytestmark = pytest.mark.law
@@ -21,7 +21,10 @@ SHAPE = Shape(future=False, numbers=False, events=False)
 def many(rng, time, count):
     """A specification of so many past formulas, and samples of which each brings a new value."""
     signals = [f"signal {name} : bool" for name in SIGNALS]
-    texts = [f"requirement R{n}\n  always ({show(formula(rng, SHAPE, 3))})" for n in range(count)]
+    texts = [
+        f"requirement R{n}\n  always ({format_formula(formula(rng, SHAPE, 3))})"
+        for n in range(count)
+    ]
     samples = [(0, dict.fromkeys(SIGNALS, False))]
     values = dict(samples[0][1])
     for _ in range(40):

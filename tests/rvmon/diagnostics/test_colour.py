@@ -5,8 +5,7 @@ import re
 
 import pytest
 
-from rvmon.diagnostics.colour import SEVERITIES, coloured, wants_colour
-from rvmon.diagnostics.render import render_full
+from rvmon.diagnostics.render import SEVERITIES, coloured, render_full, wants_colour
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 

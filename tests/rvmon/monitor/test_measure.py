@@ -32,7 +32,7 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.testing.show import show
+from rvmon.spec.print.printer import format_formula
 from rvmon.trace.schema import Kind
 
 PAIRS = 120
@@ -117,7 +117,7 @@ def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
         until = rng.choice((None, (times[-1] + 4) * 1e-9))
         found = Spec(spec).robustness(arrays_of(times, columns), until=until)
         expected = Spec(spec).robustness(rows_of(times, columns), until=until)
-        case = f"{show(spec.requirements['R'].consequent)}\n{times}\n{columns}\n{until}"
+        case = f"{format_formula(spec.requirements['R'].consequent)}\n{times}\n{columns}\n{until}"
         assert figures_of(found) == figures_of(expected), case
     assert by_arrays > PAIRS
 

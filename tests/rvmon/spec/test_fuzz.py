@@ -12,7 +12,7 @@ from rvmon.diagnostics.render import render_concise, render_full, render_json
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
-from rvmon.spec.rules.registry import all_rules
+from rvmon.spec.rules.pages import all_rules
 
 ROOT = Path(__file__).parents[3]
 SEEDS = [

@@ -58,12 +58,7 @@ class Tokens(Table):
 
 
 def starting(initial: int, places: Numbers) -> Tokens:
-    """Attempts that start at these places.
-
-    Args:
-        initial: the location before them.
-        places: of the triggers.
-    """
+    """Attempts that start at these places."""
     none = np.zeros(len(places), np.int64)
     return Tokens(none + initial, none.copy(), none.copy(), places - 1)
 

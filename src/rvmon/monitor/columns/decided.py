@@ -53,13 +53,8 @@ class Decisions(Table):
 class DecidedAttempts(Sequence[Attempt]):
     """The decided attempts of one requirement, by number.
 
-    Args:
-        deferred: has the reasons, of the requirement.
-        clocked: per location of the automaton, whether it has a clock.
-        decisions: of the attempts.
-
     Attributes:
-        decisions: the same.
+        decisions: what was noted of each.
         id: of the requirement.
     """
 

@@ -52,14 +52,7 @@ _FEW = 12
 
 
 class Driver:
-    """Drives the attempts of one reading through a piece.
-
-    Args:
-        moves: the automaton.
-        letters: of the piece.
-        axis: of the piece.
-        limit: the instant that time comes to.
-    """
+    """Drives the attempts of one reading through a piece."""
 
     def __init__(self, moves: Moves, letters: Letters, axis: Axis, limit: int) -> None:
         self._moves = moves

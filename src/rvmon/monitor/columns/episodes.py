@@ -130,15 +130,7 @@ class Episodes:
 
 
 class _Piece:
-    """The episodes in one piece.
-
-    Args:
-        axis: of the piece.
-        may: where the trigger is not false.
-        again: where an episode goes on after a failure.
-        make: makes attempts.
-        judging: judges them.
-    """
+    """The episodes in one piece."""
 
     def __init__(
         self, axis: Axis, may: Toggles, again: Toggles, make: Make, judging: Judging
@@ -218,10 +210,6 @@ class _Chains:
     """What follows what, worked out for many places at once at which episodes may go on.
 
     Where an attempt begins decides what becomes of it, whatever was before.
-
-    Args:
-        piece: with the episodes.
-        starts: the places, ascending.
     """
 
     def __init__(self, piece: _Piece, starts: Numbers) -> None:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence, Set
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rvmon.monitor.columns.axis import FAR
 from rvmon.monitor.columns.decided import DecidedAttempts
 from rvmon.monitor.columns.leaves import Columns, NotByColumnsError
-from rvmon.monitor.columns.outages import ColumnOutages
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.monitor.columns.rule import ColumnRule
 from rvmon.monitor.columns.timeline import Timeline
@@ -19,6 +19,10 @@ from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.health import Arrivals, HealthLog, holds_nan
 from rvmon.monitor.records.ledger import Ledger
+from rvmon.plan.outages import Outage, Outages
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.health import HealthKind
+from rvmon.trace.time import TIME_LIMIT
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -34,12 +38,6 @@ _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 class ColumnJudge:
     """Judges requirements by columns: those that `rvmon.monitor.compiled.refusal.of_columns` lets.
-
-    Args:
-        compiled: the specification.
-        chosen: ids of the requirements that are judged, by this or otherwise.
-        ids: of those that this judges.
-        names: of the columns.
 
     Attributes:
         ids: of the requirements that this judges.
@@ -162,13 +160,7 @@ class ColumnJudge:
 def _assembled(
     ids: Sequence[str], rules: Sequence[ColumnRule], kept: Sequence[Attempt]
 ) -> tuple[JudgedAttempts, Mapping[str, Counter[Verdict]]]:
-    """All attempts in the order of reports, and the count of their verdicts by requirement.
-
-    Args:
-        ids: of all requirements, in the order of the file.
-        rules: with the attempts that they have decided.
-        kept: all other attempts.
-    """
+    """All attempts in the order of reports, and the count of their verdicts by requirement."""
     rank = {name: index for index, name in enumerate(ids)}
     counts = {name: Counter[Verdict]() for name in ids}
     parts = []
@@ -202,3 +194,53 @@ def _order(
     in_doubt = np.concatenate([np.zeros(len(decided) - len(keys), np.int64), keys[:, 2]])
     ranks = np.concatenate([*(np.full(len(part), rank) for rank, part in parts), keys[:, 1]])
     return np.lexsort((number, in_doubt, ranks, decided))
+
+
+class ColumnOutages:
+    """The outages of columns in which every row updates every signal.
+
+    What becomes stale is read by no requirement that columns are asked for.
+    """
+
+    def __init__(self, spec: CheckedSpec, names: Set[str]) -> None:
+        self._signals = sorted(names & spec.signals.keys())
+        self._known = Outages(spec, names)
+        self._seen: dict[str, list[Outage]] = {name: [one] for name, one in self._known.now.items()}
+
+    def take(self, times: NDArray[np.int64], columns: Mapping[str, NDArray[Any]]) -> None:
+        """Look through rows.
+
+        Args:
+            times: int64[n] ticks, later than all before.
+            columns: by name, of the same length.
+        """
+        for name in self._signals:
+            column = columns[name]
+            lost = np.zeros(len(times), bool)
+            if column.dtype.kind == "f":
+                lost = np.isnan(column)
+            turns = np.diff(lost, prepend=not lost[0])
+            for row in np.flatnonzero(turns).tolist():
+                self._row(name, int(times[row]), lost=bool(lost[row]))
+
+    def at(self, t: int) -> Mapping[str, Outage]:
+        """By name what was not known at an instant."""
+        found = {}
+        for name, seen in self._seen.items():
+            place = bisect_right(seen, t, key=_since) - 1
+            if place >= 0 and (seen[place].until is None or t < (seen[place].until or 0)):
+                found[name] = seen[place]
+        return found
+
+    def _row(self, name: str, t: int, *, lost: bool) -> None:
+        if not lost:
+            self._known.found(name, t)
+        elif name not in self._known.now:
+            self._known.lost(name, t, HealthKind.NAN.value)
+            self._seen.setdefault(name, []).append(self._known.now[name])
+
+
+def _since(outage: Outage) -> int:
+    """Before the first value, a signal was never known."""
+    first = outage.why in (HealthKind.MISSING, HealthKind.ABSENT)
+    return -TIME_LIMIT if first else outage.since

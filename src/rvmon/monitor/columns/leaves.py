@@ -57,24 +57,14 @@ def known_truth(must: Any) -> Truth:
 
 
 def negated(truth: Truth, complement: Callable[[Any], Any]) -> Truth:
-    """Kleene's `not`.
-
-    Args:
-        truth: of any form.
-        complement: of that form.
-    """
+    """Kleene's `not`."""
     if truth.known:
         return known_truth(complement(truth.must))
     return Truth(complement(truth.may), complement(truth.must))
 
 
 def combined(truths: Sequence[Truth], combine: Callable[[list[Any]], Any]) -> Truth:
-    """Kleene's `and` or `or`.
-
-    Args:
-        truths: of any form.
-        combine: the operator on sets of that form.
-    """
+    """Kleene's `and` or `or`."""
     must = combine([truth.must for truth in truths])
     if all(truth.known for truth in truths):
         return known_truth(must)

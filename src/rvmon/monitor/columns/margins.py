@@ -71,10 +71,6 @@ class WholeColumns:
 class ColumnMargins:
     """The robustness of what a requirement owes along a trace; see `rvmon.dataflow.margin_arrays`.
 
-    Args:
-        trace: in columns.
-        one: the requirement.
-
     Raises:
         NotByColumnsError: something in it is not known, or has to be read sample by sample.
     """

@@ -47,13 +47,7 @@ class Previous:
 
 
 def moved_on(toggles: Toggles, before: bool, axis: Axis) -> Toggles:
-    """The places of a piece of which the one before is in a set.
-
-    Args:
-        toggles: the set.
-        before: whether the place before the piece is in it.
-        axis: of the piece.
-    """
+    """The places of a piece of which the one before is in a set."""
     moved = clipped(toggles + 1, axis.start, axis.stop)
     if before and axis.start < axis.stop:
         moved = in_at_least(1, [between(axis.start, axis.start + 1), moved])

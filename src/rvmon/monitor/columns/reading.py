@@ -66,12 +66,7 @@ class Reading:
         self._rows = 0
 
     def take(self, columns: Columns, rows: int) -> None:
-        """Go on with rows.
-
-        Args:
-            columns: by name.
-            rows: their length.
-        """
+        """Go on with rows."""
         self._row += self._rows
         self._columns, self._rows = columns, rows
         self._raw.clear()

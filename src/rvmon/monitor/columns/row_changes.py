@@ -97,12 +97,8 @@ def _may_occur(leaf: Leaf, columns: Columns, spec: CheckedSpec) -> NDArray[np.bo
     length = len(next(iter(columns.values())))
     if isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN:
         return np.ones(length, bool)
-    events = [columns[name] for name in columns if name in spec.events and name in _names(leaf)]
+    events = [columns[name] for name in reads(leaf).names & columns.keys() & spec.events.keys()]
     return reduce(np.logical_or, events, np.zeros(length, bool))
-
-
-def _names(leaf: Leaf) -> frozenset[str]:
-    return reads(leaf).names
 
 
 def _truth(leaf: Leaf, columns: Columns) -> NDArray[np.int8] | None:

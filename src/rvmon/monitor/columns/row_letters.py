@@ -23,11 +23,6 @@ def letters_along(
 ) -> tuple[Numbers, tuple[Numbers, Numbers]]:
     """The stretches of one letter.
 
-    Args:
-        alphabet: of what is owed.
-        truths: of its propositions, as toggles.
-        axis: of the piece.
-
     Returns:
         The first place of each stretch, and its letter with the unknown taken for the worse and for
         the better: the same object where all is known.

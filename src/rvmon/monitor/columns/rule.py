@@ -13,15 +13,14 @@ from rvmon.automaton.moves import Moves, moves_of
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.columns.attempts import Attempts, Tokens, joined_attempts, starting_attempts
-from rvmon.monitor.columns.axis import FAR
+from rvmon.monitor.columns.axis import FAR, Axis
 from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
 from rvmon.monitor.columns.drive import Outcome
 from rvmon.monitor.columns.episodes import Episodes
 from rvmon.monitor.columns.judging import Judging
-from rvmon.monitor.columns.leaves import NotByColumnsError
+from rvmon.monitor.columns.leaves import NotByColumnsError, Truth
 from rvmon.monitor.columns.row_letters import letters_along
-from rvmon.monitor.columns.starts import Starts
-from rvmon.monitor.columns.stretches import first_in
+from rvmon.monitor.columns.stretches import counted, first_in, holds_at, holds_at_last
 from rvmon.monitor.columns.timeline import Piece, Timeline
 from rvmon.monitor.columns.track import UNSEEN, Track
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -36,6 +35,8 @@ from rvmon.spec.checked.specification import Mode
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from rvmon.monitor.columns.stretches import Toggles
+
     Numbers = NDArray[np.int64]
 
 OutagesAt = Callable[[int], Mapping[str, Outage]]
@@ -44,12 +45,6 @@ OutagesAt = Callable[[int], Mapping[str, Outage]]
 
 class ColumnRule:
     """Starts the attempts of a requirement and drives them, a piece of the trace at a time.
-
-    Args:
-        compiled: the requirement, or what judges its attempts in doubt.
-        plan: that it is part of.
-        ledger: takes the records of what the end settles.
-        hidden: whether these are its attempts in doubt.
 
     Attributes:
         id: of the requirement.
@@ -100,10 +95,6 @@ class ColumnRule:
 
     def take(self, piece: Piece, limit: int) -> None:
         """Judge a piece.
-
-        Args:
-            piece: of the trace.
-            limit: the instant that time comes to.
 
         Raises:
             NotByColumnsError: there are attempts in doubt that have to be judged one by one.
@@ -219,14 +210,7 @@ class ColumnRule:
         )
 
     def finish(self, timeline: Timeline, end: int, last: int, outages_at: OutagesAt) -> None:
-        """Settle what is undecided.
-
-        Args:
-            timeline: has come to the end.
-            end: the last instant of the trace.
-            last: the last position.
-            outages_at: gives by name what was not known at an instant.
-        """
+        """Settle what is undecided."""
         if not len(self._open) and not self._void:
             return
         values = {leaf: timeline.value_here(leaf) for leaf in self._deferred.leaves}
@@ -294,3 +278,33 @@ def _stops(may: Numbers, begun: Numbers, stop: int) -> Numbers:
     """Where the episodes that begin at places are over; `FAR` if that is behind the piece."""
     ends = may[1::2][np.searchsorted(may[0::2], begun)]
     return np.where(ends == stop, FAR, ends)
+
+
+class Starts:
+    """Follows a trigger from piece to piece; `rvmon.runtime.starts.Starts` for whole stretches.
+
+    Args:
+        pulse: whether it starts an attempt at every position where it holds.
+        episodic: whether one starts where it is no longer false, and runs until it is again.
+    """
+
+    def __init__(self, pulse: bool, episodic: bool) -> None:
+        self._pulse = pulse
+        self._episodic = episodic
+        self._may = False
+        """Whether it was not false at the last place so far."""
+
+    def take(self, trigger: Truth, axis: Axis) -> Toggles:
+        """The places of a piece at which attempts start."""
+        if axis.start == axis.stop:
+            return np.empty(0, np.int64)
+        before, self._may = self._may, holds_at_last(trigger.may, axis.stop)
+        if self._pulse and not self._episodic:
+            firsts = trigger.must[0::2]
+            return counted(firsts, trigger.must[1::2] - firsts)
+        begins: Toggles = trigger.may[0::2]
+        if before and len(begins) and begins[0] == axis.start:
+            begins = begins[1:]
+        if self._episodic or trigger.known:
+            return begins
+        return begins[holds_at(trigger.must, begins) > 0]

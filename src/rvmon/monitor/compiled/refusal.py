@@ -43,12 +43,7 @@ class Refusal:
     engine: str
 
     def error(self, requirement: str, what: str) -> RvmonError:
-        """The error of one that was asked for by name.
-
-        Args:
-            requirement: its id.
-            what: refuses it.
-        """
+        """The error of one that was asked for by name."""
         return RvmonError(f"{requirement} {self.reason}; {what} cannot judge it: {self.mend}")
 
 
@@ -58,11 +53,6 @@ def refuse(
     what: str,
 ) -> None:
     """Refuse what an engine that was asked for by name cannot judge.
-
-    Args:
-        requirements: that it was asked to judge.
-        refuses: says which of them it cannot.
-        what: the engine, in words.
 
     Raises:
         RvmonError: there is such a requirement; which and why is said.
@@ -90,11 +80,7 @@ _LEAVE_OUT = "leave it out (`only`, --only), or use the engine `auto`"
 
 
 def too_many(count: int) -> Refusal:
-    """More requirements than code is generated for.
-
-    Args:
-        count: how many there are.
-    """
+    """More requirements than code is generated for."""
     reason = f"is one of {count} requirements, more than the {MOST_GENERATED} of generated code"
     return Refusal(reason, "use the engine `auto`, or several monitors (`only`)", "automaton")
 

@@ -36,11 +36,7 @@ class CompiledSpec:
         return compiled_requirements(self.checked)
 
     def chosen(self, only: Collection[str] | None) -> Sequence[CompiledRequirement]:
-        """Some requirements in the order of the file.
-
-        Args:
-            only: their ids; `None`: all.
-        """
+        """Some requirements in the order of the file."""
         wanted = self.requirements.keys() if only is None else frozenset(only)
         return [one for name, one in self.requirements.items() if name in wanted]
 

@@ -41,14 +41,7 @@ class Python:
 def generated_or_tables(
     compiled: CompiledSpec, chosen: Sequence[CompiledRequirement], engine: str, asked: Asked
 ) -> Monitor:
-    """A monitor of generated code where that helps any requirement, else of tables alone.
-
-    Args:
-        compiled: the specification.
-        chosen: the requirements.
-        engine: that was asked for.
-        asked: what is wanted.
-    """
+    """A monitor of generated code where that helps any requirement, else of tables alone."""
     how = (asked.settle, asked.sources, asked.keep)
     if len(chosen) > MOST_GENERATED or not any(one.is_fed for one in chosen):
         monitor = Monitor(compiled, chosen, engine, *how)

@@ -30,12 +30,6 @@ class RowJudge:
     """Judges requirements by a monitor.
 
     Rows are passed over in held and clocked time, if generated code can be fed for all of them.
-
-    Args:
-        compiled: the specification.
-        engine: makes the monitor.
-        names: of the columns; declared ones.
-        asked: what is wanted.
     """
 
     def __init__(

@@ -37,14 +37,7 @@ def fillable(compiled: CompiledSpec, only: tuple[str, ...] | None) -> frozenset[
 
 
 def judge_rows(engine: Engine, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-    """Judge a recording by the monitor of an engine.
-
-    Args:
-        engine: makes the monitor.
-        compiled: the specification.
-        source: the recording.
-        asked: what is wanted.
-    """
+    """Judge a recording by the monitor of an engine."""
     try:
         columns = columns_of(compiled, source, asked)
         return judge_columns_by_rows(engine, compiled, columns, asked, source.end)

@@ -100,13 +100,7 @@ class HealthLog:
         arrivals: Arrivals,
         intake: Intake | None,
     ) -> list[Health]:
-        """All findings of the run.
-
-        Args:
-            requirements: that were judged.
-            arrivals: of the run, at its end.
-            intake: of the run, if samples were held back.
-        """
+        """All findings of the run."""
         readers = _readers(requirements)
         found = self.seen(requirements)
         found += self._unfed(readers, arrivals)

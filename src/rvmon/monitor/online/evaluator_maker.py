@@ -21,15 +21,7 @@ Captured = Mapping[str, Scalar]
 
 
 class EvaluatorMaker:
-    """Makes evaluators, and gives them rules.
-
-    Args:
-        spec: gives the names and the time model.
-        requirements: to be judged.
-        engine: judges them.
-        sources: the names that can arrive; `None`: all.
-        ledger: takes the records.
-    """
+    """Makes evaluators, and gives them rules."""
 
     judge_of = staticmethod(judge_of)
 

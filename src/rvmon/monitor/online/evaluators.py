@@ -26,13 +26,6 @@ from rvmon.trace.sample import Scalar, Value
 class Evaluators(EvaluatorMaker):
     """All evaluators of one run.
 
-    Args:
-        spec: gives the names and the time model.
-        requirements: to be judged.
-        engine: judges them.
-        sources: the names that can arrive; `None`: all.
-        ledger: takes the records.
-
     Attributes:
         main: the evaluator of all requirements without `for each`; its inputs are those of the run.
         instances: the evaluators of those with it, an instance each.
@@ -188,11 +181,7 @@ class Evaluators(EvaluatorMaker):
         return name, next(kind for kind, one in found.items() if one is compiled)
 
     def rebuild(self, shape: Shape) -> None:
-        """Make the evaluators that another run had; what they hold is to be set afterwards.
-
-        Args:
-            shape: of the other run.
-        """
+        """Make the evaluators that another run had; what they hold is to be set afterwards."""
         instances, evaluators = shape
         for name, found in instances:
             keyed = self.instances.keyed[name]

@@ -84,17 +84,7 @@ def forms_of(
 
 
 class GeneratedEvaluators(Evaluators):
-    """Evaluators of which one is generated code; the others are for what that cannot judge.
-
-    Args:
-        forms: what was generated.
-        unit: of these; begins a run.
-        compiled: the specification.
-        engine: judges the others.
-        sources: the names that can arrive; `None`: all.
-        ledger: takes the records.
-        other: takes the samples that need a closer look.
-    """
+    """Evaluators of which one is generated code; the others are for what that cannot judge."""
 
     STATE = ("outages", "unit", "counts", *Evaluators.STATE)
 
@@ -235,15 +225,6 @@ class GeneratedMonitor(Monitor):
 
     Samples that need a closer look (the first, unknown values, payloads, what is wrong) take the
     way of every monitor.
-
-    Args:
-        forms: what was generated.
-        compiled: the specification.
-        requirements: to be judged.
-        engine: judges what cannot be generated.
-        settle: see `build_monitor`.
-        sources: the names that can arrive; `None`: all.
-        keep: see `build_monitor`.
     """
 
     STATE = (*Monitor.STATE, "_floor")

@@ -25,11 +25,6 @@ class Listeners:
     ) -> Callable[[], None]:
         """Register a callback.
 
-        Args:
-            callback: takes an attempt.
-            changed: is called when there is one more, or less.
-            failures_only: whether it is called with attempts that fail and no others.
-
         Returns:
             A function without arguments that ends this; to call it again does nothing.
 

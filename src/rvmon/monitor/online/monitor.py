@@ -316,11 +316,8 @@ class Monitor:
     def _verdicts(self) -> Mapping[str, Verdict]:
         if self._report is not None:
             return self._report.verdicts
-        found = self._verdicts_so_far()
+        found = self._kept.verdicts(self._names)
         return found if self._torn is None else not_passed(found)
-
-    def _verdicts_so_far(self) -> Mapping[str, Verdict]:
-        return self._kept.verdicts(self._names)
 
     def _end(self, t: int | None) -> int | None:
         """The last instant of the trace; `None` if there was no sample."""

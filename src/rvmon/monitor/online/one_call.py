@@ -33,9 +33,6 @@ class Guarded(Protocol):
 class OneCall:
     """Refuses a call that comes while another is under way, from whatever thread.
 
-    Args:
-        guarded: what is called.
-
     Attributes:
         restored: whether its state came from outside, and so may fit no monitor after all.
     """

@@ -42,11 +42,7 @@ class Kept:
         self._limit = _PATIENCE
 
     def verdicts(self, requirements: Iterable[str]) -> Mapping[str, Verdict]:
-        """The fold of the decided attempts; costs what was decided since the last call.
-
-        Args:
-            requirements: their ids.
-        """
+        """The fold of the decided attempts; costs what was decided since the last call."""
         attempts = self._ledger.attempts
         for index in range(self._seen_to, len(attempts)):
             attempt = attempts[index]
@@ -55,11 +51,7 @@ class Kept:
         return {name: fold(self._seen.get(name, ())) for name in requirements}
 
     def bound(self, evaluators: Evaluators) -> None:
-        """Drop what is too much, now and then; to be called after each flush of the ledger.
-
-        Args:
-            evaluators: have the open attempts.
-        """
+        """Drop what is too much, now and then; to be called after each flush of the ledger."""
         if self._keep is None:
             return
         # An attempt that only stays undecided brings no record, but a call.

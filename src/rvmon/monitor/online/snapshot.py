@@ -35,13 +35,7 @@ _UNSAID = ("span", "source", "text", "title", "doc")
 
 
 def snapshot(options: Options, evaluators: Evaluators, run: object) -> bytes:
-    """The bytes of a run.
-
-    Args:
-        options: of its monitor.
-        evaluators: what judges it.
-        run: has the state.
-    """
+    """The bytes of a run."""
     document = {
         "rvmon": _version(),
         "spec": digest_of(options.compiled),
@@ -65,10 +59,6 @@ def snapshot(options: Options, evaluators: Evaluators, run: object) -> bytes:
 def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
     """What a snapshot says; `only`, `engine`, `settle`, `sources` and `keep` are of its monitor.
 
-    Args:
-        compiled: the specification.
-        data: from `snapshot`.
-
     Raises:
         SnapshotError: the bytes are no snapshot, or one of another specification or version.
     """
@@ -90,12 +80,6 @@ def put_back(
     document: Mapping[str, Any], options: Options, evaluators: Evaluators, run: object
 ) -> None:
     """Give a fresh run the state that a snapshot holds.
-
-    Args:
-        document: from `document_of`.
-        options: of the fresh monitor, as the document says them.
-        evaluators: what judges it.
-        run: takes the state.
 
     Raises:
         SnapshotError: the requirements were judged by other automata.

@@ -26,12 +26,7 @@ Noted = Callable[..., tuple[Any, ...]]
 
 
 class UnitStanding:
-    """The values that generated code works out; see `rvmon.plan.standing.Standing`.
-
-    Args:
-        plan: of the generated code.
-        unit: of that plan; has begun a run.
-    """
+    """The values that generated code works out; see `rvmon.plan.standing.Standing`."""
 
     begun = None
     is_cut = False
@@ -60,12 +55,7 @@ class UnitStanding:
 
 
 class JudgeClerk:
-    """Tells generated code of all that a ledger hears from a rule that is no part of it.
-
-    Args:
-        unit: looks for news after each step.
-        ledger: takes the records.
-    """
+    """Tells generated code of all that a ledger hears from a rule that is no part of it."""
 
     def __init__(self, unit: Unit, ledger: Ledger) -> None:
         self._unit = unit
@@ -95,15 +85,6 @@ class JudgeClerk:
 
 class UnitClerk(DeferredReasons):
     """Stands where the judge of a requirement would, and writes the records of its decisions.
-
-    Args:
-        compiled: the requirement.
-        plan: that it is part of.
-        unit: judges it.
-        standing: of the unit.
-        ledger: takes the records.
-        counts: of the attempts of all requirements.
-        noted: gives what a record keeps, see `rvmon.runtime.unit.Unit.NOTED`.
 
     Attributes:
         id: of the requirement.

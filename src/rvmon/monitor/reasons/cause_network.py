@@ -26,11 +26,6 @@ class NetworkCauseFinder:
 
     What decided became known at the very stamp of the decision, and so did all between it and the
     formula.
-
-    Args:
-        network: that decided.
-        verdict: the decision.
-        at: its stamp.
     """
 
     def __init__(self, network: Network, verdict: bool, at: int) -> None:

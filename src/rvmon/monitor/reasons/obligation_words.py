@@ -76,11 +76,7 @@ class _Atom:
 
 
 class Words:
-    """Names the parts of one requirement as its text does.
-
-    Args:
-        origins: where its core formulas come from.
-    """
+    """Names the parts of one requirement as its text does."""
 
     def __init__(self, origins: Mapping[Core, Origin]) -> None:
         self._origins = dict(origins)

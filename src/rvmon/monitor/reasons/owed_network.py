@@ -22,15 +22,7 @@ from rvmon.trace.time import format_ticks
 
 
 def owed_at(network: Network, core: Core, position: int, limit: int, words: Words) -> str:
-    """What a formula at a position asks for at a stamp, as text; empty if it is decided.
-
-    Args:
-        network: what is known.
-        core: the formula.
-        position: as the network counts them.
-        limit: the stamp.
-        words: names the parts.
-    """
+    """What a formula at a position asks for at a stamp, as text; empty if it is decided."""
     return _Owing(network, limit, words).at(core, position)
 
 

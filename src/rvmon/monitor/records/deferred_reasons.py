@@ -26,11 +26,6 @@ class DeferredReasons:
 
     A record costs little until someone asks for its reason: what that needs is noted.
 
-    Args:
-        compiled: the requirement.
-        plan: that it is part of.
-        clerk: whom a judge would tell.
-
     Attributes:
         leaves: the nodes of the plan that it reads of the input.
         places: the nodes of the plan that its letters are made of.
@@ -63,14 +58,7 @@ class DeferredReasons:
         position: int,
         attempts: list[Open],
     ) -> MachineJudge:
-        """The judge of the requirement, as it would stand if it had judged.
-
-        Args:
-            flow: as it stood.
-            letters: of the position.
-            position: the instant that the values are of.
-            attempts: the open ones.
-        """
+        """The judge of the requirement, as it would stand if it had judged."""
         judge = MachineJudge(self.compiled, self._machine, flow, self._clerk, {})
         judge.letter, judge.other = letters
         judge.position = position

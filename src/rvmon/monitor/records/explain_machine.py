@@ -37,17 +37,7 @@ def explained(
     triggered: int,
     flow: Standing,
 ) -> Explanation:
-    """Why an attempt was decided.
-
-    Args:
-        reasons: of its requirement.
-        before: its token at the last position before the decision.
-        letter: under which it was decided.
-        verdict: the decision.
-        t: its instant.
-        triggered: the instant of the trigger.
-        flow: as it stood at the decision.
-    """
+    """Why an attempt was decided."""
     finding = reasons.of(before, letter, verdict, t)
     cause = finding.cause
     start = finding.start(before[1], t, triggered)

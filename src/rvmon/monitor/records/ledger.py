@@ -51,11 +51,6 @@ class Ledger:
         """Take an attempt whose trigger was true, at `t` first, to be numbered by that.
 
         Its trigger decides between equal instants, then the rank of its instance.
-
-        Args:
-            judge: of the attempt.
-            attempt: new, or in doubt so far.
-            t: ticks.
         """
         self._started.append((t, judge, attempt))
 

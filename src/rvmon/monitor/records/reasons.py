@@ -34,13 +34,7 @@ class Finding:
     sentence: Sentence
 
     def start(self, anchors: Sequence[Instant], t: Instant, triggered: Instant) -> Instant:
-        """The instant at which what decided was instantiated.
-
-        Args:
-            anchors: of the token before the decision.
-            t: the instant of the decision.
-            triggered: of the attempt.
-        """
+        """The instant at which what decided was instantiated."""
         clock = self.cause.start if self.cause else NO_CLOCK
         if clock == NO_CLOCK:
             return triggered
@@ -51,10 +45,6 @@ class Reasons:
     """Finds the reasons of the decisions of one requirement.
 
     What was owed, in which of its windows, and the letter: more makes no difference to a reason.
-
-    Args:
-        compiled: the requirement.
-        machine: that decides.
     """
 
     def __init__(self, compiled: CompiledRequirement, machine: Machine) -> None:
@@ -73,14 +63,7 @@ class Reasons:
         return cuts
 
     def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
-        """What is said of a decision.
-
-        Args:
-            before: the token at the last position before it.
-            letter: under which it was made.
-            verdict: the decision.
-            t: its instant.
-        """
+        """What is said of a decision."""
         location, anchors = before
         ages = zip(self.cuts(location), anchors, strict=True)
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])

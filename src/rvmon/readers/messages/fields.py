@@ -84,13 +84,6 @@ def expect_kinds(
 ) -> None:
     """See that the fields of a term can give values of a kind.
 
-    Args:
-        name: what is fed, for the message.
-        kind: as declared.
-        term: what feeds it.
-        labels: see `Bound`.
-        topic: of the messages.
-
     Raises:
         TraceError: a field is not there, or holds something else.
     """
@@ -122,10 +115,6 @@ def getter(term: Term, *, mappings: bool) -> Get:
 
     It raises `KeyError` where a mapping lacks a field; an element behind the end of an array, and
     what is calculated with it, is `None`, which is unknown.
-
-    Args:
-        term: of fields that exist.
-        mappings: whether contents are mappings.
     """
     match term:
         case Constant(value=value):

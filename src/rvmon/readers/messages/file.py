@@ -21,11 +21,6 @@ from rvmon.trace.schema import Schema
 def open_messages(path: Path, form: str, schema: Schema) -> Messages:
     """Open a recording.
 
-    Args:
-        path: of the file or folder.
-        form: a value of `MESSAGE_FORMATS`.
-        schema: has the definitions of messages that the recording may lack.
-
     Raises:
         RvmonError: what reads it is not installed.
         TraceError: it cannot be read.

@@ -32,10 +32,6 @@ def matched(schema: Schema, topics: Mapping[str, Topic]) -> Matched:
     is the field `c` of the topic `/a/b`, or `b.c` of `/a`; a topic with one field, which is no
     array and not of the header, is that field.
 
-    Args:
-        schema: the declared names, and how the recording tells them.
-        topics: of the recording, by name.
-
     Raises:
         TraceError: a topic has not the field that is bound, or it is of another kind; or its
             messages cannot be read.

@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.jsonl_rows import decoded
 from rvmon.readers.messages.ros import BagMessages, ros_topic
 from rvmon.readers.messages.topic import Message, Messages, Topic
-from rvmon.readers.values import shorten
+from rvmon.readers.values import first_line, shorten
 from rvmon.trace.schema import Kind
 
 _MAGIC = b"\x89MCAP0\r\n"
@@ -154,7 +154,7 @@ class _OtherMessages:
                 except Exception as error:  # noqa: BLE001 - each decoder has errors of its own
                     raise TraceError(
                         f"a message of {channel.topic} at {message.log_time} ns cannot be decoded "
-                        f"({_line(error)})"
+                        f"({first_line(error)})"
                     ) from None
                 yield channel.topic, message.log_time, content
 
@@ -172,7 +172,7 @@ def mcap_errors() -> Iterator[None]:
         raise
     except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
         raise TraceError(
-            f"cannot be read as MCAP ({_line(error)}): is it cut off? Copy it again, or try "
+            f"cannot be read as MCAP ({first_line(error)}): is it cut off? Copy it again, or try "
             "`mcap recover`"
         ) from None
 
@@ -258,7 +258,3 @@ def _protobuf_leaves(
         else:
             is_text = field.cpp_type == field.CPPTYPE_STRING
             yield path, Kind.LABEL if is_text else Kind.INT
-
-
-def _line(error: Exception) -> str:
-    return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)

@@ -10,7 +10,7 @@ from typing import Any
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.messages.topic import Message, Topic
-from rvmon.readers.values import shorten
+from rvmon.readers.values import first_line
 from rvmon.trace.schema import Kind
 
 Definition = tuple[str, str]
@@ -87,7 +87,7 @@ class BagMessages:
                 except Exception as error:  # noqa: BLE001 - code that was made of the definition
                     raise TraceError(
                         f"a message of {connection.topic} ({connection.msgtype}) at {t} ns does "
-                        f"not fit its definition ({_line(error)})"
+                        f"not fit its definition ({first_line(error)})"
                     ) from None
                 yield connection.topic, t, content
 
@@ -118,7 +118,7 @@ def bag_errors(form: str) -> Iterator[None]:
     except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
         text = str(error)
         mend = next((mend for sign, mend in _MENDS.items() if sign in text), _MEND[form])
-        raise TraceError(f"cannot be read as a bag ({_line(error)}): {mend}") from None
+        raise TraceError(f"cannot be read as a bag ({first_line(error)}): {mend}") from None
 
 
 def ros_topic(
@@ -178,7 +178,7 @@ def _store(type_name: str, language: str, text: str) -> tuple[Any, str]:
                 }
             )
     except (TypesysError, KeyError, ValueError, TypeError) as error:
-        return None, f"the definition of its messages cannot be read ({_line(error)})"
+        return None, f"the definition of its messages cannot be read ({first_line(error)})"
     if type_name not in store.fielddefs:
         return None, "the definition of its messages is not in the recording"
     return store, ""
@@ -200,7 +200,7 @@ def _store_of(definitions: tuple[Definition, ...]) -> tuple[Any, str]:
         made = [get_types_from_msg(text, name) for name, text in definitions]
         store.register({name: fields for one in made for name, fields in one.items()})
     except (TypesysError, KeyError, ValueError, TypeError) as error:
-        return None, f"the `definitions` of the binding cannot be read ({_line(error)})"
+        return None, f"the `definitions` of the binding cannot be read ({first_line(error)})"
     return store, ""
 
 
@@ -234,7 +234,3 @@ def _leaves(
             base = inner[0]
             number = Kind.REAL if base.startswith("float") else Kind.INT
             yield path, _KINDS.get(base, number)
-
-
-def _line(error: Exception) -> str:
-    return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)

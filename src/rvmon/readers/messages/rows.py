@@ -30,13 +30,6 @@ def message_rows(
 
     Where stamps of headers count, messages are sorted by time in memory, unless they may be late.
 
-    Args:
-        source: the recording.
-        bounds: what feeds the declared names.
-        schema: the kinds of their values.
-        skew: is told how stamps of headers differ from those of the log.
-        ordered: whether time must not go backwards.
-
     Raises:
         TraceError: with the number of the message among those of its topic.
     """

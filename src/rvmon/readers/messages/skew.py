@@ -92,13 +92,7 @@ class Skew:
     by_topic: dict[str, Differences] = field(default_factory=dict)
 
     def note(self, topic: Topic, logged: int, content: Any) -> None:
-        """Take a message.
-
-        Args:
-            topic: that it is of.
-            logged: when it was recorded, ticks.
-            content: of the message.
-        """
+        """Take a message."""
         found = self.by_topic.get(topic.name)
         if found is None:
             found = self.by_topic[topic.name] = Differences(_stamp_of(topic, content))

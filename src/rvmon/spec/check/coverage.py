@@ -109,14 +109,7 @@ def checked_cross(
     points: Mapping[str, Coverpoint],
     declared: Mapping[str, CoverpointItem],
 ) -> Cross | None:
-    """Check a cross; `None` if it is wrong, and then that is reported.
-
-    Args:
-        checker: evaluates its clauses.
-        item: the cross.
-        points: the coverpoints that are in order.
-        declared: all coverpoints.
-    """
+    """Check a cross; `None` if it is wrong, and then that is reported."""
     names = [point.text for point in item.points]
     try:
         for number, point in enumerate(item.points):

@@ -29,11 +29,6 @@ from rvmon.spec.rules.rule import Refusal
 def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
     """The formula that a run fulfils if and only if it is one of a system with the property.
 
-    Args:
-        property_: checked.
-        place: of what asks for it, for messages.
-        time: of the spec.
-
     Raises:
         Refusal: the property is not in the fragment; which part and why is said.
     """

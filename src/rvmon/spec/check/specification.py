@@ -6,10 +6,9 @@ from dataclasses import replace
 
 from rvmon.spec.check.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.check.expressions import Checker
-from rvmon.spec.check.macros import check_unused
 from rvmon.spec.check.properties import checked_property
 from rvmon.spec.check.requirements import check_clauses, checked_requirement
-from rvmon.spec.check.table import Table, close_unit
+from rvmon.spec.check.table import Table, close_name, close_unit
 from rvmon.spec.check.values import EVERYWHERE
 from rvmon.spec.checked.specification import (
     CheckedSpec,
@@ -22,23 +21,21 @@ from rvmon.spec.checked.specification import (
 from rvmon.spec.names.cycles import find_cycles
 from rvmon.spec.names.resolved import DeclaredEvent, DeclaredSignal, ResolvedSpec
 from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.findings import Findings
 from rvmon.spec.rules.rule import Refusal, Reported
-from rvmon.spec.syntax.expressions import Expression
-from rvmon.spec.syntax.items import TypeSyntax
+from rvmon.spec.syntax.expressions import Expression, Name
+from rvmon.spec.syntax.items import ConstItem, DefineItem, TypeSyntax
 from rvmon.spec.syntax.unit import Unit
 from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
+from rvmon.spec.syntax.walk import expressions_in
 from rvmon.trace.schema import Kind
 
 
 def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
     """Check everything that a specification says.
-
-    Args:
-        spec: with all names known.
-        findings: takes what is wrong.
 
     Returns:
         What could be checked; it is fit for use if no finding is an error.
@@ -183,3 +180,25 @@ def _duration(checker: Checker, expression: Expression) -> int | None:
     except Reported:
         pass
     return None
+
+
+def check_unused(checker: Checker, spec: ResolvedSpec) -> None:
+    """Report what is wrong in macros; those with parameters have their names looked up only."""
+    for item in spec.declared.values():
+        match item:
+            case DefineItem(parameters=None, name=name) | ConstItem(name=name):
+                checker.value(Name(name.text, name.span), EVERYWHERE)
+            case DefineItem():
+                _look_up(checker, item)
+
+
+def _look_up(checker: Checker, item: DefineItem) -> None:
+    own = {parameter.text for parameter in item.parameters or ()}
+    table = checker.table
+    for part in expressions_in(item.body):
+        if not isinstance(part, Name) or part.text in own | table.doubtful:
+            continue
+        labels = {label for signal in table.signals.values() for label in signal.type.labels}
+        if part.text not in labels and not checker.known(part.text, EVERYWHERE):
+            close = close_name(table, part.text, tuple(own))
+            checker.report(rules.unknown(part.span, part.text, close))

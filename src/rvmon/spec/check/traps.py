@@ -76,14 +76,7 @@ def capture_traps(
     captures: Iterable[tuple[LetClause, Capture]],
     time: TimeModel,
 ) -> Iterator[Diagnostic]:
-    """Captured values that are not those that a reader takes them for.
-
-    Args:
-        mode: of the requirement.
-        trigger: the same.
-        captures: each as written, and checked.
-        time: the time model.
-    """
+    """Captured values that are not those that a reader takes them for."""
     occurring = {name for name, truth in facts_of(trigger).items() if truth}
     for clause, capture in captures:
         for field in fields_in(capture.value):

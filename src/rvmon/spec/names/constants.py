@@ -16,13 +16,7 @@ from rvmon.spec.syntax.parse import parse_expression
 def overridden(
     files: Sequence[ParsedSpec], constants: Mapping[str, str], findings: Findings
 ) -> list[ParsedSpec]:
-    """The files with the values of some constants replaced.
-
-    Args:
-        files: as read.
-        constants: text of the language by name.
-        findings: takes what is wrong with the values or names.
-    """
+    """The files with the values of some constants replaced."""
     values: dict[str, Expression] = {}
     known = [item.name.text for file in files for item in file.items if isinstance(item, ConstItem)]
     for name, text in constants.items():

@@ -34,10 +34,6 @@ _K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, Cro
 def resolve(parsed: Sequence[ParsedSpec], findings: Findings) -> ResolvedSpec:
     """Gather the declarations of a file and of those it imports.
 
-    Args:
-        parsed: the main file first.
-        findings: takes names that are declared twice.
-
     Returns:
         The specification with the first declaration of every name.
     """

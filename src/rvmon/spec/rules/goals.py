@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
-from rvmon.spec.rules.syntax import short
+from rvmon.spec.rules.rule import Breach, Rule, finding
 
 MOST_COMBINATIONS = 10_000
 """Crosses with more combinations are refused."""
@@ -56,74 +55,34 @@ cross both = gaze, pressure
 RULES = (BIN, CROSS)
 
 
-def bin_without_values(span: Span) -> Diagnostic:
-    """A bin that has to say what it holds."""
-    return finding(
-        BIN,
-        f"bin `{short(span.text)}` does not say which values it holds",
-        span,
-        mend="write `name: value`, `name: [low, high)`, `name: value => value` or `name: formula`",
-    )
-
-
-def bin_needs_expression(span: Span) -> Diagnostic:
-    """A value or range in a coverpoint without an expression."""
-    return finding(
-        BIN,
-        f"`{short(span.text)}` is no formula, and the coverpoint has no expression",
-        span,
-        mend="write `coverpoint NAME = expression {…}`",
-    )
-
-
-def looks_ahead(span: Span) -> Diagnostic:
-    """A formula of the future in a bin or sampling clause."""
-    return finding(
-        BIN,
-        f"`{short(span.text)}` speaks of the future, and bins are looked at on the spot",
-        span,
-        mend="use `once`, `historically`, `since`",
-    )
-
-
-def bad_goal(span: Span) -> Diagnostic:
-    """A goal that is no count."""
-    return finding(BIN, f"`{short(span.text)}` is no count of hits", span, mend="write `goal 3`")
-
-
-def bad_weight(span: Span) -> Diagnostic:
-    """A weight that is no whole number."""
-    return finding(BIN, f"`{short(span.text)}` is no weight", span, mend="write `weight 2`")
-
-
-def same_value(span: Span) -> Diagnostic:
-    """A step from a value to itself."""
-    return finding(
-        BIN,
-        f"`{short(span.text)}` is where the step began",
-        span,
-        mend="a step leads to another value: `idle => moving`",
-    )
-
-
-def sampled_apart(span: Span) -> Diagnostic:
-    """A cross of coverpoints that are looked at in different places."""
-    return finding(
-        CROSS,
-        "its coverpoints are looked at `upon` different things",
-        span,
-        mend="say where the cross is: add `upon` to it",
-    )
-
-
-def unwanted_in_point(span: Span) -> Diagnostic:
-    """`ignore φ` behind the bins of a coverpoint."""
-    return finding(
-        BIN,
-        "a coverpoint marks its bins inside the brackets",
-        span,
-        mend="write `{ignore name: values}`",
-    )
+bin_without_values = Breach(
+    BIN,
+    "bin `{}` does not say which values it holds",
+    "write `name: value`, `name: [low, high)`, `name: value => value` or `name: formula`",
+)
+bin_needs_expression = Breach(
+    BIN,
+    "`{}` is no formula, and the coverpoint has no expression",
+    "write `coverpoint NAME = expression {…}`",
+)
+looks_ahead = Breach(
+    BIN,
+    "`{}` speaks of the future, and bins are looked at on the spot",
+    "use `once`, `historically`, `since`",
+)
+bad_goal = Breach(BIN, "`{}` is no count of hits", "write `goal 3`")
+bad_weight = Breach(BIN, "`{}` is no weight", "write `weight 2`")
+same_value = Breach(
+    BIN, "`{}` is where the step began", "a step leads to another value: `idle => moving`"
+)
+sampled_apart = Breach(
+    CROSS,
+    "its coverpoints are looked at `upon` different things",
+    "say where the cross is: add `upon` to it",
+)
+unwanted_in_point = Breach(
+    BIN, "a coverpoint marks its bins inside the brackets", "write `{ignore name: values}`"
+)
 
 
 def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
@@ -147,11 +106,8 @@ def too_many_combinations(span: Span, count: int) -> Diagnostic:
     )
 
 
-def bad_condition(span: Span) -> Diagnostic:
-    """A condition of a cross that is more than bins and connectives."""
-    return finding(
-        CROSS,
-        f"`{short(span.text)}` is no condition on bins",
-        span,
-        mend="write comparisons of coverpoints with their bins: `gaze == no and location != yes`",
-    )
+bad_condition = Breach(
+    CROSS,
+    "`{}` is no condition on bins",
+    "write comparisons of coverpoints with their bins: `gaze == no and location != yes`",
+)

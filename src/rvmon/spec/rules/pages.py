@@ -1,12 +1,24 @@
-"""The page of each diagnostic code, made from its rule."""
+"""All rules by code, and the page of each in the documentation."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.render import render_full
+from rvmon.spec.rules import (
+    goals,
+    imports,
+    names,
+    properties,
+    syntax,
+    time,
+    traps,
+    triggers,
+    types,
+)
 from rvmon.spec.rules.rule import Rule
 
 WIDTH = 80
@@ -17,12 +29,7 @@ MOST_FINDINGS = 5
 
 
 def rule_page(rule: Rule, found: Sequence[Diagnostic]) -> str:
-    """A rule's page as Markdown: what, why, an example with its message, the same mended.
-
-    Args:
-        rule: the rule.
-        found: what is found in its example.
-    """
+    """A rule's page as Markdown: what, why, an example with its message, the same mended."""
     return "\n".join(
         (
             f"# {rule.code} {rule.name}",
@@ -69,3 +76,11 @@ def _cut(text: str) -> str:
 
 def _fenced(text: str, language: str) -> tuple[str, ...]:
     return (f"```{language}", text.rstrip("\n"), "```")
+
+
+@cache
+def all_rules() -> Mapping[str, Rule]:
+    """Every rule by its code, in order of codes."""
+    families = (syntax, names, imports, types, time, triggers, traps, properties, goals)
+    rules = sorted((rule for family in families for rule in family.RULES), key=lambda r: r.code)
+    return {rule.code: rule for rule in rules}

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
-from rvmon.spec.rules.syntax import short
+from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 PATH_OUTSIDE = Rule(
     "RV050",
@@ -128,46 +127,23 @@ requirement R1
 RULES = (PATH_OUTSIDE, BARE_TIME, FOREIGN_NAME, NO_RESPONSE, NOT_LINEAR)
 
 
-def path_outside(span: Span) -> Diagnostic:
-    """A path quantifier in a formula that is monitored."""
-    return finding(
-        PATH_OUTSIDE,
-        f"`{short(span.text)}` speaks of several runs and belongs into a `property`",
-        span,
-        mend="for one run write `always` or `eventually`",
-    )
-
-
-def bare_time(span: Span) -> Diagnostic:
-    """An operator of time without a path quantifier."""
-    return finding(
-        BARE_TIME,
-        f"`{short(span.text)}` says neither on all paths nor on some path",
-        span,
-        mend="write `AF`, `AG`, `EF`, `EG`, `A[φ U ψ]` or `E[φ U ψ]`",
-    )
-
-
-def next_window(span: Span) -> Diagnostic:
-    """`AX` or `EX` with an interval."""
-    return finding(
-        BARE_TIME, "`AX` and `EX` take no interval", span, mend="use `AF` or `EF` with it"
-    )
-
-
-def no_path_formula(span: Span) -> Diagnostic:
-    """`A[...]` with something else than an until."""
-    return finding(
-        BARE_TIME,
-        f"`{short(span.text)}` is no path formula",
-        span,
-        mend="`A[ ]` and `E[ ]` hold `φ U ψ`; for the others write `A[] φ`, `AF φ`, `E<> φ`",
-    )
-
-
-def path_in_number(span: Span) -> Diagnostic:
-    """A path quantifier inside a comparison or call."""
-    return finding(PATH_OUTSIDE, f"a path quantifier stands inside `{short(span.text)}`", span)
+path_outside = Breach(
+    PATH_OUTSIDE,
+    "`{}` speaks of several runs and belongs into a `property`",
+    "for one run write `always` or `eventually`",
+)
+bare_time = Breach(
+    BARE_TIME,
+    "`{}` says neither on all paths nor on some path",
+    "write `AF`, `AG`, `EF`, `EG`, `A[φ U ψ]` or `E[φ U ψ]`",
+)
+next_window = Breach(BARE_TIME, "`AX` and `EX` take no interval", "use `AF` or `EF` with it")
+no_path_formula = Breach(
+    BARE_TIME,
+    "`{}` is no path formula",
+    "`A[ ]` and `E[ ]` hold `φ U ψ`; for the others write `A[] φ`, `AF φ`, `E<> φ`",
+)
+path_in_number = Breach(PATH_OUTSIDE, "a path quantifier stands inside `{}`")
 
 
 def foreign_name(span: Span, name: str, close: str) -> Diagnostic:
@@ -180,24 +156,14 @@ def foreign_name(span: Span, name: str, close: str) -> Diagnostic:
     )
 
 
-def no_property(span: Span) -> Diagnostic:
-    """`monitor as response` without a property."""
-    return finding(
-        NO_RESPONSE,
-        "there is no property to derive the monitor from",
-        span,
-        mend="add a clause `property E<> (…)`",
-    )
-
-
-def nothing_written(span: Span) -> Diagnostic:
-    """`monitor as written` without a property."""
-    return finding(
-        NOT_LINEAR,
-        "there is no property to be monitored",
-        span,
-        mend="add a clause `property A[] (…)`",
-    )
+no_property = Breach(
+    NO_RESPONSE,
+    "there is no property to derive the monitor from",
+    "add a clause `property E<> (…)`",
+)
+nothing_written = Breach(
+    NOT_LINEAR, "there is no property to be monitored", "add a clause `property A[] (…)`"
+)
 
 
 def reads_model(span: Span, text: str) -> Diagnostic:
@@ -210,44 +176,26 @@ def reads_model(span: Span, text: str) -> Diagnostic:
     )
 
 
-def some_path(span: Span) -> Diagnostic:
-    """An existential path formula in a property that is monitored."""
-    return finding(
-        NOT_LINEAR,
-        f"`{short(span.text)}` speaks of some path, and a run shows one only",
-        span,
-        mend="check it with `rvmon verify`; what some run should show is a goal: `cover ID = φ`",
-    )
-
-
-def choice_of_paths(span: Span) -> Diagnostic:
-    """A disjunction of two path formulas that may both hold."""
-    return finding(
-        NOT_LINEAR,
-        f"`{short(span.text)}` leaves open which of the two the paths fulfil",
-        span,
-        mend="let `p` choose: `(p and φ) or (not p and ψ)`; or check it with `rvmon verify`",
-    )
-
-
-def not_on_one_path(span: Span) -> Diagnostic:
-    """A path formula that means more on all paths than on each."""
-    return finding(
-        NOT_LINEAR,
-        f"`{short(span.text)}` means another thing on all paths together than on each of them",
-        span,
-        mend="let what comes be about one instant; or check it with `rvmon verify`",
-    )
-
-
-def no_response(span: Span) -> Diagnostic:
-    """A property that is no `E<> (conjunction)`."""
-    return finding(
-        NO_RESPONSE,
-        "a response monitor is derived from `E<> (p and q and …)` over the names of this file",
-        span,
-        mend="write the requirement with `upon` and `then`",
-    )
+some_path = Breach(
+    NOT_LINEAR,
+    "`{}` speaks of some path, and a run shows one only",
+    "check it with `rvmon verify`; what some run should show is a goal: `cover ID = φ`",
+)
+choice_of_paths = Breach(
+    NOT_LINEAR,
+    "`{}` leaves open which of the two the paths fulfil",
+    "let `p` choose: `(p and φ) or (not p and ψ)`; or check it with `rvmon verify`",
+)
+not_on_one_path = Breach(
+    NOT_LINEAR,
+    "`{}` means another thing on all paths together than on each of them",
+    "let what comes be about one instant; or check it with `rvmon verify`",
+)
+no_response = Breach(
+    NO_RESPONSE,
+    "a response monitor is derived from `E<> (p and q and …)` over the names of this file",
+    "write the requirement with `upon` and `then`",
+)
 
 
 def mixed_roles(span: Span, roles: Mapping[str, str]) -> Diagnostic:
@@ -268,11 +216,8 @@ def no_role(span: Span, name: str) -> Diagnostic:
     )
 
 
-def no_output(span: Span) -> Diagnostic:
-    """A property over inputs only."""
-    return finding(
-        NO_RESPONSE,
-        "the property reads no output: nothing is owed by the system",
-        span,
-        mend="declare what the system sets as `output`",
-    )
+no_output = Breach(
+    NO_RESPONSE,
+    "the property reads no output: nothing is owed by the system",
+    "declare what the system sets as `output`",
+)

@@ -54,3 +54,28 @@ def finding(rule: Rule, message: str, *places: Span | Label, mend: str = "") -> 
     """
     labels = tuple(place if isinstance(place, Label) else Label(place) for place in places)
     return Diagnostic(rule.code, rule.name, rule.severity, message, labels, mend)
+
+
+def short(text: str, most: int = 60) -> str:
+    """A piece of the file on one line, its middle left out if it is long."""
+    line = " ".join(text.split())
+    return line if len(line) <= most else f"{line[: most - 12]} … {line[-9:]}"
+
+
+@dataclass(frozen=True, slots=True)
+class Breach:
+    """One way to break a rule; called with the place of it, it makes the finding.
+
+    Attributes:
+        rule: the rule.
+        message: one sentence: what is wrong; `{}` is the text of the place, shortened.
+        mend: how to mend it, or empty.
+    """
+
+    rule: Rule
+    message: str
+    mend: str = ""
+
+    def __call__(self, span: Span) -> Diagnostic:
+        """The finding at a place."""
+        return finding(self.rule, self.message.format(short(span.text)), span, mend=self.mend)

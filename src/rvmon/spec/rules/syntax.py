@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
+from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 SYNTAX = Rule(
     "RV001",
@@ -160,13 +160,7 @@ def syntax_error(message: str, span: Span, mend: str = "") -> Diagnostic:
 
 
 def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
-    """The operator can be read as reaching over its operand alone or on to `end`.
-
-    Args:
-        operator: the operator with its interval.
-        operand: what it applies to.
-        end: the last operand of the connective that follows.
-    """
+    """The operator can be read as reaching over its operand alone or on to `end`."""
     head = short(operator.text)
     near = short(operand.text)
     rest = Span(end.source, operand.end, end.end)
@@ -221,24 +215,16 @@ def too_large(span: Span, limit: int) -> Diagnostic:
     )
 
 
-def too_much_work(span: Span) -> Diagnostic:
-    """Macros that multiply over the whole file."""
-    return finding(
-        TOO_DEEP,
-        "the macros of this file expand to more than can be checked",
-        span,
-        mend="use macros without parameters where you can: they are expanded once",
-    )
-
-
-def empty_file(span: Span) -> Diagnostic:
-    """A file without items."""
-    return finding(
-        EMPTY,
-        "there is nothing in this file: no signal, no requirement",
-        span,
-        mend="`rvmon init DATA` writes a first specification from a recording",
-    )
+too_much_work = Breach(
+    TOO_DEEP,
+    "the macros of this file expand to more than can be checked",
+    "use macros without parameters where you can: they are expanded once",
+)
+empty_file = Breach(
+    EMPTY,
+    "there is nothing in this file: no signal, no requirement",
+    "`rvmon init DATA` writes a first specification from a recording",
+)
 
 
 def too_many(most: int, *, broken: bool) -> Diagnostic:
@@ -246,9 +232,3 @@ def too_many(most: int, *, broken: bool) -> Diagnostic:
     message = f"only the first {most} findings are shown"
     made = finding(TOO_MANY, message, mend="mend these first")
     return made if broken else replace(made, severity=Severity.WARNING)
-
-
-def short(text: str, most: int = 60) -> str:
-    """A piece of the file on one line, its middle left out if it is long."""
-    line = " ".join(text.split())
-    return line if len(line) <= most else f"{line[: most - 12]} … {line[-9:]}"

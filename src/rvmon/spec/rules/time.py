@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
-from rvmon.spec.rules.syntax import short
+from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 NO_DURATION = Rule(
     "RV030",
@@ -163,41 +162,22 @@ def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
     return finding(NO_DURATION, f"`{text}` is no duration", span, mend=mend)
 
 
-def part_of_tick(span: Span) -> Diagnostic:
-    """A duration between two ticks."""
-    return finding(
-        PART_OF_TICK,
-        f"`{short(span.text)}` is no whole number of nanoseconds",
-        span,
-        mend="durations are exact: choose a multiple of 1 ns",
-    )
-
-
-def too_long(span: Span) -> Diagnostic:
-    """A duration that does not fit into time."""
-    return finding(
-        EMPTY_INTERVAL, f"`{short(span.text)}` is longer than 146 years", span, mend="shorten it"
-    )
-
-
-def negative(span: Span) -> Diagnostic:
-    """A duration below 0."""
-    return finding(
-        EMPTY_INTERVAL,
-        f"`{short(span.text)}` is negative, and a duration is not",
-        span,
-        mend="write it without `-`; what has been is asked for by `once` and `historically`",
-    )
-
-
-def empty(span: Span) -> Diagnostic:
-    """An interval without a tick."""
-    return finding(
-        EMPTY_INTERVAL,
-        f"no instant lies in `{short(span.text)}`",
-        span,
-        mend="an open bound leaves its own instant out: write `[` and `]`",
-    )
+part_of_tick = Breach(
+    PART_OF_TICK,
+    "`{}` is no whole number of nanoseconds",
+    "durations are exact: choose a multiple of 1 ns",
+)
+too_long = Breach(EMPTY_INTERVAL, "`{}` is longer than 146 years", "shorten it")
+negative = Breach(
+    EMPTY_INTERVAL,
+    "`{}` is negative, and a duration is not",
+    "write it without `-`; what has been is asked for by `once` and `historically`",
+)
+empty = Breach(
+    EMPTY_INTERVAL,
+    "no instant lies in `{}`",
+    "an open bound leaves its own instant out: write `[` and `]`",
+)
 
 
 def reversed_bounds(span: Span, low: Span, high: Span) -> Diagnostic:

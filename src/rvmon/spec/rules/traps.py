@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
-from rvmon.spec.rules.syntax import short
+from rvmon.spec.rules.rule import Rule, finding, short
 
 NO_VALUE = Rule(
     "RV028",
@@ -124,14 +123,7 @@ def no_value(span: Span, event: str) -> Diagnostic:
 
 
 def false_at_trigger(span: Span, part: str, escape: str, mend: str) -> Diagnostic:
-    """What is owed contradicts its trigger.
-
-    Args:
-        span: of what is owed.
-        part: what is false of it, as text.
-        escape: what would have to hold at once for it not to fail; empty: nothing helps.
-        mend: how to say it.
-    """
+    """What is owed contradicts its trigger."""
     unless = f" unless `{short(escape)}` holds at that very instant" if escape else ""
     return finding(
         AT_TRIGGER,

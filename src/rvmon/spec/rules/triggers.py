@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
-from rvmon.spec.rules.syntax import short
+from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 FUTURE_TRIGGER = Rule(
     "RV040",
@@ -186,34 +185,21 @@ RULES = (
 )
 
 
-def future_trigger(span: Span) -> Diagnostic:
-    """An operator of the future in a trigger."""
-    return finding(
-        FUTURE_TRIGGER,
-        f"`{short(span.text)}` speaks of the future, and a trigger has to be known at once",
-        span,
-        mend="move it behind `then`, or use `once`, `historically`, `since`",
-    )
-
-
-def end_not_alone(span: Span) -> Diagnostic:
-    """`end` within a formula."""
-    return finding(
-        END_NOT_ALONE,
-        "`end` stands only alone, as `upon end`",
-        span,
-        mend="write `upon end` and put the rest behind `then`",
-    )
-
-
-def end_in_scope(span: Span) -> Diagnostic:
-    """A scope around `upon end`."""
-    return finding(
-        END_NOT_ALONE,
-        "`upon end` takes no scope: the end of the run may lie outside of it",
-        span,
-        mend="say in the consequent what has to hold at the end",
-    )
+future_trigger = Breach(
+    FUTURE_TRIGGER,
+    "`{}` speaks of the future, and a trigger has to be known at once",
+    "move it behind `then`, or use `once`, `historically`, `since`",
+)
+end_not_alone = Breach(
+    END_NOT_ALONE,
+    "`end` stands only alone, as `upon end`",
+    "write `upon end` and put the rest behind `then`",
+)
+end_in_scope = Breach(
+    END_NOT_ALONE,
+    "`upon end` takes no scope: the end of the run may lie outside of it",
+    "say in the consequent what has to hold at the end",
+)
 
 
 def one_instant(span: Span) -> Diagnostic:

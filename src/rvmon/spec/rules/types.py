@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
-from rvmon.spec.rules.rule import Rule, finding
-from rvmon.spec.rules.syntax import short
+from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
 WRONG_TYPE = Rule(
     "RV020",
@@ -214,24 +213,16 @@ def needs_formula(span: Span, kind: str) -> Diagnostic:
     return finding(WRONG_TYPE, f"`{text}` is {kind}, expected a formula", span, mend=mend)
 
 
-def needs_number(span: Span) -> Diagnostic:
-    """Something true or false where a number is needed."""
-    return finding(
-        WRONG_TYPE,
-        f"`{short(span.text)}` is true or false, expected a number",
-        span,
-        mend="combine formulas by `and`, `or`, `->`, `<->`",
-    )
-
-
-def compared_truth(span: Span) -> Diagnostic:
-    """A comparison with something true or false."""
-    return finding(
-        WRONG_TYPE,
-        f"`{short(span.text)}` is true or false and is not compared",
-        span,
-        mend="write `p` for `p == true`, `not p` for `p == false`, `p <-> q` for `p == q`",
-    )
+needs_number = Breach(
+    WRONG_TYPE,
+    "`{}` is true or false, expected a number",
+    "combine formulas by `and`, `or`, `->`, `<->`",
+)
+compared_truth = Breach(
+    WRONG_TYPE,
+    "`{}` is true or false and is not compared",
+    "write `p` for `p == true`, `not p` for `p == false`, `p <-> q` for `p == q`",
+)
 
 
 def age_alone(span: Span) -> Diagnostic:
@@ -244,14 +235,9 @@ def age_alone(span: Span) -> Diagnostic:
     )
 
 
-def not_constant(span: Span) -> Diagnostic:
-    """A constant is needed."""
-    return finding(
-        WRONG_TYPE,
-        f"`{short(span.text)}` changes during a run, expected a constant",
-        span,
-        mend="use a number or a `const`",
-    )
+not_constant = Breach(
+    WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"
+)
 
 
 def argument_count(span: Span, name: str, takes: str, given: int) -> Diagnostic:
@@ -324,21 +310,11 @@ def swallowed_name(span: Span, number: str) -> Diagnostic:
     )
 
 
-def out_of_range(span: Span) -> Diagnostic:
-    """A constant without a value that fits."""
-    return finding(
-        OUT_OF_RANGE,
-        f"`{short(span.text)}` is out of range",
-        span,
-        mend="numbers go up to about 1e308, and nothing is divided by 0",
-    )
-
-
-def label_use(span: Span) -> Diagnostic:
-    """A label in arithmetic or in an order."""
-    return finding(
-        LABELS,
-        f"`{short(span.text)}` is a label",
-        span,
-        mend="labels are compared with their signal by `==` and `!=` only",
-    )
+out_of_range = Breach(
+    OUT_OF_RANGE,
+    "`{}` is out of range",
+    "numbers go up to about 1e308, and nothing is divided by 0",
+)
+label_use = Breach(
+    LABELS, "`{}` is a label", "labels are compared with their signal by `==` and `!=` only"
+)

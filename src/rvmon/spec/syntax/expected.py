@@ -12,6 +12,7 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.rules import names, syntax, types
+from rvmon.spec.rules.rule import short
 from rvmon.spec.syntax.mends import NAMELESS, mend_of
 from rvmon.spec.syntax.units import unit_table
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
@@ -93,7 +94,7 @@ def explain_unexpected(
         if name.text not in unit_table() and name.text not in NOT_UNITS:
             return types.swallowed_name(name, number)
     expected = _in_words(accepted, parser)
-    shown = f"`{syntax.short(found)}`" if found else "the end of the item"
+    shown = f"`{short(found)}`" if found else "the end of the item"
     message = f"found {shown}" + (f", expected {expected}" if expected else "")
     mend = mend_of(found, accepted, parser, Span(source, start, place.start))
     return syntax.syntax_error(message, place, mend)

@@ -95,12 +95,6 @@ def number(
 ) -> Scalar:
     """The value of an expression at a position; `None` if it is unknown.
 
-    Args:
-        expression: over signals, fields and captured values.
-        letter: the position.
-        payloads: the occurrence that is spoken of, by event.
-        captured: values of `let` and `for each`.
-
     Source: SEMANTICS, section 2; decision record 1 (Updates, Arithmetic).
     """
     match expression:

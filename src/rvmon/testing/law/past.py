@@ -72,13 +72,6 @@ def held(
     """All positions of the window had it, which has to lie behind its birth whole.
 
     What is unknown may not be born either: it tells nothing of where the birth was.
-
-    Args:
-        letters: of the word.
-        operand: its truth at each position.
-        i: the position.
-        interval: the window.
-        mortal: whether the operand may be not born.
     """
     start, now = letters[0].instant, letters[i].instant
     window = [k for k in range(i + 1) if is_within(now - letters[k].instant, interval)]

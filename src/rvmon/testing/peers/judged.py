@@ -41,12 +41,6 @@ def disagreements(way: Way, peer: Peer, case: Case, report: Report) -> list[str]
 
     Compared are attempts that the samples decided. An episode is asked for as `ψ W not θ`.
 
-    Args:
-        way: how to ask.
-        peer: its process.
-        case: with one requirement.
-        report: ours.
-
     Raises:
         Unfit: the peer's words are not like this recording.
         UntranslatableError: it cannot be asked this.

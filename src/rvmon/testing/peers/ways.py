@@ -80,12 +80,6 @@ WAYS = {
 def truths(way: Way, peer: Peer, formula: Formula, columns: Columns) -> list[bool | None]:
     """The peer's verdict at every tick; `None` where it has none.
 
-    Args:
-        way: how to ask.
-        peer: its process.
-        formula: with bounds in ticks, over the names of the columns.
-        columns: all of one length.
-
     Raises:
         PeerError: it refuses, or dies.
         UntranslatableError: it cannot be asked this.

@@ -26,8 +26,8 @@ from rvmon.timed.search.explore import explore
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.problem import UNLIMITED, Budget, Node
 from rvmon.timed.zones.dbm import Zone, constrain, cut, normalise
+from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.symbolic import Steps
 from rvmon.timed.zones.zone_unions import Constraint
 from rvmon.trace.time import TICKS_PER_UNIT

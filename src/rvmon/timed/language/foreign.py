@@ -82,12 +82,6 @@ def type_reason(name: str) -> Reason | None:
 def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
     """What of UPPAAL's language a text uses at the place where it could not be read.
 
-    Args:
-        text: that does not belong to the rule.
-        start: where the first token that does not fit begins.
-        length: of that token.
-        rule: of the grammar.
-
     >>> reason_at("meta int i;", 5, 3, "declarations")[0]
     'meta variables are not supported'
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import assert_never
 
 from rvmon.diagnostics import Span
@@ -178,13 +178,11 @@ class Resolver:
                 mend = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
                 raise model_error("TA002", f"no type named `{written.name}`", written.span, mend)
             base = symbol.type
-            return ResolvedType(
-                base.base,
-                base.low,
-                base.high,
-                base.const or written.const,
-                base.broadcast or written.broadcast,
-                base.urgent or written.urgent,
+            return replace(
+                base,
+                const=base.const or written.const,
+                broadcast=base.broadcast or written.broadcast,
+                urgent=base.urgent or written.urgent,
             )
         if written.base is not BaseType.INT:
             return ResolvedType(written.base, 0, 1, **prefixes)

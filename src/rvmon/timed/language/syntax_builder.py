@@ -45,6 +45,11 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def _name(self, token: Token) -> syntax.Name:
         return syntax.Name(str(token), self._token_span(token))
 
+    def _tuple(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
+        return tuple(items)
+
+    instances = parameters = selections = update_list = arguments = _tuple
+
     # The document.
 
     def document(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
@@ -127,17 +132,14 @@ class SyntaxBuilder(Transformer[Token, Any]):
         invariant = items[1] if len(items) > 1 else None
         return syntax.LocationText(str(items[0]), kind, invariant, self._token_span(items[0]))
 
-    def invariant(self, meta: Meta, items: Sequence[Any]) -> syntax.Expression:
-        expression: syntax.Expression = items[0]
-        return expression
-
     def edge(self, meta: Meta, items: Sequence[Any]) -> syntax.EdgeText:
         source, target, *clauses = items
         parts: dict[str, Any] = {}
-        for key, value in clauses:
-            if key in parts:
-                raise model_error("TA003", f"two `{key}` clauses on one edge", self._span(meta))
-            parts[key] = value
+        for clause in clauses:
+            if clause.data in parts:
+                message = f"two `{clause.data}` clauses on one edge"
+                raise model_error("TA003", message, self._span(meta))
+            parts[clause.data] = clause.children[0]
         return syntax.EdgeText(
             self._name(source),
             self._name(target),
@@ -147,30 +149,15 @@ class SyntaxBuilder(Transformer[Token, Any]):
             parts.get("on"),
             parts.get("do", ()),
             parts.get("weight", 1.0),
-            parts.get("as", ""),
+            str(parts.get("as", "")).strip('"'),
         )
 
-    def select_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
-        return "select", items[0]
-
-    def guard_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
-        return "when", items[0]
-
-    def sync_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
-        return "on", items[0]
-
-    def update_clause(self, meta: Meta, items: Sequence[Any]) -> tuple[str, Any]:
-        return "do", items[0]
-
-    def weight_clause(self, meta: Meta, items: Sequence[Token]) -> tuple[str, Any]:
+    def weight(self, meta: Meta, items: Sequence[Token]) -> Tree[float]:
         weight = float(items[0])
         if not 0 < weight <= 1:
             mend = "a weight is a share: above 0, at most 1"
             raise model_error("TA017", f"weight {items[0]}", self._span(meta), mend)
-        return "weight", weight
-
-    def label_clause(self, meta: Meta, items: Sequence[Token]) -> tuple[str, Any]:
-        return "as", str(items[0]).strip('"')
+        return Tree("weight", [weight])
 
     def instance(self, meta: Meta, items: Sequence[Any]) -> syntax.Instance:
         name, *parameters, template, arguments = items
@@ -181,12 +168,6 @@ class SyntaxBuilder(Transformer[Token, Any]):
             arguments,
             self._token_span(name),
         )
-
-    def instances(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Instance, ...]:
-        return tuple(items)
-
-    def parameter_list(self, meta: Meta, items: Sequence[Any]) -> Any:
-        return items[0]
 
     # Declarations.
 
@@ -248,9 +229,6 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def named_type(self, meta: Meta, items: Sequence[Token]) -> TypeText:
         return TypeText(BaseType.NAMED, self._span(meta), name=str(items[0]))
 
-    def parameters(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Parameter, ...]:
-        return tuple(items)
-
     def parameter(self, meta: Meta, items: Sequence[Any]) -> syntax.Parameter:
         kind, *rest = items
         reference = _is(rest[0], "reference")
@@ -263,9 +241,6 @@ class SyntaxBuilder(Transformer[Token, Any]):
             self._token_span(name),
         )
 
-    def selections(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Selection, ...]:
-        return tuple(items)
-
     def selection(self, meta: Meta, items: Sequence[Any]) -> syntax.Selection:
         return syntax.Selection(str(items[0]), items[1], self._span(meta))
 
@@ -274,15 +249,8 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def sync(self, meta: Meta, items: Sequence[Any]) -> syntax.SyncText:
         return syntax.SyncText(items[0], items[1] == "!", self._span(meta))
 
-    def channel_use(self, meta: Meta, items: Sequence[Any]) -> syntax.Expression:
-        channel: syntax.Expression = items[0]
-        return channel
-
     def updates(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
         return tuple(items[0]) if items else ()
-
-    def update_list(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
-        return tuple(items)
 
     def assign(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
         target, sign, value = items
@@ -352,9 +320,6 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def call(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
         return syntax.Call(str(items[0]), items[1], self._span(meta))
 
-    def arguments(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Expression, ...]:
-        return tuple(items)
-
     # Queries.
 
     def path(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
@@ -368,10 +333,6 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def leads_to(self, meta: Meta, items: Sequence[Any]) -> syntax.LeadsTo:
         left, *bound, right = items
         return syntax.LeadsTo(left, right, bound[0] if bound else None, self._span(meta))
-
-    def bound(self, meta: Meta, items: Sequence[Any]) -> syntax.Expression:
-        expression: syntax.Expression = items[0]
-        return expression
 
 
 def _is(item: object, rule: str) -> bool:

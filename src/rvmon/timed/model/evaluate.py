@@ -96,7 +96,7 @@ def evaluator(expression: Expression) -> Evaluator:
         case UnaryOperation(op, operand):
             return _unary_evaluator(op, evaluator(operand))
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, _, _):
-            return _chain_evaluator(op, _chain(op, expression))
+            return _chain_evaluator(op, chained(op, expression))
         case BinaryOperation(op, left, right, span):
             return _binary_evaluator(op, evaluator(left), evaluator(right), span)
         case Choice(condition, then, otherwise):
@@ -131,11 +131,11 @@ def _unary_evaluator(op: UnaryOp, operand: Evaluator) -> Evaluator:
             assert_never(op)
 
 
-def _chain(op: BinaryOp, expression: Expression) -> list[Expression]:
+def chained(op: BinaryOp, expression: Expression) -> list[Expression]:
     """What a connective joins, however it is nested."""
     match expression:
         case BinaryOperation(found, left, right) if found is op:
-            return [*_chain(op, left), *_chain(op, right)]
+            return [*chained(op, left), *chained(op, right)]
         case _:
             return [expression]
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import assert_never
+from collections.abc import Iterator
 
 from rvmon.diagnostics import Span
+from rvmon.timed.model.evaluate import chained
 from rvmon.timed.model.expressions import (
     TRUE,
     BinaryOperation,
@@ -14,11 +15,8 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
-    InLocation,
-    Lookup,
     PathFormula,
     UnaryOperation,
-    VariableValue,
 )
 from rvmon.timed.model.network import Guard
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
@@ -38,21 +36,29 @@ _NEGATED_PATH = {
 }
 
 
+def parts_of(expression: Expression) -> Iterator[Expression]:
+    """An expression and all that its operators join, from the top."""
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        match part:
+            case UnaryOperation(_, operand):
+                waiting.append(operand)
+            case BinaryOperation(_, left, right):
+                waiting += (right, left)
+            case Choice(condition, then, otherwise):
+                waiting += (otherwise, then, condition)
+            case PathFormula(_, body, _):
+                waiting.append(body)
+            case _:
+                pass
+
+
 def is_discrete(expression: Expression) -> bool:
     """Whether locations and variables alone give the expression a value."""
-    match expression:
-        case Constant() | VariableValue() | Lookup() | InLocation():
-            return True
-        case ClockCompare() | Deadlock() | PathFormula():
-            return False
-        case UnaryOperation(_, operand):
-            return is_discrete(operand)
-        case BinaryOperation(_, left, right):
-            return is_discrete(left) and is_discrete(right)
-        case Choice(condition, then, otherwise):
-            return is_discrete(condition) and is_discrete(then) and is_discrete(otherwise)
-        case _:
-            assert_never(expression)
+    of_runs = ClockCompare | Deadlock | PathFormula
+    return not any(isinstance(part, of_runs) for part in parts_of(expression))
 
 
 def normal_form(expression: Expression, positive: bool = True) -> Expression:
@@ -124,7 +130,7 @@ def split_guard(expression: Expression, span: Span) -> Guard:
     """
     data: Expression = TRUE
     clocks: list[ClockCompare] = []
-    for part in _conjuncts(normal_form(expression)):
+    for part in chained(BinaryOp.AND, normal_form(expression)):
         if isinstance(part, ClockCompare):
             clocks.append(part)
         elif is_discrete(part):
@@ -133,11 +139,3 @@ def split_guard(expression: Expression, span: Span) -> Guard:
             mend = "make one edge (or location) for each alternative"
             raise model_error("TA009", "a clock under `or`", span, mend)
     return Guard(data, tuple(clocks))
-
-
-def _conjuncts(expression: Expression) -> list[Expression]:
-    match expression:
-        case BinaryOperation(BinaryOp.AND, left, right):
-            return [*_conjuncts(left), *_conjuncts(right)]
-        case _:
-            return [expression]

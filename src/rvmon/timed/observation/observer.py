@@ -16,6 +16,7 @@ from itertools import product
 from math import ceil
 
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.layout import row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.obligation import Obligation
 from rvmon.spec.checked.formula import Bound, BoundAtom
@@ -263,8 +264,7 @@ class Observed:
         self, location: int, region: tuple[int, ...], letter: int
     ) -> tuple[int, tuple[int, ...]]:
         automaton = self._automaton
-        strides = automaton.strides[location]
-        row = automaton.bases[location] + sum(map(int.__mul__, region, strides))
+        row = row_of(automaton, location, region)
         edge = automaton.edges[row * automaton.classes + automaton.class_of[letter]]
         return (-1, ()) if edge < 0 else (automaton.targets[edge], automaton.sources[edge])
 

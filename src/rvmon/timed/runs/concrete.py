@@ -13,16 +13,11 @@ from fractions import Fraction
 from rvmon.timed.model.evaluate import evaluator, slot_evaluator
 from rvmon.timed.model.expressions import (
     TRUE,
-    BinaryOperation,
-    Choice,
     ClockCompare,
     ClockOp,
-    Expression,
-    UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete
 from rvmon.timed.model.network import Edge, Guard, Network, Reset
-from rvmon.timed.model.operators import BinaryOp, LocationKind, UnaryOp
+from rvmon.timed.model.operators import LocationKind
 from rvmon.timed.runs.run import Action, Run
 
 
@@ -74,7 +69,7 @@ def act(network: Network, now: Configuration, action: Action) -> Configuration:
         if edge not in network.automata[automaton].edges:
             raise InvalidRunError(f"{edge.text} is no edge of {network.automata[automaton].name}")
         if not is_ready(now, automaton, edge) or not all(
-            _compares(now, compare) for compare in edge.guard.clocks
+            compares(now, compare) for compare in edge.guard.clocks
         ):
             raise InvalidRunError(f"{edge.text} is not enabled")
     if len(set(movers)) != len(movers):
@@ -123,29 +118,19 @@ def channel_index(now: Configuration, edge: Edge) -> int:
     return slot_evaluator(edge.sync.slot)(now.locations, now.values)
 
 
-def satisfies(now: Configuration, formula: Expression) -> bool:
-    """Whether a state formula without `deadlock` holds."""
-    if is_discrete(formula):
-        return bool(evaluator(formula)(now.locations, now.values))
-    match formula:
-        case ClockCompare():
-            return _compares(now, formula)
-        case UnaryOperation(UnaryOp.NOT, operand):
-            return not satisfies(now, operand)
-        case BinaryOperation(BinaryOp.AND, left, right):
-            return satisfies(now, left) and satisfies(now, right)
-        case BinaryOperation(BinaryOp.OR, left, right):
-            return satisfies(now, left) or satisfies(now, right)
-        case BinaryOperation(BinaryOp.IMPLY, left, right):
-            return not satisfies(now, left) or satisfies(now, right)
-        case BinaryOperation(BinaryOp.EQ, left, right):
-            return satisfies(now, left) == satisfies(now, right)
-        case BinaryOperation(BinaryOp.NE, left, right):
-            return satisfies(now, left) != satisfies(now, right)
-        case Choice(condition, then, otherwise):
-            return satisfies(now, then if satisfies(now, condition) else otherwise)
-        case _:
-            raise AssertionError(f"{formula} is no state formula")
+def compares(now: Configuration, compare: ClockCompare) -> bool:
+    """Whether a clock is as a comparison says."""
+    clock = now.clocks[compare.clock]
+    bound = evaluator(compare.bound)(now.locations, now.values)
+    match compare.op:
+        case ClockOp.LT:
+            return clock < bound
+        case ClockOp.LE:
+            return clock <= bound
+        case ClockOp.GE:
+            return clock >= bound
+        case ClockOp.GT:
+            return clock > bound
 
 
 def replay(network: Network, run: Run) -> list[Configuration]:
@@ -173,23 +158,9 @@ def replay(network: Network, run: Run) -> list[Configuration]:
     return visited
 
 
-def _compares(now: Configuration, compare: ClockCompare) -> bool:
-    clock = now.clocks[compare.clock]
-    bound = evaluator(compare.bound)(now.locations, now.values)
-    match compare.op:
-        case ClockOp.LT:
-            return clock < bound
-        case ClockOp.LE:
-            return clock <= bound
-        case ClockOp.GE:
-            return clock >= bound
-        case ClockOp.GT:
-            return clock > bound
-
-
 def _holds(now: Configuration, guard: Guard) -> bool:
     data = guard.data == TRUE or evaluator(guard.data)(now.locations, now.values)
-    return bool(data) and all(_compares(now, compare) for compare in guard.clocks)
+    return bool(data) and all(compares(now, compare) for compare in guard.clocks)
 
 
 def _check_invariants(network: Network, now: Configuration) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
+from math import prod
 from typing import TYPE_CHECKING
 
 from rvmon.timed.model.network import Edge
@@ -39,10 +40,7 @@ class Action:
     @property
     def weight(self) -> float:
         """The product of the edges' weights."""
-        product = 1.0
-        for _, edge in self.edges:
-            product *= edge.weight
-        return product
+        return prod(edge.weight for _, edge in self.edges)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ Systems, CAV 2011 (races between components; weights among the moves of one).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil, exp, fsum, inf, lgamma, log, log1p
+from math import ceil, exp, fsum, inf, lgamma, log, log1p, prod
 from random import Random
 
 from rvmon.timed.model.expressions import Expression, PathFormula
@@ -21,8 +21,8 @@ from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Network, Query
 from rvmon.timed.model.operators import PathOp
 from rvmon.timed.model.rules import model_error
+from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.successors import Space
 from rvmon.timed.zones.zone_unions import (
     Constraint,
@@ -161,7 +161,7 @@ def _draw(
     draws: list[tuple[int, float, Move]] = []
     while begun and not draws:
         for possible in begun.values():
-            weights = [_weight(move) for move, _ in possible]
+            weights = [prod(edge.edge.weight for edge in move.edges) for move, _ in possible]
             if random.random() < sum(weights):
                 ((move, window),) = random.choices(possible, weights)
                 draws.append((_delay(window, random, mean_wait), random.random(), move))
@@ -178,13 +178,6 @@ def _delay(window: tuple[int, float], random: Random, mean_wait: float) -> int:
     if high == inf:
         return low + int(random.expovariate(1 / mean_wait))
     return random.randint(low, int(high))
-
-
-def _weight(move: Move) -> float:
-    weight = 1.0
-    for edge in move.edges:
-        weight *= edge.edge.weight
-    return weight
 
 
 def _longest(state: State, clocks: list[int]) -> float:

@@ -17,13 +17,7 @@ from rvmon.timed.zones.zone_unions import Constraint, has_paths
 
 
 class NestedReachability(Steps):
-    """Reach a formula with `E<>` or `A[]` inside; sites are discrete states, links are moves.
-
-    Args:
-        network: where to look.
-        formula: normalised and decidable.
-        meter: counts the zones of the backward search.
-    """
+    """Reach a formula with `E<>` or `A[]` inside; sites are discrete states, links are moves."""
 
     def __init__(self, network: Network, formula: Expression, meter: Meter) -> None:
         super().__init__(network, formula, bisimilar=True)

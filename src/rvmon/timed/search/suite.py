@@ -22,8 +22,8 @@ from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.problem import UNLIMITED, Budget, Node, Statistics, Watch
 from rvmon.timed.search.witness import make_run, move_path
 from rvmon.timed.zones.dbm import Zone
+from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.symbolic import Steps
 from rvmon.timed.zones.zone_unions import Constraint
 

@@ -31,8 +31,8 @@ from rvmon.timed.search.witness import (
     state_of,
 )
 from rvmon.timed.zones.dbm import Zone, cut, zero
+from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.start import check_start
 from rvmon.timed.zones.stay import Inside
 from rvmon.timed.zones.symbolic import Steps, lowest
 from rvmon.timed.zones.zone_unions import (

@@ -109,15 +109,7 @@ def make_run(
     ending: Ending = Ending.REACHED,
     loop: int | None = None,
 ) -> Run:
-    """The run along a path that does everything as early as possible.
-
-    Args:
-        network: where it runs.
-        start: its first state.
-        steps: of a path that some run can follow.
-        ending: how it ends.
-        loop: the first step that is repeated.
-    """
+    """The run along a path that does everything as early as possible."""
     timing = timing_of([step.timed for step in steps])
     assert timing is not None  # noqa: S101 - the search found a run along the path
     run_steps = tuple(

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from rvmon.diagnostics import Label
+from rvmon.timed.model.expressions import TRUE
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.rules import model_error
 from rvmon.timed.zones.abstraction import extrapolate, largest
-from rvmon.timed.zones.dbm import Zone, cut, normalise
+from rvmon.timed.zones.dbm import Zone, cut, normalise, zero
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.federation import before, subtract_all, universe
 from rvmon.timed.zones.successors import Space
+from rvmon.timed.zones.symbolic import Steps, settle_in
 
 
 class Deadlocks:
-    """The valuations of each discrete state from which an edge can be taken, found once.
-
-    Args:
-        space: the discrete states.
-    """
+    """The valuations of each discrete state from which an edge can be taken, found once."""
 
     def __init__(self, space: Space) -> None:
         self._space = space
@@ -61,3 +62,27 @@ def is_time_bounded(state: State) -> bool:
 def blurred(state: State, zone: Zone, dim: int) -> Zone:
     """A zone coarsened up to bisimulation, as the bounds of its state allow."""
     return extrapolate(zone, dim, largest(state.vector.bounds))
+
+
+def check_start(network: Network) -> None:
+    """Refuse a network in which time stops before anything can happen.
+
+    Raises:
+        ModelError: the initial state breaks an invariant, or no edge can ever be taken from it
+            though time may not pass for ever.
+    """
+    places = [a.locations[a.initial] for a in network.automata]
+    spans = [place.span for place in places if place.span is not None]
+    span, others = (spans[0] if spans else None), [Label(other) for other in spans[1:]]
+    steps = Steps(network, TRUE)
+    state = steps.space.initial()
+    zone = zero(steps.dim)
+    if state is None or not settle_in(state, zone, steps.dim):
+        message = "an invariant of the initial locations is false at time 0"
+        mend = "weaken it, or start elsewhere"
+        raise model_error("TA014", message, span, mend, others=others)
+    beginning = zero(steps.dim)
+    if is_time_bounded(state) and Deadlocks(steps.space).dead(state, normalise(beginning)):
+        message = "time stops in the initial state: no edge can ever be taken, nor time pass on"
+        mend = "weaken the invariant, or the guards of the edges from here"
+        raise model_error("TA014", message, span, mend, others=others)

@@ -60,13 +60,7 @@ class Stand:
 
 
 class Inside:
-    """The network as runs see it that never leave a formula.
-
-    Args:
-        space: the discrete states.
-        constraints: of the formula.
-        lowers: bounds of further clocks that matter while inside.
-    """
+    """The network as runs see it that never leave a formula."""
 
     def __init__(
         self, space: Space, constraints: ConstraintMaker, lowers: Sequence[tuple[int, float]] = ()

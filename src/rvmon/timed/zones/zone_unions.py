@@ -7,15 +7,13 @@ from collections.abc import Callable, Iterator
 from rvmon.timed.model.evaluate import Locations, Values, evaluator
 from rvmon.timed.model.expressions import (
     BinaryOperation,
-    Choice,
     ClockCompare,
     ClockOp,
     Deadlock,
     Expression,
     PathFormula,
-    UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete
+from rvmon.timed.model.guards import is_discrete, parts_of
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds
@@ -74,53 +72,17 @@ def _either(left: ConstraintMaker, right: ConstraintMaker) -> ConstraintMaker:
 
 def compares_of(formula: Expression) -> Iterator[ClockCompare]:
     """All comparisons of clocks in a formula."""
-    match formula:
-        case ClockCompare():
-            yield formula
-        case UnaryOperation(_, operand):
-            yield from compares_of(operand)
-        case BinaryOperation(_, left, right):
-            yield from compares_of(left)
-            yield from compares_of(right)
-        case Choice(condition, then, otherwise):
-            for part in (condition, then, otherwise):
-                yield from compares_of(part)
-        case PathFormula(_, body, _):
-            yield from compares_of(body)
-        case _:
-            return
+    return (part for part in parts_of(formula) if isinstance(part, ClockCompare))
 
 
 def speaks_of_deadlock(formula: Expression) -> bool:
     """Whether `deadlock` occurs in a formula."""
-    match formula:
-        case Deadlock():
-            return True
-        case UnaryOperation(_, operand):
-            return speaks_of_deadlock(operand)
-        case BinaryOperation(_, left, right):
-            return speaks_of_deadlock(left) or speaks_of_deadlock(right)
-        case Choice(condition, then, otherwise):
-            return any(map(speaks_of_deadlock, (condition, then, otherwise)))
-        case PathFormula(_, body, _):
-            return speaks_of_deadlock(body)
-        case _:
-            return False
+    return any(isinstance(part, Deadlock) for part in parts_of(formula))
 
 
 def has_paths(formula: Expression) -> bool:
     """Whether a path operator occurs in a formula."""
-    match formula:
-        case PathFormula():
-            return True
-        case UnaryOperation(_, operand):
-            return has_paths(operand)
-        case BinaryOperation(_, left, right):
-            return has_paths(left) or has_paths(right)
-        case Choice(condition, then, otherwise):
-            return any(map(has_paths, (condition, then, otherwise)))
-        case _:
-            return False
+    return any(isinstance(part, PathFormula) for part in parts_of(formula))
 
 
 def formula_bounds(formula: Expression, network: Network) -> ClockBounds:
