@@ -16,9 +16,11 @@ from rvmon import __version__
 from rvmon.cli import guarded
 from rvmon.cli.campaign import (
     INTERRUPTED,
+    SHRINK,
     add_campaign_options,
     add_judging_options,
     add_replay_options,
+    add_shrink_options,
     judged_by,
     names_of,
 )
@@ -44,6 +46,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_demo(commands)
     _add_replay(commands)
+    _add_shrink(commands)
     return parser
 
 
@@ -93,6 +96,17 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser.set_defaults(run=_replay)
 
 
+def _add_shrink(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser(
+        "shrink",
+        **SHRINK,
+        epilog="example: handover shrink out/demo/tests/mutant-releases-late.json --out out/small",
+    )
+    add_shrink_options(parser)
+    parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
+    parser.set_defaults(run=_shrink)
+
+
 def _run(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
     from rvmon.cli.campaign_run import conduct, show
@@ -139,6 +153,17 @@ def _replay(arguments: argparse.Namespace) -> int:
         out=arguments.out,
         mcap=arguments.mcap,
         form=arguments.format,
+        expected=arguments.expected,
+    )
+
+
+def _shrink(arguments: argparse.Namespace) -> int:
+    from handover.campaign.campaign import handover_campaign
+    from rvmon.cli.campaign_shrink import shrink_file
+
+    robot = "legacy" if arguments.legacy else None
+    return shrink_file(
+        handover_campaign(), arguments.test, robot, arguments.requirement, arguments.out
     )
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal, Self
 
 import msgspec
+from msgspec import structs
 
 from handover.world.faults import SensorFaults
 from rvmon.cdv import Test
@@ -87,3 +89,21 @@ class AbstractTest(Test, frozen=True, kw_only=True):
     horizon_s: Annotated[float, msgspec.Meta(gt=0, le=3600)] = 200.0
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
+
+    removable: ClassVar[tuple[str, ...]] = ("actions",)
+
+    def simpler(self) -> Iterator[Self]:
+        """Without what disturbs it, each alone; then with a shorter wait, by a quarter at least."""
+        if self.startup_loss:
+            yield structs.replace(self, startup_loss=False)
+        for fault in structs.fields(self.faults):
+            if getattr(self.faults, fault.name) != fault.default:
+                mended = structs.replace(self.faults, **{fault.name: fault.default})
+                yield structs.replace(self, faults=mended)
+        for at, action in enumerate(self.actions):
+            if isinstance(action, SetParam) and action.param == "time":
+                for units in sorted({1, action.value // 2, action.value * 3 // 4}):
+                    if 0 < units < action.value:
+                        wait = SetParam("time", units)
+                        shorter = (*self.actions[:at], wait, *self.actions[at + 1 :])
+                        yield structs.replace(self, actions=shorter)

@@ -72,7 +72,7 @@ def judge_campaign(
             are requirements that were never triggered: that no test passed or failed.
     """
     expected = results.plan.campaign.expected_failures
-    tests = tuple(_judged(one, expected, strict=strict) for one in results.played)
+    tests = tuple(judge_test(one, expected, strict=strict) for one in results.played)
     checks: dict[str, str] = {}
     if not results.cut_short:
         checks |= _expected_failures(expected, results.played)
@@ -80,7 +80,16 @@ def judge_campaign(
     return CampaignJudgement(tests, checks)
 
 
-def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -> TestJudgement:
+def judge_test(
+    one: Played, expected: Sequence[ExpectedFailure], *, strict: bool = False
+) -> TestJudgement:
+    """Hold one test against what was expected of it, as `judge_campaign` does with all.
+
+    Args:
+        one: the test.
+        expected: failures that its campaign expects.
+        strict: verdicts that are inconclusive are wrong, unless the test knows them.
+    """
     test, outcome = one.job.test, one.outcome
     wrong: list[str] = []
     known: list[str] = []

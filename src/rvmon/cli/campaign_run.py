@@ -110,6 +110,7 @@ def conduct(
                 examples=examples,
                 jobs=arguments.jobs,
                 tell=tell,
+                shrinks=arguments.shrink,
             )
         if otherwise:
             warn(

@@ -47,6 +47,16 @@ def test_the_demo_leaves_all_its_files(demo):
     assert "constrained-002" in {path.stem for path in (demo / "tests").iterdir()}
 
 
+def test_a_failing_test_is_shrunk(demo, tmp_path, capsys):
+    """To the protocol and the readings; the smallest test finds the fault again."""
+    test = demo / "tests/mutant-releases-late.json"
+    assert main(["shrink", str(test), "--out", str(tmp_path)]) == 0
+    assert "R1 fails: 6 of 9 actions" in capsys.readouterr().err
+    small = tmp_path / "mutant-releases-late-small.json"
+    assert main(["replay", str(small), "--expected"]) == 0
+    assert main(["shrink", str(demo / "tests/released.json")]) == 1
+
+
 def test_all_forms_of_the_table_agree(demo):
     """CSV and JSON have the same counts, of both robots and of the paper."""
     content = json.loads((demo / "table.json").read_text())
