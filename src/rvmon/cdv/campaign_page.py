@@ -9,7 +9,7 @@ from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.examples import Cell
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
-from rvmon.cdv.tables import RobotTables
+from rvmon.cdv.tables import INTERVALS, RobotTables
 from rvmon.report.coverage_summary import counted, share_text
 from rvmon.report.markup import Child, e, page
 from rvmon.report.percent import percent_text
@@ -55,7 +55,13 @@ def campaign_page(
         _known(robot, figures, tests) for robot, figures in summary.robots.items() if figures.known
     )
     body.append(
-        e("footer", None, e("p", None, "Run it again: ", e("code", None, command)), legend())
+        e(
+            "footer",
+            None,
+            e("p", None, "Run it again: ", e("code", None, command)),
+            legend(),
+            e("p", {"class": "soft"}, INTERVALS),
+        )
     )
     title = presentation.title or summary.name
     return page(title, body, styles=["base.css", "report.css"], scripts=[])

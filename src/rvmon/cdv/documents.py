@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import msgspec
 
 from rvmon.cdv.summary import CampaignSummary, RobotSummary, StrategySummary
+from rvmon.report.proportion import interval
 from rvmon.report.table import Counts
 
 
@@ -68,6 +69,15 @@ def rows_document(rows: Mapping[str, Counts]) -> dict[str, dict[str, int]]:
     }
 
 
+def _intervals(counts: Counts) -> dict[str, list[float]]:
+    """The bounds of the share of tests behind each count; there is at least one test."""
+    runs = sum(counts.values())
+    return {
+        verdict.value: [round(bound, 4) for bound in interval(count, runs)]
+        for verdict, count in counts.items()
+    }
+
+
 def coverage_document(summary: CampaignSummary) -> dict[str, object]:
     """The content of `coverage.json`: statements, branches, states and transitions."""
     return {
@@ -92,6 +102,7 @@ def _strategy(figures: StrategySummary, kind: str) -> dict[str, object]:
     document: dict[str, object] = {
         "tests": figures.tests,
         "requirements": rows_document(figures.counts),
+        "intervals": {name: _intervals(one) for name, one in figures.counts.items()},
     }
     if figures.statements:
         document["statements"] = {

@@ -6,9 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from rvmon.cdv.summary import CampaignSummary, RobotSummary
+from rvmon.report.proportion import CONFIDENCE
 from rvmon.report.table import Counts, RunGroup, VerdictTable
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."
+
+INTERVALS = (
+    f"Below each: the {CONFIDENCE:.0%} interval of its share in % (Clopper and Pearson), for tests "
+    "that are drawn at random; of tests that are chosen, it says nothing."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +62,7 @@ def verdict_table(summary: CampaignSummary, robot: str) -> VerdictTable:
         requirements=figures.requirements,
         groups=_groups(figures, counts),
         notes=_notes(summary, figures),
+        shows_intervals=True,
     )
 
 
@@ -68,6 +75,7 @@ def control_table(summary: CampaignSummary, robot: str) -> VerdictTable | None:
         title=f"{figures.title}, {summary.control}",
         requirements=figures.requirements,
         groups=_groups(figures, figures.controls),
+        shows_intervals=True,
     )
 
 
