@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import msgspec
 
+from rvmon.cdv.run_share import ALPHA, BETA, Decision
 from rvmon.cdv.summary import CampaignSummary, RobotSummary, StrategySummary
 from rvmon.report.proportion import interval
 from rvmon.report.table import Counts
@@ -109,6 +110,8 @@ def _strategy(figures: StrategySummary, kind: str) -> dict[str, object]:
             "percent": figures.total.percent,
             f"by_{kind}": {name: one.percent for name, one in figures.statements.items()},
         }
+    if figures.shares:
+        document["shares"] = {name: _share(one) for name, one in figures.shares.items()}
     document["simulated_s"] = round(figures.simulated_s, 3)
     for name, figure in figures.figures.items():
         document.setdefault(name, round(figure, 3))
@@ -116,6 +119,20 @@ def _strategy(figures: StrategySummary, kind: str) -> dict[str, object]:
         if errors := getattr(figures, ending):
             document[ending] = errors
     return document
+
+
+def _share(decision: Decision) -> dict[str, object]:
+    return {
+        "required": str(decision.share),
+        "holds": decision.holds,
+        "tests": decision.tests,
+        "passed": decision.passed,
+        "inconclusive": decision.inconclusive,
+        "missing": decision.missing,
+        "alpha": ALPHA,
+        "beta": BETA,
+        "indifference": [round(bound, 6) for bound in decision.indifference],
+    }
 
 
 def _coverage(figures: StrategySummary, kind: str) -> dict[str, object]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rvmon.cdv.run_share import errors_text
 from rvmon.cdv.summary import CampaignSummary, RobotSummary
 from rvmon.report.proportion import CONFIDENCE
 from rvmon.report.table import Counts, RunGroup, VerdictTable
@@ -108,6 +109,12 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
         notes.append(
             f"PARTIAL: {summary.cut_short} after {summary.finished} of {summary.planned} tests."
         )
+    for strategy, one in figures.strategies.items():
+        for name, decision in one.shares.items():
+            told = (
+                f"{decision}, {errors_text(decision)}" if decision.holds is not None else decision
+            )
+            notes.append(f"{name} {decision.share}: under {strategy} {told}.")
     strategies = figures.strategies.values()
     if crashed := sum(len(one.crashes) for one in strategies):
         notes.append(f"The robot's code crashed in {crashed} tests, judged all the same.")
