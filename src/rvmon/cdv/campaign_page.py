@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.examples import Cell
@@ -27,6 +27,7 @@ def campaign_page(
     examples: Mapping[Cell, str],
     tests: Mapping[tuple[str, str], str],
     coverage: Mapping[str, CoverageFigures],
+    further: Sequence[ET.Element] = (),
 ) -> str:
     """Write the page.
 
@@ -38,6 +39,7 @@ def campaign_page(
         examples: addresses of pages, by the counts that they are examples of.
         tests: addresses of pages, by robot and test.
         coverage: by robot, what was covered.
+        further: sections of the campaign's own.
     """
     body: list[Child] = [_header(summary, presentation)]
     body.extend(
@@ -54,6 +56,7 @@ def campaign_page(
     body.extend(
         _known(robot, figures, tests) for robot, figures in summary.robots.items() if figures.known
     )
+    body.extend(further)
     body.append(
         e(
             "footer",

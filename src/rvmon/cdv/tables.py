@@ -13,8 +13,8 @@ from rvmon.report.table import Counts, RunGroup, VerdictTable
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."
 
 INTERVALS = (
-    f"Below each: the {100 * CONFIDENCE:g} % interval of its share in % (Clopper and Pearson), for tests "
-    "that are drawn at random; of tests that are chosen, it says nothing."
+    f"Below each: the {100 * CONFIDENCE:g} % interval of its share in % (Clopper and Pearson), for "
+    "tests that are drawn at random; of tests that are chosen, it says nothing."
 )
 
 

@@ -104,6 +104,7 @@ def write_pages(
         examples=cells,
         tests=addresses,
         coverage=write_coverage(folder, results, addresses),
+        further=campaign.presentation.sections(results, addresses),
     )
     write_whole(folder / REPORT, page)
     return otherwise

@@ -19,13 +19,6 @@ from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
 from rvmon.report.folder import refuse_no_file, write_file
 
-SHRINK = {
-    "help": "find the smallest test that fails like one",
-    "description": "Take away from a failing test what its failure does not need, print what is "
-    "left, and write it as a regression test.",
-}
-"""How the command is described."""
-
 INTERRUPTED = 130
 """The exit code of a campaign that was interrupted."""
 
@@ -82,7 +75,7 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
     )
     replay.set_defaults(run=_replay)
-    smaller = commands.add_parser("shrink", **SHRINK)
+    smaller = commands.add_parser("shrink", help="find the smallest test that fails like one")
     add_shrink_options(smaller)
     smaller.add_argument(
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
@@ -118,6 +111,10 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
 
 def add_shrink_options(parser: argparse.ArgumentParser) -> None:
     """Declare which test is shrunk, by which failure, and where the smallest one goes."""
+    parser.description = (
+        "Take away from a failing test what its failure does not need, print what is left, and "
+        "write it as a regression test."
+    )
     parser.add_argument("test", metavar="TEST", help="a .json file")
     parser.add_argument(
         "--requirement", metavar="ID", help="that is to fail (default: the first that does)"

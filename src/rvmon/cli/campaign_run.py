@@ -89,6 +89,7 @@ def conduct(
     planned = len(chosen.jobs())
     command, *others = words
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
+    amount += ["--shrink"] if arguments.shrink else []
     again = typed(campaign.program, [command, *amount, *others, "--out", arguments.out])
     kept = None
     if folder is not None:
