@@ -30,15 +30,15 @@ class Spread(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def spread() -> Spread:
     """What was computed.
 
-    >>> spread().ranges["pseudorandom"]["R1"]["NT"]
-    (100, 100)
+    >>> spread().ranges["model-based"]["R1"]["P"]
+    (2, 3)
     """
     return msgspec.json.decode(_path().read_bytes(), type=Spread)
 
 
 def write_spread(found: Spread) -> None:
     """Keep what was computed."""
-    write_whole(_path(), msgspec.json.format(msgspec.json.encode(found), indent=1) + b"\n")
+    write_whole(_path(), msgspec.json.encode(found) + b"\n")
 
 
 def spread_text() -> str:

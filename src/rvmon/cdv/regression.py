@@ -15,6 +15,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.files import save
 from rvmon.cdv.plan import Job
 from rvmon.cdv.shrink import Shrunk
+from rvmon.execute import parallel
 from rvmon.writing import write_whole
 
 _FILE = '''"""{found}"""
@@ -82,7 +83,7 @@ def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path,
         law=", ".join(f"{name} is {verdict}" for name, verdict in test.expected.items())
         or "It completes",
         command=_command(campaign.program, folder),
-        timeout=campaign.timeout_s,
+        timeout=None if campaign.timeout_s is None else campaign.timeout_s + parallel.BEGIN_S,
     )
     path = folder / f"test_{function}.py"
     write_whole(path, text)

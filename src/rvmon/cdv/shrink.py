@@ -19,6 +19,13 @@ from rvmon.verdict.verdict import Verdict
 MOST = 2_000
 """Tests that are played at most, to shrink one."""
 
+_ENDS = {
+    Ending.COMPLETED: "completes",
+    Ending.CRASHED: "crashes",
+    Ending.HUNG: "hangs",
+    Ending.LOST: "is lost",
+}
+
 _Test = TypeVar("_Test", bound=Test)
 
 
@@ -45,7 +52,7 @@ class Failure:
     def __str__(self) -> str:
         if self.requirement:
             return f"{self.requirement} fails"
-        return f"the run {self.ending}" + (f": {self.error}" if self.error else "")
+        return f"the run {_ENDS[self.ending]}" + (f": {self.error}" if self.error else "")
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,8 @@ def shrink_file(
     with told("shrinking"):
         found = _found(campaign, job, requirement)
     if found is None:
-        warn(f"{path}: {requirement or 'no requirement'} fails: there is nothing to shrink")
+        why = f"{requirement} does not fail" if requirement else "no requirement fails"
+        warn(f"{path}: {why}: there is nothing to shrink")
         return 1
     small = regression_test(campaign, job, found)
     left = removed(test, small)

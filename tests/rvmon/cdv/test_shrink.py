@@ -9,7 +9,7 @@ import pytest
 from msgspec import structs
 
 from rvmon import cdv
-from rvmon.cdv.files import TestError, load, to_json
+from rvmon.cdv.files import TestError, load, save, to_json
 from rvmon.cdv.outcome import Outcome
 from rvmon.cdv.plan import Job
 from rvmon.cdv.regression import regression_test, removed, save_regression
@@ -101,7 +101,7 @@ def test_a_run_that_does_not_complete_is_shrunk_to_one_that_ends_alike():
 
     ended = play(steps(4))
     assert shrink(steps(1, 4, 1), ended, play).test.numbers == (4,)
-    assert str(failure_of(ended)) == "the run crashed: ZeroDivisionError"
+    assert str(failure_of(ended)) == "the run crashes: ZeroDivisionError"
     assert shrink(steps(1, 4, 1), ended, play, "R1").test.numbers == ()
     assert failure_of(outcome(ending=Ending.HUNG, R1="I")).is_of(outcome(ending=Ending.HUNG))
 
@@ -171,6 +171,17 @@ def test_a_regression_test_knows_what_is_to_come_out(campaign, tmp_path, more, e
     path, script = save_regression(made, small, tmp_path)
     assert load(path, Steps) == small
     compile(script.read_text(), script.name, "exec")
+
+
+@pytest.mark.process
+def test_what_ends_its_process_is_shrunk_in_others(campaign, tmp_path, capsys):
+    """One that is lost, or hangs, takes nothing with it."""
+    made = campaign(("lost", {"does": "exit"}))
+    (test,) = made.strategies["climbs"](1, 1)
+    assert main(made, ["shrink", str(save(test, tmp_path))]) == 0
+    told = capsys.readouterr()
+    assert '"does": "exit"' in told.out
+    assert "the run is lost" in told.err
 
 
 CAMPAIGN = """
