@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest
-from rvmon.cdv.outcome import Results
+from rvmon.cdv import Test
+from rvmon.cdv.presentation import RobotTest
 from rvmon.execute import parallel
 from rvmon.report.coverage_summary import counted
 from rvmon.report.markup import Child, e
@@ -25,32 +26,33 @@ SUFFIX = "_all"
 ROBOT = "correct"
 """The robot that the model is of."""
 
-Addresses = Mapping[tuple[str, str], str]
-"""Of pages, by robot and test."""
+Addresses = Mapping[RobotTest, str]
+"""Of pages."""
 
 
-def model_sections(results: Results, addresses: Addresses, count: int) -> list[ET.Element]:
+def model_sections(
+    tests: Mapping[RobotTest, Test], addresses: Addresses, count: int
+) -> list[ET.Element]:
     """The section of a campaign's page, unless no run is to be held against the model.
 
     Args:
-        results: of the campaign.
+        tests: that were played.
         addresses: of its pages.
         count: of the runs of each strategy the first so many are held against the model.
     """
     strategies: dict[str, list[AbstractTest]] = {}
-    for one in results.played:
-        test = one.job.test
-        if one.job.robot == ROBOT and test.mutation is None and isinstance(test, AbstractTest):
+    for (robot, _), test in tests.items():
+        if robot == ROBOT and test.mutation is None and isinstance(test, AbstractTest):
             strategies.setdefault(test.strategy, []).append(test)
     if not count or not strategies:
         return []
-    chosen = [test for tests in strategies.values() for test in tests[:count]]
+    chosen = [test for several in strategies.values() for test in several[:count]]
     jobs = os.cpu_count() or 1
     rows = list(parallel.execute(claims(), _verifier, jobs=jobs, what="query"))
     found = list(parallel.execute(chosen, _conformer, jobs=jobs, what="run"))
     lines = [
-        _line([pair for pair in zip(chosen, found, strict=True) if pair[0] in tests], addresses)
-        for tests in strategies.values()
+        _line([pair for pair in zip(chosen, found, strict=True) if pair[0] in several], addresses)
+        for several in strategies.values()
     ]
     titles = ("", "some run shows it", "all runs keep to it", "that is")
     head = e("tr", None, *(e("th", None, title) for title in titles))

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import msgspec
 from msgspec import structs
 
-from handover.world.faults import SensorFaults
+from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import Test
 
 HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
@@ -34,6 +34,7 @@ Strategy = Literal[
     "model-based",
     "model-based-shortest",
     "model-based-fastest",
+    "disturbed",
     "directed",
 ]
 
@@ -67,7 +68,11 @@ class SetParam(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="set
             raise ValueError(f"`{self.param}` is 0 or 1, not {self.value}")
 
 
-Action = SendSignal | ReceiveSignal | SetParam
+class Withdraw(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="withdraw"):
+    """The human loses interest: lets go, takes the hand back to the chest and looks away."""
+
+
+Action = SendSignal | ReceiveSignal | SetParam | Withdraw
 
 
 class AbstractTest(Test, frozen=True, kw_only=True):
@@ -78,17 +83,21 @@ class AbstractTest(Test, frozen=True, kw_only=True):
         actions: in order; each begins when the one before is over.
         robot: the robot it is written for; `None`: any.
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
+        postures: drawn from their ranges, or at the ends of these, where sensors may err.
         horizon_s: simulated seconds.
         startup_loss: whether the human's signals may get lost as the processes start.
         faults: what is wrong with the sensors.
+        scene: what the scene has in store for the robot.
     """
 
     strategy: Strategy
     actions: tuple[Action, ...]
     robot: Literal["correct", "legacy"] | None = None
+    postures: Literal["in_range", "at_limits"] = "in_range"
     horizon_s: Annotated[float, msgspec.Meta(gt=0, le=3600)] = 200.0
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
+    scene: SceneFaults = SceneFaults()
 
     removable: ClassVar[tuple[str, ...]] = ("actions",)
 
@@ -96,10 +105,12 @@ class AbstractTest(Test, frozen=True, kw_only=True):
         """Without what disturbs it, each alone; then with a shorter wait, by a quarter at least."""
         if self.startup_loss:
             yield structs.replace(self, startup_loss=False)
-        for fault in structs.fields(self.faults):
-            if getattr(self.faults, fault.name) != fault.default:
-                mended = structs.replace(self.faults, **{fault.name: fault.default})
-                yield structs.replace(self, faults=mended)
+        for disturbance in ("faults", "scene"):
+            present = getattr(self, disturbance)
+            for fault in structs.fields(present):
+                if getattr(present, fault.name) != fault.default:
+                    mended = structs.replace(present, **{fault.name: fault.default})
+                    yield structs.replace(self, **{disturbance: mended})
         for at, action in enumerate(self.actions):
             if isinstance(action, SetParam) and action.param == "time":
                 for units in sorted({1, action.value // 2, action.value * 3 // 4}):

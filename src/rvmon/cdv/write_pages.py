@@ -104,7 +104,9 @@ def write_pages(
         examples=cells,
         tests=addresses,
         coverage=write_coverage(folder, results, addresses),
-        further=campaign.presentation.sections(results, addresses),
+        further=campaign.presentation.sections(
+            {(one.job.robot, one.job.test.name): one.job.test for one in results.played}, addresses
+        ),
     )
     write_whole(folder / REPORT, page)
     return otherwise
