@@ -93,7 +93,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         epilog="example: handover demo --out out/demo",
     )
     add_campaign_options(parser)
-    _add_conform(parser, 5)
+    _add_conform(parser, 3)
     parser.set_defaults(run=_demo, pages="all")
 
 
