@@ -13,8 +13,7 @@ from rvmon import cdv
 from rvmon.cli.campaign import main
 
 HERE = Path(__file__).parent
-STEP_NS = 50_000_000
-HORIZON_NS = 60_000_000_000
+STEP_NS, HORIZON_NS = 50_000_000, 60_000_000_000
 CORRIDOR_M = 12.0
 
 
@@ -35,6 +34,7 @@ class Walk(cdv.Test):
     """A test: who crosses where and when."""
 
     people: tuple[Person, ...]
+    removable = ("people",)
 
 
 class Corridor:

@@ -19,9 +19,11 @@ from rvmon.cli.campaign import (
     add_campaign_options,
     add_judging_options,
     add_replay_options,
+    add_shrink_options,
     judged_by,
     names_of,
 )
+from rvmon.cli.numbers import positive
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -44,6 +46,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_demo(commands)
     _add_replay(commands)
+    _add_shrink(commands)
     return parser
 
 
@@ -66,7 +69,19 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     add_judging_options(parser)
     parser.add_argument("--no-monitors", action="store_true", help="judge nothing: only play")
     parser.add_argument("--strict", action="store_true", help="exit with 1 unless all is well")
+    _add_conform(parser, 0)
     parser.set_defaults(run=_run)
+
+
+def _add_conform(parser: argparse.ArgumentParser, default: int) -> None:
+    parser.add_argument(
+        "--conform",
+        metavar="N",
+        type=positive,
+        default=default,
+        help="with --out, hold the first N runs of each strategy against the model, and check its "
+        "claims about all runs (%(default)s)",
+    )
 
 
 def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -78,6 +93,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         epilog="example: handover demo --out out/demo",
     )
     add_campaign_options(parser)
+    _add_conform(parser, 3)
     parser.set_defaults(run=_demo, pages="all")
 
 
@@ -93,19 +109,33 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser.set_defaults(run=_replay)
 
 
+def _add_shrink(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser(
+        "shrink",
+        help="find the smallest test that fails like one",
+        epilog="example: handover shrink out/demo/tests/mutant-releases-late.json --out out/small",
+    )
+    add_shrink_options(parser)
+    parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
+    parser.set_defaults(run=_shrink)
+
+
 def _run(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
     from rvmon.cli.campaign_run import conduct, show
 
     robots = ("legacy" if arguments.legacy else "correct",)
-    campaign = handover_campaign(robots, monitors=not arguments.no_monitors)
+    campaign = handover_campaign(
+        robots, monitors=not arguments.no_monitors, conforming=arguments.conform
+    )
     if not arguments.no_monitors:
         campaign = judged_by(campaign, arguments.spec)
     strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    words = ["run", "--strategy", arguments.strategy]
+    words: list[object] = ["run", "--strategy", arguments.strategy]
     words += ["--legacy"] if arguments.legacy else []
     words += ["--spec", arguments.spec] if arguments.spec else []
     words += ["--no-monitors"] if arguments.no_monitors else []
+    words += ["--conform", arguments.conform] if arguments.conform else []
     conducted = conduct(campaign, strategies, arguments, words)
     show(campaign, conducted, arguments.format)
     if conducted.summary.cut_short:
@@ -118,8 +148,10 @@ def _demo(arguments: argparse.Namespace) -> int:
     from rvmon.cdv.write_pages import REPORT
     from rvmon.cli.campaign_run import conduct, show
 
-    campaign = handover_campaign(("legacy", "correct"))
-    conducted = conduct(campaign, tuple(campaign.strategies), arguments, ["demo"])
+    campaign = handover_campaign(("legacy", "correct"), conforming=arguments.conform)
+    conducted = conduct(
+        campaign, tuple(campaign.strategies), arguments, ["demo", "--conform", arguments.conform]
+    )
     show(campaign, conducted, "text")
     if arguments.out:
         print(f"Look at {Path(arguments.out) / REPORT}")
@@ -139,6 +171,17 @@ def _replay(arguments: argparse.Namespace) -> int:
         out=arguments.out,
         mcap=arguments.mcap,
         form=arguments.format,
+        expected=arguments.expected,
+    )
+
+
+def _shrink(arguments: argparse.Namespace) -> int:
+    from handover.campaign.campaign import handover_campaign
+    from rvmon.cli.campaign_shrink import shrink_file
+
+    robot = "legacy" if arguments.legacy else None
+    return shrink_file(
+        handover_campaign(), arguments.test, robot, arguments.requirement, arguments.out
     )
 
 

@@ -55,6 +55,8 @@ _SAMPLES: Mapping[str, Sequence[str]] = {
     "UNWANTED": ("ignore", "illegal"),
     "TEXT_CLAUSE": ("source", "rationale"),
     "MINUS": ("-",),
+    "RUN_SHARE": ("in at least", "in at most"),
+    "_OF_RUNS": ("of runs",),
 }
 """What a terminal may look like; all others look like their name, or are one fixed sign."""
 

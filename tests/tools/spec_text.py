@@ -72,6 +72,7 @@ def _requirement(requirement: Requirement) -> list[str]:
         each = requirement.for_each
         lines.append(f"  for each {each.name} in {format_numeric(each.value)}")
     lines += [f"  let {let.name} = {format_numeric(let.value)}" for let in requirement.captures]
+    lines += [f"  {requirement.run_share}"] if requirement.run_share else []
     return [*lines, f"  at end: {requirement.at_end}"]
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import handover
 from handover.campaign.documents import table_document
 from handover.campaign.flow_chart import flow_chart
+from handover.campaign.model_page import model_sections
 from handover.campaign.paper import paper_table
 from handover.campaign.strategies import STRATEGIES
 from handover.campaign.system import Handover, without_loss
@@ -31,12 +32,16 @@ ROBOTS = {
 """What the two robots are called in titles."""
 
 
-def handover_campaign(robots: Sequence[str] = tuple(ROBOTS), *, monitors: bool = True) -> Campaign:
+def handover_campaign(
+    robots: Sequence[str] = tuple(ROBOTS), *, monitors: bool = True, conforming: int = 0
+) -> Campaign:
     """A campaign against one or both robots.
 
     Args:
         robots: `correct`, `legacy` or both, in the order of the tables.
         monitors: `False` judges nothing, to measure what judging costs.
+        conforming: so many runs of each strategy are held against the model for the page, a second
+            each; 0: nothing is said of the model there.
     """
     return Campaign(
         name="handover",
@@ -70,6 +75,7 @@ def handover_campaign(robots: Sequence[str] = tuple(ROBOTS), *, monitors: bool =
             chart=flow_chart,
             chart_legend="Filled by the share of the state's statements that ran; the number "
             "beside a line is how many tests took it, a dashed line was taken by none.",
+            sections=partial(model_sections, count=conforming),
             robot_words=_robot_words,
             write_more=_write_templates,
         ),

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from handover.campaign.model_checking import check_model
 from handover.campaign.paper import FITTED_BY_LOSS, SOURCE, paper_table
+from handover.campaign.spread import spread_text
 from rvmon.cdv import tables
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
@@ -38,7 +39,7 @@ def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
             control=control,
             control_label="no fit",
             control_title="The same without the fitted loss of signals",
-            sources=(f"paper: {SOURCE}",) if name == "legacy" else (),
+            sources=(f"paper: {SOURCE}", spread_text()) if name == "legacy" else (),
             remark=_fitted(own, control) if control is not None else "",
         )
     return shown

@@ -18,33 +18,53 @@ OBSERVED = (
     "released",
     "timed_out",
 )
-"""The robot's messages that are labels of the network; what the human does is not watched.
+"""The robot's messages that are labels of the network.
 
-So a run conforms if some human of the model would have made the robot of the model say the same
-things at the same times.
+Of what the human does only the readiness is watched, where the model's human has it: a run conforms
+if some human who gets ready then would have made the robot of the model say the same things at the
+same times.
 """
+
+READY = "humanIsReady"
+READY_AFTER_NS = (500_000_000, 20_000_000_000)
+"""How long after being informed the model's human gets ready, at the earliest and latest."""
 
 TOLERANCE_NS = 110_000_000
 """The robot looks for signals ten times a second, the network's robot hears them at once."""
 
 
-def actions_of(run: Run) -> list[Recorded]:
-    """The robot's observed messages in a run, in order."""
+def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
+    """What is observed of a run, in order, and the labels that are observed at all.
+
+    The robot hears the first readiness after it has informed the human; it is an input of the model
+    that the robot has to go by. One at an instant at which the model's human has none, such as
+    before, is not observed: whether the robot heard it is left open.
+    """
     from rvmon.timed.conformance.outcome import Recorded
 
-    return [
-        Recorded(t_ns, name) for t_ns, values in run.samples for name in OBSERVED if name in values
-    ]
+    told = {name: [t for t, values in run.samples if name in values] for name in (*OBSERVED, READY)}
+    ready = told.pop(READY)
+    informed = told["informed"][:1]
+    observed = set(OBSERVED)
+    if informed and ready:
+        low, high = (informed[0] + after for after in READY_AFTER_NS)
+        if low + TOLERANCE_NS <= ready[0] <= high - TOLERANCE_NS:
+            told[READY] = ready[:1]
+    if told.get(READY) or not ready:
+        observed.add(READY)
+    actions = (Recorded(t, name) for name, instants in told.items() for t in instants)
+    return sorted(actions, key=lambda action: action.t), frozenset(observed)
 
 
 def check_run(network: Network, run: Run) -> Conformance:
     """Hold a simulated run against the handover network."""
     from rvmon.timed.conformance.conform import conform
 
+    actions, observed = actions_of(run)
     return conform(
         network,
-        actions_of(run),
-        observed=frozenset(OBSERVED),
+        actions,
+        observed=observed,
         end=run.end_ns,
         tolerance=TOLERANCE_NS,
     )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal, Self
 
 import msgspec
+from msgspec import structs
 
 from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import Test
@@ -96,3 +98,23 @@ class AbstractTest(Test, frozen=True, kw_only=True):
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
     scene: SceneFaults = SceneFaults()
+
+    removable: ClassVar[tuple[str, ...]] = ("actions",)
+
+    def simpler(self) -> Iterator[Self]:
+        """Without what disturbs it, each alone; then with a shorter wait, by a quarter at least."""
+        if self.startup_loss:
+            yield structs.replace(self, startup_loss=False)
+        for disturbance in ("faults", "scene"):
+            present = getattr(self, disturbance)
+            for fault in structs.fields(present):
+                if getattr(present, fault.name) != fault.default:
+                    mended = structs.replace(present, **{fault.name: fault.default})
+                    yield structs.replace(self, **{disturbance: mended})
+        for at, action in enumerate(self.actions):
+            if isinstance(action, SetParam) and action.param == "time":
+                for units in sorted({1, action.value // 2, action.value * 3 // 4}):
+                    if 0 < units < action.value:
+                        wait = SetParam("time", units)
+                        shorter = (*self.actions[:at], wait, *self.actions[at + 1 :])
+                        yield structs.replace(self, actions=shorter)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import msgspec
 
@@ -23,6 +24,8 @@ class Test(
         robot: the only one of a campaign's robots that it is written for; `None`: any.
         mutation: the fault that is planted into the robot; `None`: it is as it is.
         expected: verdicts by requirement, for tests that know them.
+        removable: fields that are sequences whose parts a smaller test may lack, the one with the
+            most to say first.
 
     >>> class Walk(Test):
     ...     people: int
@@ -31,6 +34,7 @@ class Test(
     """
 
     __test__: ClassVar[bool] = False  # nothing that pytest should collect
+    removable: ClassVar[tuple[str, ...]] = ()
 
     name: Annotated[str, msgspec.Meta(min_length=1)]
     strategy: str
@@ -39,6 +43,10 @@ class Test(
     robot: str | None = None
     mutation: str | None = None
     expected: dict[str, VerdictName] = {}
+
+    def simpler(self) -> Iterable[Self]:
+        """Tests in which one value is simpler, for `rvmon.cdv.shrink`; the simplest first."""
+        return ()
 
     def __reduce__(self) -> tuple[Any, ...]:
         """To other processes it goes as to files: what has its default stays left out."""

@@ -20,6 +20,7 @@ from rvmon.writing import write_whole
 TESTS = "tests"
 TEMPLATES = "templates"
 RUNS = "runs"
+SMALLEST = "smallest"
 """Folders of a campaign's folder."""
 
 TEXT_COLUMNS = 100
@@ -55,7 +56,7 @@ def dated_files(folder: Path) -> dict[Path, int]:
     """The files in folders of a campaign's folder, each with the instant of its last change."""
     return {
         path: path.stat().st_mtime_ns
-        for part in (TESTS, TEMPLATES, RUNS)
+        for part in (TESTS, TEMPLATES, RUNS, SMALLEST)
         for path in (folder / part).rglob("*")
         if path.is_file()
     }

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.examples import Cell
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
-from rvmon.cdv.tables import RobotTables
+from rvmon.cdv.tables import INTERVALS, RobotTables
 from rvmon.report.coverage_summary import counted, share_text
 from rvmon.report.markup import Child, e, page
 from rvmon.report.percent import percent_text
@@ -27,6 +27,7 @@ def campaign_page(
     examples: Mapping[Cell, str],
     tests: Mapping[tuple[str, str], str],
     coverage: Mapping[str, CoverageFigures],
+    further: Sequence[ET.Element] = (),
 ) -> str:
     """Write the page.
 
@@ -38,6 +39,7 @@ def campaign_page(
         examples: addresses of pages, by the counts that they are examples of.
         tests: addresses of pages, by robot and test.
         coverage: by robot, what was covered.
+        further: sections of the campaign's own.
     """
     body: list[Child] = [_header(summary, presentation)]
     body.extend(
@@ -54,8 +56,15 @@ def campaign_page(
     body.extend(
         _known(robot, figures, tests) for robot, figures in summary.robots.items() if figures.known
     )
+    body.extend(further)
     body.append(
-        e("footer", None, e("p", None, "Run it again: ", e("code", None, command)), legend())
+        e(
+            "footer",
+            None,
+            e("p", None, "Run it again: ", e("code", None, command)),
+            legend(),
+            e("p", {"class": "soft"}, INTERVALS),
+        )
     )
     title = presentation.title or summary.name
     return page(title, body, styles=["base.css", "report.css"], scripts=[])

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 
 import msgspec
 
+from rvmon.cdv.run_share import ALPHA, BETA, Decision
 from rvmon.cdv.summary import CampaignSummary, RobotSummary, StrategySummary
+from rvmon.report.proportion import interval
 from rvmon.report.table import Counts
 
 
@@ -68,6 +70,15 @@ def rows_document(rows: Mapping[str, Counts]) -> dict[str, dict[str, int]]:
     }
 
 
+def _intervals(counts: Counts) -> dict[str, list[float]]:
+    """The bounds of the share of tests behind each count; there is at least one test."""
+    runs = sum(counts.values())
+    return {
+        verdict.value: [round(bound, 4) for bound in interval(count, runs)]
+        for verdict, count in counts.items()
+    }
+
+
 def coverage_document(summary: CampaignSummary) -> dict[str, object]:
     """The content of `coverage.json`: statements, branches, states and transitions."""
     return {
@@ -92,12 +103,15 @@ def _strategy(figures: StrategySummary, kind: str) -> dict[str, object]:
     document: dict[str, object] = {
         "tests": figures.tests,
         "requirements": rows_document(figures.counts),
+        "intervals": {name: _intervals(one) for name, one in figures.counts.items()},
     }
     if figures.statements:
         document["statements"] = {
             "percent": figures.total.percent,
             f"by_{kind}": {name: one.percent for name, one in figures.statements.items()},
         }
+    if figures.shares:
+        document["shares"] = {name: _share(one) for name, one in figures.shares.items()}
     document["simulated_s"] = round(figures.simulated_s, 3)
     for name, figure in figures.figures.items():
         document.setdefault(name, round(figure, 3))
@@ -105,6 +119,20 @@ def _strategy(figures: StrategySummary, kind: str) -> dict[str, object]:
         if errors := getattr(figures, ending):
             document[ending] = errors
     return document
+
+
+def _share(decision: Decision) -> dict[str, object]:
+    return {
+        "required": str(decision.share),
+        "holds": decision.holds,
+        "tests": decision.tests,
+        "passed": decision.passed,
+        "inconclusive": decision.inconclusive,
+        "missing": decision.missing,
+        "alpha": ALPHA,
+        "beta": BETA,
+        "indifference": [round(bound, 6) for bound in decision.indifference],
+    }
 
 
 def _coverage(figures: StrategySummary, kind: str) -> dict[str, object]:

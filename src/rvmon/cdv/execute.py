@@ -6,8 +6,10 @@ import os
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 
+from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.outcome import Outcome, Played, Results
 from rvmon.cdv.plan import Job, Plan
 from rvmon.cdv.play import player
@@ -61,7 +63,7 @@ def execute(
                 begin,
                 jobs=jobs or os.cpu_count() or 1,
                 what="test",
-                instead=partial(_without_result, _requirements(plan)),
+                instead=partial(_without_result, _requirements(campaign)),
                 timeout_s=campaign.timeout_s,
             )
         ) as results:
@@ -76,11 +78,34 @@ def execute(
     return Results(plan, tuple(played), time.perf_counter() - begun, cut_short)
 
 
-def _requirements(plan: Plan) -> dict[str, tuple[str, ...]]:
+def play_apart(campaign: Campaign, job: Job) -> Outcome:
+    """Play one test in a process of its own, which is ended if it takes too long.
+
+    Args:
+        campaign: that the test is of; its code is not measured.
+        job: what is played.
+
+    Raises:
+        RvmonError: the system cannot be made, or the process not be begun.
+    """
+    alone = replace(campaign, robots={job.robot: campaign.robots[job.robot]})
+    results = parallel.execute(
+        [job],
+        partial(player, alone.robots, None, None),
+        jobs=1,
+        what="test",
+        instead=partial(_without_result, _requirements(alone)),
+        timeout_s=campaign.timeout_s,
+    )
+    with closing(results):
+        return next(results)[0]
+
+
+def _requirements(campaign: Campaign) -> dict[str, tuple[str, ...]]:
     """The ids of the requirements by robot."""
     return {
         name: () if robot.spec is None else tuple(load(robot.spec).requirements)
-        for name, robot in plan.campaign.robots.items()
+        for name, robot in campaign.robots.items()
     }
 
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure
 from rvmon.cdv.outcome import Played, Results
+from rvmon.cdv.run_share import Decision
 from rvmon.cdv.summary import differences
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.loading import load
 from rvmon.verdict.verdict import Verdict
+
+RobotRequirement = tuple[str, str]
+"""Names of a robot and of one of its requirements."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +60,11 @@ class CampaignJudgement:
 
 
 def judge_campaign(
-    results: Results, requirements: Mapping[str, Sequence[str]], *, strict: bool = False
+    results: Results,
+    requirements: Mapping[str, Sequence[str]],
+    shares: Mapping[RobotRequirement, Mapping[str, Decision]] | None = None,
+    *,
+    strict: bool = False,
 ) -> CampaignJudgement:
     """Hold all tests against what was expected of them.
 
@@ -68,19 +76,61 @@ def judge_campaign(
     Args:
         results: what was played; of a campaign that was cut short only the tests are judged.
         requirements: by robot, the ids of those that were judged.
+        shares: what the tests of each strategy say of those that are to hold in a share of runs: a
+            single test that fails them is not wrong, a strategy that rejects the share is. With
+            `strict` it is wrong as well that none decides it.
         strict: verdicts that are inconclusive are wrong as well, unless the test knows them, and so
             are requirements that were never triggered: that no test passed or failed.
     """
     expected = results.plan.campaign.expected_failures
-    tests = tuple(_judged(one, expected, strict=strict) for one in results.played)
+    decisions = shares or {}
+    tests = tuple(
+        judge_test(
+            one,
+            expected,
+            [name for robot, name in decisions if robot == one.job.robot],
+            strict=strict,
+        )
+        for one in results.played
+    )
     checks: dict[str, str] = {}
     if not results.cut_short:
         checks |= _expected_failures(expected, results.played)
         checks |= _triggered(requirements, results.played) if strict else {}
+        for (robot, name), found in decisions.items():
+            if not any(_is_of(why, robot, name) for why in expected):
+                share = next(iter(found.values())).share
+                checks[f"{name} {share} ({robot})"] = _undecided(found, strict=strict)
     return CampaignJudgement(tests, checks)
 
 
-def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -> TestJudgement:
+def _is_of(why: ExpectedFailure, robot: str, requirement: str) -> bool:
+    return why.requirement == requirement and why.robot in ("", robot)
+
+
+def _undecided(found: Mapping[str, Decision], *, strict: bool) -> str:
+    """What is wrong with a share of runs; empty if it holds, or need not be decided."""
+    rejected = [f"under {name} it {one}" for name, one in found.items() if one.holds is False]
+    if strict and not any(one.holds for one in found.values()):
+        rejected = rejected or [f"under {name} it is {one}" for name, one in found.items()]
+    return "; ".join(rejected)
+
+
+def judge_test(
+    one: Played,
+    expected: Sequence[ExpectedFailure],
+    shared: Collection[str] = (),
+    *,
+    strict: bool = False,
+) -> TestJudgement:
+    """Hold one test against what was expected of it, as `judge_campaign` does with all.
+
+    Args:
+        one: the test.
+        expected: failures that its campaign expects.
+        shared: requirements of which not this test decides, but all together.
+        strict: verdicts that are inconclusive are wrong, unless the test knows them.
+    """
     test, outcome = one.job.test, one.outcome
     wrong: list[str] = []
     known: list[str] = []
@@ -94,6 +144,8 @@ def _judged(one: Played, expected: Sequence[ExpectedFailure], *, strict: bool) -
     for name, verdict in outcome.verdicts.items():
         if name in test.expected or test.mutation is not None:
             continue  # a planted fault says nothing about the robot
+        if name in shared:
+            continue
         if verdict is Verdict.FAIL:
             if name in accepted:
                 known.append(f"{name} failed, as expected: {accepted[name]}")

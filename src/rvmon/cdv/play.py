@@ -18,6 +18,7 @@ from rvmon.cdv.meter import Meter
 from rvmon.cdv.outcome import Outcome
 from rvmon.cdv.plan import Job
 from rvmon.cdv.system import Observer, Run, System
+from rvmon.coverage.hits import Hits
 from rvmon.coverage.record import Ending
 from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import RvmonError
@@ -85,17 +86,9 @@ class _Bench:
         found = self._checker.hits(run.end_ns)
         hits |= found
         report = self._checker.finish(run.end_ns)
-        return Outcome(
-            verdicts=report.verdicts,
-            reasons=_reasons(report),
-            illegal=tuple(map(str, self._checker.illegal(found))),
-            hits=hits,
-            ending=Ending.COMPLETED if run.error is None else Ending.CRASHED,
-            error=run.error,
-            end_ns=run.end_ns,
-            figures=run.figures,
-            seconds=time.perf_counter() - started,
-        )
+        illegal = tuple(map(str, self._checker.illegal(found)))
+        seconds = time.perf_counter() - started
+        return outcome_of(run, report, illegal=illegal, hits=hits, seconds=seconds)
 
 
 def system_of(name: str, robot: Robot) -> System[Any]:
@@ -132,6 +125,36 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
         told = f"it ended at {run.end_ns} ns, before its last sample, at {observer.last_ns} ns"
         return replace(run, end_ns=observer.last_ns, error=run.error or told)
     return run
+
+
+def outcome_of(
+    run: Run,
+    report: Report,
+    *,
+    illegal: tuple[str, ...] = (),
+    hits: Hits | None = None,
+    seconds: float = 0.0,
+) -> Outcome:
+    """What a campaign keeps of a run that came to its end.
+
+    Args:
+        run: what the system told of it.
+        report: the verdicts.
+        illegal: what was hit and must not be.
+        hits: what was hit, if that was measured.
+        seconds: wall time that it took.
+    """
+    return Outcome(
+        verdicts=report.verdicts,
+        reasons=_reasons(report),
+        illegal=illegal,
+        hits=hits or {},
+        ending=Ending.COMPLETED if run.error is None else Ending.CRASHED,
+        error=run.error,
+        end_ns=run.end_ns,
+        figures=run.figures,
+        seconds=seconds,
+    )
 
 
 def _reasons(report: Report) -> dict[str, str]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.documents import table_document
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, StrategySummary
 from rvmon.cdv.tables import RobotTables, robot_tables
@@ -63,6 +64,17 @@ def _nothing_more(folder: Path, strategies: frozenset[str]) -> None:
     """Write no further files."""
 
 
+RobotTest = tuple[str, str]
+"""Names of a robot and of a test."""
+
+
+def _no_sections(
+    _tests: Mapping[RobotTest, Test], _pages: Mapping[RobotTest, str]
+) -> list[ET.Element]:
+    """Show nothing more."""
+    return []
+
+
 @dataclass(frozen=True, slots=True)
 class Presentation:
     """How figures are shown.
@@ -77,6 +89,8 @@ class Presentation:
         page_work: the same for the page.
         chart: the coverage of code under one strategy, for the page.
         chart_legend: how to read it.
+        sections: further ones of the page, from the tests that were played and the addresses of
+            their pages.
         robot_words: what `replay` is told so that it takes a robot.
         write_more: writes further files to a campaign's folder, told the strategies of its tests.
     """
@@ -93,5 +107,8 @@ class Presentation:
         "The share of statements that ran and of branches that were taken; how many tests entered "
         "a state, and went from one to another."
     )
+    sections: Callable[
+        [Mapping[RobotTest, Test], Mapping[RobotTest, str]], Sequence[ET.Element]
+    ] = _no_sections
     robot_words: Callable[[str], Sequence[str]] = _option_of_robot
     write_more: Callable[[Path, frozenset[str]], None] = _nothing_more

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Robot
 from rvmon.cdv.checker import Checker
-from rvmon.cdv.play import run_of, system_of
+from rvmon.cdv.outcome import Outcome
+from rvmon.cdv.play import outcome_of, run_of, system_of
 from rvmon.cdv.system import Observer, Run, Values
+from rvmon.report.markup import Child
 from rvmon.report.run_html import run_page
 from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.session import Spec
@@ -32,6 +34,11 @@ class Replay:
     run: Run
     samples: tuple[Sample, ...]
     report: Report
+
+    @property
+    def outcome(self) -> Outcome:
+        """What a campaign keeps of the run; what it hit was not measured."""
+        return outcome_of(self.run, self.report)
 
     @property
     def judged(self) -> JudgedRun:
@@ -68,6 +75,7 @@ def replay_page(
     command: str,
     others: Sequence[JudgedRun] = (),
     back: str = "",
+    smallest: Child = None,
 ) -> str:
     """The page of one test.
 
@@ -78,14 +86,18 @@ def replay_page(
         command: replays it.
         others: runs that a failed attempt can be held against.
         back: address of the campaign's page.
+        smallest: the smallest test that fails alike, or how to find it.
     """
+    facts: list[tuple[str, Child]] = [*_facts(replay, robot, spec)]
+    if smallest is not None:
+        facts.append(("smallest test that fails alike", smallest))
     return run_page(
         RunPage(
             run=replay.judged,
             spec=spec.checked,
             command=command,
             others=others,
-            facts=_facts(replay, robot, spec),
+            facts=facts,
             scene=replay.run.scene,
             back=back,
         )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rvmon.cdv.measured import STATES, TRANSITIONS, measured_groups, source_and_target
 from rvmon.cdv.meter import branches_name, statements_name
 from rvmon.cdv.outcome import Outcome, Played, Results
+from rvmon.cdv.run_share import decide
 from rvmon.cdv.summary import (
     BlockCoverage,
     CampaignSummary,
@@ -20,6 +21,7 @@ from rvmon.coverage.model import Group
 from rvmon.coverage.record import Ending
 from rvmon.report.table import Counts
 from rvmon.session import Spec
+from rvmon.spec.checked.specification import RunShare
 from rvmon.verdict.verdict import Verdict
 
 
@@ -36,6 +38,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
     robots = {}
     for name, robot in campaign.robots.items():
         texts = _texts(specs.get(name))
+        shares = _shares(specs.get(name))
         played = [one for one in results.played if one.job.robot == name]
         by_strategy = _by_strategy(played)
         robots[name] = RobotSummary(
@@ -43,7 +46,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
             spec=robot.spec_name or _shown(robot.spec),
             requirements=texts,
             strategies={
-                strategy: _strategy(several, tuple(texts), groups, blocks)
+                strategy: _strategy(several, tuple(texts), groups, blocks, shares)
                 for strategy, several in by_strategy.items()
             },
             controls={
@@ -97,6 +100,7 @@ def _strategy(
     requirements: Sequence[str],
     groups: Mapping[str, Group],
     blocks: Sequence[str],
+    shares: Mapping[str, RunShare],
 ) -> StrategySummary:
     outcomes = [one.outcome for one in played]
     statements = {block: _coverage(groups[statements_name(block)], outcomes) for block in blocks}
@@ -120,7 +124,22 @@ def _strategy(
         lost=_errors(played, Ending.LOST),
         figures=_sums(outcomes),
         simulated_s=sum(one.simulated_s for one in outcomes),
+        shares={name: decide(share, _drawn(name, played)) for name, share in shares.items()},
     )
+
+
+def _shares(spec: Spec | None) -> Mapping[str, RunShare]:
+    if spec is None:
+        return {}
+    requirements = spec.requirements.items()
+    return {name: one.run_share for name, one in requirements if one.run_share is not None}
+
+
+def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
+    """The verdicts of tests that do not know theirs beforehand."""
+    for one in played:
+        if requirement not in one.job.test.expected:
+            yield one.outcome.verdicts[requirement]
 
 
 def _errors(played: Sequence[Played], ending: Ending) -> dict[str, str]:

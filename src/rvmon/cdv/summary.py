@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rvmon.cdv.run_share import Decision
 from rvmon.report.percent import percent
 from rvmon.report.table import Counts
 from rvmon.verdict.verdict import Verdict
@@ -60,6 +61,7 @@ class StrategySummary:
         lost: why, by test whose process was ended.
         figures: the sums of what the system tells of its runs.
         simulated_s: simulated seconds.
+        shares: by requirement that is to hold in a share of runs, what the tests say of it.
     """
 
     tests: int
@@ -73,6 +75,7 @@ class StrategySummary:
     lost: Mapping[str, str]
     figures: Mapping[str, float]
     simulated_s: float
+    shares: Mapping[str, Decision]
 
     @property
     def total(self) -> BlockCoverage:

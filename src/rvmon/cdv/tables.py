@@ -5,10 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rvmon.cdv.run_share import errors_text
 from rvmon.cdv.summary import CampaignSummary, RobotSummary
+from rvmon.report.proportion import CONFIDENCE
 from rvmon.report.table import Counts, RunGroup, VerdictTable
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."
+
+INTERVALS = (
+    f"Below each: the {100 * CONFIDENCE:g} % interval of its share in % (Clopper and Pearson), for "
+    "tests that are drawn at random; of tests that are chosen, it says nothing."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +63,7 @@ def verdict_table(summary: CampaignSummary, robot: str) -> VerdictTable:
         requirements=figures.requirements,
         groups=_groups(figures, counts),
         notes=_notes(summary, figures),
+        shows_intervals=True,
     )
 
 
@@ -68,6 +76,7 @@ def control_table(summary: CampaignSummary, robot: str) -> VerdictTable | None:
         title=f"{figures.title}, {summary.control}",
         requirements=figures.requirements,
         groups=_groups(figures, figures.controls),
+        shows_intervals=True,
     )
 
 
@@ -100,6 +109,12 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
         notes.append(
             f"PARTIAL: {summary.cut_short} after {summary.finished} of {summary.planned} tests."
         )
+    for strategy, one in figures.strategies.items():
+        for name, decision in one.shares.items():
+            told = (
+                f"{decision}, {errors_text(decision)}" if decision.holds is not None else decision
+            )
+            notes.append(f"{name} {decision.share}: under {strategy} {told}.")
     strategies = figures.strategies.values()
     if crashed := sum(len(one.crashes) for one in strategies):
         notes.append(f"The robot's code crashed in {crashed} tests, judged all the same.")

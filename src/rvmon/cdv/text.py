@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary, differences
-from rvmon.cdv.tables import LEGEND, RobotTables
+from rvmon.cdv.tables import INTERVALS, LEGEND, RobotTables
 from rvmon.report.percent import percent_text
 from rvmon.report.table_text import table_text
 
@@ -61,6 +61,7 @@ def _print_verdicts(tables: RobotTables, console: Console) -> None:
     if tables.remark:
         console.print(tables.remark, style="dim")
     console.print(LEGEND, style="dim")
+    console.print(INTERVALS, style="dim")
     console.print()
 
 

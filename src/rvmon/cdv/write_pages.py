@@ -9,19 +9,26 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign, Robot
-from rvmon.cdv.campaign_files import RUNS, TESTS
+from rvmon.cdv.campaign_files import RUNS, SMALLEST, TESTS
 from rvmon.cdv.campaign_page import campaign_page
 from rvmon.cdv.coverage import write_coverage
 from rvmon.cdv.examples import Examples, comparable_jobs
-from rvmon.cdv.outcome import Played, Results
+from rvmon.cdv.gate import judge_test
+from rvmon.cdv.outcome import Outcome, Played, Results
 from rvmon.cdv.plan import Job
+from rvmon.cdv.play import player
 from rvmon.cdv.program import typed
+from rvmon.cdv.regression import regression_test, removed, save_regression, small_name
 from rvmon.cdv.run_pages import Replay, play_again, replay_page
+from rvmon.cdv.shrink import Shrunk, failure_of, shrink
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.execute import parallel
 from rvmon.loading import load
+from rvmon.report.folder import made
+from rvmon.report.markup import Child, e
 from rvmon.report.run_page import JudgedRun
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
@@ -39,6 +46,7 @@ def write_pages(
     examples: Examples,
     jobs: int | None,
     tell: Callable[[float], None],
+    shrinks: bool = False,
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and what was covered.
 
@@ -51,6 +59,7 @@ def write_pages(
         examples: the tests that get a page.
         jobs: processes that write pages; default: one per core.
         tell: told how many pages are written.
+        shrinks: tests with a page that fail, and are not made to, are shrunk to `smallest/`.
 
     Returns:
         The tests that came out otherwise when they were played again for their pages.
@@ -65,7 +74,7 @@ def write_pages(
         if (one.job.robot, one.job.test.name) in shown and one.job.robot in judged
     ]
     written = parallel.execute(
-        [_page_of(one, folder, results) for one in wanted],
+        [_page_of(one, folder, results, shrinks=shrinks) for one in wanted],
         partial(_writer, folder, judged),
         jobs=jobs or os.cpu_count() or 1,
         what="page",
@@ -73,9 +82,13 @@ def write_pages(
     addresses: dict[tuple[str, str], str] = {}
     otherwise: list[str] = []
     with closing(written):
-        for number, (one, verdicts) in enumerate(zip(wanted, written, strict=True), start=1):
+        pairs = zip(wanted, written, strict=True)
+        for number, (one, (verdicts, shrunk)) in enumerate(pairs, start=1):
             test = one.job.test.name
             addresses[one.job.robot, test] = _address(one.job)
+            if shrunk is not None:
+                small = regression_test(campaign, one.job, shrunk)
+                save_regression(campaign, small, made(folder / SMALLEST))
             if verdicts != one.outcome.verdicts:
                 otherwise.append(test)
             tell(number)
@@ -91,6 +104,9 @@ def write_pages(
         examples=cells,
         tests=addresses,
         coverage=write_coverage(folder, results, addresses),
+        further=campaign.presentation.sections(
+            {(one.job.robot, one.job.test.name): one.job.test for one in results.played}, addresses
+        ),
     )
     write_whole(folder / REPORT, page)
     return otherwise
@@ -104,22 +120,37 @@ class _Page:
         job: the test that it shows.
         command: replays it.
         others: tests that passed what it failed.
+        shrink: shrinks it; empty: there is no failure.
+        failed: its outcome, if it is to be shrunk now.
     """
 
     job: Job
     command: str
     others: tuple[Job, ...]
+    shrink: str
+    failed: Outcome | None
 
 
-def _page_of(one: Played, folder: Path, results: Results) -> _Page:
+def _page_of(one: Played, folder: Path, results: Results, *, shrinks: bool) -> _Page:
+    campaign = results.plan.campaign
     verdicts = one.outcome.verdicts
     failed = [name for name, verdict in verdicts.items() if verdict is Verdict.FAIL]
     others = comparable_jobs(one.job, failed, results.played) if failed else ()
-    return _Page(one.job, _command(folder, one.job, results.plan.campaign), tuple(others))
+    fails = bool(one.job.test.removable) and failure_of(one.outcome) is not None
+    is_known = one.job.test.mutation is not None or not judge_test(one, ()).wrong
+    return _Page(
+        one.job,
+        _command("replay", folder, one.job, campaign),
+        tuple(others),
+        _command("shrink", folder, one.job, campaign) if fails else "",
+        one.outcome if shrinks and fails and not is_known else None,
+    )
 
 
-def _writer(folder: Path, robots: Mapping[str, Robot]) -> Callable[[_Page], Mapping[str, Verdict]]:
-    """What writes a page and returns the verdicts on the test that was played for it."""
+def _writer(
+    folder: Path, robots: Mapping[str, Robot]
+) -> Callable[[_Page], tuple[Mapping[str, Verdict], Shrunk[Test] | None]]:
+    """What writes a page, and returns the verdicts on its test and, if it is shrunk, the result."""
     specs = {name: load(robot.spec) for name, robot in robots.items() if robot.spec is not None}
     compared: dict[tuple[str, str], Replay] = {}
 
@@ -131,8 +162,16 @@ def _writer(folder: Path, robots: Mapping[str, Robot]) -> Callable[[_Page], Mapp
         """A run that many pages may compare theirs with: it is kept."""
         return compared.setdefault((job.robot, job.test.name), replay_of(job)).judged
 
-    def write(page: _Page) -> Mapping[str, Verdict]:
+    def shrunk_of(page: _Page) -> Shrunk[Test] | None:
+        if page.failed is None:
+            return None
+        robot = page.job.robot
+        play = player({robot: robots[robot]}, None, None)
+        return shrink(page.job.test, page.failed, lambda test: play(Job(test, robot))[0])
+
+    def write(page: _Page) -> tuple[Mapping[str, Verdict], Shrunk[Test] | None]:
         replay, robot = replay_of(page.job), page.job.robot
+        shrunk = shrunk_of(page)
         text = replay_page(
             replay,
             robot,
@@ -140,11 +179,22 @@ def _writer(folder: Path, robots: Mapping[str, Robot]) -> Callable[[_Page], Mapp
             command=page.command,
             others=[compared_with(job) for job in page.others],
             back=f"../{REPORT}",
+            smallest=_smallest(page, shrunk),
         )
         write_whole(folder / _address(page.job), text)
-        return replay.report.verdicts
+        return replay.report.verdicts, shrunk
 
     return write
+
+
+def _smallest(page: _Page, shrunk: Shrunk[Test] | None) -> Child:
+    """The way to the smallest test that fails alike, or the command that finds it."""
+    if shrunk is None:
+        return e("code", None, page.shrink) if page.shrink else None
+    test = page.job.test
+    address = f"../{SMALLEST}/{small_name(test)}.json"
+    link = e("a", {"href": address}, removed(test, shrunk.test))
+    return e("span", None, link, f", in which {shrunk.failure}")
 
 
 def _address(job: Job) -> str:
@@ -152,8 +202,8 @@ def _address(job: Job) -> str:
     return f"{RUNS}/{job.robot}-{job.test.name}.html"
 
 
-def _command(folder: Path, job: Job, campaign: Campaign) -> str:
-    words: list[object] = ["replay", folder / TESTS / f"{job.test.name}.json"]
+def _command(command: str, folder: Path, job: Job, campaign: Campaign) -> str:
+    words: list[object] = [command, folder / TESTS / f"{job.test.name}.json"]
     if job.test.robot is None and len(campaign.robots) > 1:
         words += campaign.presentation.robot_words(job.robot)
     return typed(campaign.program, words)

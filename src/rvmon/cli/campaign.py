@@ -1,6 +1,7 @@
-"""The command line of a campaign of tests: `run` plays all, `replay` one.
+"""The command line of a campaign of tests: `run` plays all, `replay` one, `shrink` shrinks one.
 
-Exit codes: 0 all went as expected (a replay: no requirement failed), 1 it did not, 2 wrong input,
+Exit codes: 0 all went as expected (a replay: no requirement failed; a test that is shrunk fails),
+1 it did not, 2 wrong input,
 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 """
 
@@ -74,6 +75,12 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
     )
     replay.set_defaults(run=_replay)
+    smaller = commands.add_parser("shrink", help="find the smallest test that fails like one")
+    add_shrink_options(smaller)
+    smaller.add_argument(
+        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
+    )
+    smaller.set_defaults(run=_shrink)
     return parser
 
 
@@ -95,6 +102,26 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         default="examples",
         help="of which runs to write a page: an example of each count, or all (%(default)s)",
     )
+    parser.add_argument(
+        "--shrink",
+        action="store_true",
+        help="with --out, shrink the tests with a page that fail, and are not made to",
+    )
+
+
+def add_shrink_options(parser: argparse.ArgumentParser) -> None:
+    """Declare which test is shrunk, by which failure, and where the smallest one goes."""
+    parser.description = (
+        "Take away from a failing test what its failure does not need, print what is left, and "
+        "write it as a regression test."
+    )
+    parser.add_argument("test", metavar="TEST", help="a .json file")
+    parser.add_argument(
+        "--requirement", metavar="ID", help="that is to fail (default: the first that does)"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", help="write it there, with a test of pytest that replays it"
+    )
 
 
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
@@ -103,6 +130,9 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
     parser.add_argument(
         "--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove"
+    )
+    parser.add_argument(
+        "--expected", action="store_true", help="exit with 0 if all came out as the test expects"
     )
     add_judging_options(parser)
 
@@ -192,4 +222,17 @@ def _replay(arguments: argparse.Namespace) -> int:
         out=arguments.out,
         mcap=arguments.mcap,
         form=arguments.format,
+        expected=arguments.expected,
+    )
+
+
+def _shrink(arguments: argparse.Namespace) -> int:
+    from rvmon.cli.campaign_shrink import shrink_file
+
+    return shrink_file(
+        arguments.campaign,
+        arguments.test,
+        arguments.robot,
+        arguments.requirement,
+        arguments.out,
     )

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.examples import comparable_jobs
 from rvmon.cdv.files import load as load_test
+from rvmon.cdv.gate import judge_test
+from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import Job
 from rvmon.cdv.program import typed
 from rvmon.cdv.run_pages import Replay, play_again, replay_page
-from rvmon.cli.say import say_json
+from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.loading import load
@@ -31,6 +34,7 @@ def replay(
     out: str | None,
     mcap: str | None,
     form: str,
+    expected: bool = False,
 ) -> int:
     """Play a test file again, judge it, and return an exit code: 1 if a requirement failed.
 
@@ -41,11 +45,10 @@ def replay(
         out: folder for the recording and a page.
         mcap: file for the verdicts and the scene.
         form: `text` for people, or `json`.
+        expected: the exit code is 0 if all came out as the campaign would expect it.
     """
     test = load_test(path, campaign.test)
-    name = robot or test.robot or next(iter(campaign.robots))
-    if name not in campaign.robots:
-        raise UnknownNameError(f"no robot `{name}`: there are {', '.join(campaign.robots)}")
+    name = robot_of(campaign, test, robot)
     under_test = campaign.robots[name]
     if under_test.spec is None:
         raise RvmonError(f"robot `{name}` has no requirements: name some by --spec")
@@ -71,7 +74,30 @@ def replay(
         page = replay_page(played, name, spec, command=command, others=others)
         # The file is named after the test's file: what it says inside is no path.
         _write(folder / Path(path).stem, played, page)
+    if expected:
+        one = Played(Job(test, name), played.outcome)
+        wrong = judge_test(one, campaign.expected_failures).wrong
+        for what in wrong:
+            warn(f"not as expected: {what}")
+        return int(bool(wrong))
     return int(Verdict.FAIL in played.report.verdicts.values())
+
+
+def robot_of(campaign: Campaign, test: Test, robot: str | None) -> str:
+    """The robot that a test is played on.
+
+    Args:
+        campaign: that the test is of.
+        test: the test.
+        robot: that was asked for; `None`: the one that the test names, else the campaign's first.
+
+    Raises:
+        UnknownNameError: there is no such robot.
+    """
+    name = robot or test.robot or next(iter(campaign.robots))
+    if name not in campaign.robots:
+        raise UnknownNameError(f"no robot `{name}`: there are {', '.join(campaign.robots)}")
+    return name
 
 
 def _write(target: Path, played: Replay, page: str) -> None:

@@ -14,10 +14,11 @@ from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.documents import to_json
 from rvmon.cdv.examples import choose_examples
 from rvmon.cdv.execute import execute
-from rvmon.cdv.gate import CampaignJudgement, judge_campaign
+from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign
 from rvmon.cdv.outcome import Results
 from rvmon.cdv.plan import plan
 from rvmon.cdv.program import typed
+from rvmon.cdv.run_share import Decision
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
@@ -53,7 +54,12 @@ class Conducted:
         """
         robots = self.summary.robots.items()
         requirements = {name: tuple(robot.requirements) for name, robot in robots}
-        return judge_campaign(self.results, requirements, strict=strict)
+        shares: dict[RobotRequirement, dict[str, Decision]] = {}
+        for name, robot in robots:
+            for strategy, figures in robot.strategies.items():
+                for requirement, decision in figures.shares.items():
+                    shares.setdefault((name, requirement), {})[strategy] = decision
+        return judge_campaign(self.results, requirements, shares, strict=strict)
 
 
 def conduct(
@@ -83,6 +89,7 @@ def conduct(
     planned = len(chosen.jobs())
     command, *others = words
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
+    amount += ["--shrink"] if arguments.shrink else []
     again = typed(campaign.program, [command, *amount, *others, "--out", arguments.out])
     kept = None
     if folder is not None:
@@ -110,6 +117,7 @@ def conduct(
                 examples=examples,
                 jobs=arguments.jobs,
                 tell=tell,
+                shrinks=arguments.shrink,
             )
         if otherwise:
             warn(

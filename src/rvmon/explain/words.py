@@ -51,8 +51,11 @@ def requirement_in_words(requirement: Requirement) -> list[str]:
         each = requirement.for_each
         field = format_numeric(each.value)
         lines.append(f"All this for each value `{each.name}` of {field} by itself.")
-    end = _AT_END[requirement.at_end]
-    return [*lines, end] if end else lines
+    if end := _AT_END[requirement.at_end]:
+        lines.append(end)
+    if requirement.run_share is not None:
+        lines.append(f"A campaign decides whether that is so {requirement.run_share}.")
+    return lines
 
 
 def _starts(requirement: Requirement) -> str:

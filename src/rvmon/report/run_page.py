@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rvmon.report.markup import Child
 from rvmon.report.scene import Scene
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
@@ -44,6 +45,6 @@ class RunPage:
     spec: CheckedSpec
     command: str
     others: Sequence[JudgedRun] = ()
-    facts: Sequence[tuple[str, str]] = ()
+    facts: Sequence[tuple[str, Child]] = ()
     scene: Scene | None = None
     back: str = ""

@@ -37,6 +37,8 @@ class VerdictTable:
         checked: what model checking says by requirement, `None` if it cannot be expressed;
             empty if nothing was checked.
         notes: remarks below the table.
+        shows_intervals: whether each count comes with the interval of its share: that runs are
+            drawn at random makes sense of it.
     """
 
     title: str
@@ -44,6 +46,7 @@ class VerdictTable:
     groups: tuple[RunGroup, ...]
     checked: Mapping[str, bool | None] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    shows_intervals: bool = False
 
 
 def checked_text(holds: bool | None) -> str:

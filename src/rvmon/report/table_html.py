@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 
 from rvmon.report.markup import Child, e, scroll
+from rvmon.report.proportion import interval_text
 from rvmon.report.table import Counts, VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
 
@@ -94,11 +95,15 @@ def _row(
         counts = next(
             (one.counts.get(name) for one in table.groups if one.name == group.name), None
         )
-        cells.extend(_cells(counts, group.name, name, link))
+        runs = group.runs if table.shows_intervals else 0
+        cells.extend(_cells(counts, runs, group.name, name, link))
     return e("tr", None, *cells)
 
 
-def _cells(counts: Counts | None, group: str, name: str, link: Link | None) -> list[ET.Element]:
+def _cells(
+    counts: Counts | None, runs: int, group: str, name: str, link: Link | None
+) -> list[ET.Element]:
+    """The counts of a group, each with its interval, unless `runs` is 0."""
     if counts is None:
         return [e("td", {"colspan": len(Verdict), "class": "none"}, "–")]
     cells = []
@@ -110,5 +115,6 @@ def _cells(counts: Counts | None, group: str, name: str, link: Link | None) -> l
             title = f"an example of {name} {verdict.value}"
             shown = e("a", {"href": address, "title": title}, str(count))
         kind = None if count else "zero"
-        cells.append(e("td", {"data-verdict": verdict.value, "class": kind}, shown))
+        share = e("small", None, interval_text(count, runs)) if runs else None
+        cells.append(e("td", {"data-verdict": verdict.value, "class": kind}, shown, share))
     return cells

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rvmon.diagnostics.shown import shown_line
+from rvmon.report.proportion import interval_text
 from rvmon.report.table import VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
 
@@ -53,7 +54,7 @@ def table_latex(table: VerdictTable) -> str:
         "".join(rules),
         _row(["", *below, *heads]),
         r"\midrule",
-        *(_row(_cells(table, name)) for name in table.requirements),
+        *(row for name in table.requirements for row in _rows(table, name)),
         r"\bottomrule",
         r"\end{tabular}",
         *(rf"\par\smallskip {{\footnotesize {escape(note)}}}" for note in table.notes),
@@ -69,6 +70,22 @@ def escape(text: str) -> str:
     '50 \\% of hand\\_distance'
     """
     return "".join(_SPECIAL.get(character, character) for character in shown_line(text))
+
+
+def _rows(table: VerdictTable, name: str) -> list[str]:
+    """The line of a requirement, and below it that of the intervals."""
+    rows = [_row(_cells(table, name))]
+    if table.shows_intervals:
+        cells = [""] * (2 if table.checked else 1)
+        for group in table.groups:
+            counts = group.counts.get(name)
+            shares = (
+                "" if counts is None else interval_text(counts.get(verdict, 0), group.runs)
+                for verdict in Verdict
+            )
+            cells.extend(rf"\scriptsize {escape(share)}" if share else "" for share in shares)
+        rows.append(_row(cells))
+    return rows
 
 
 def _cells(table: VerdictTable, name: str) -> list[str]:

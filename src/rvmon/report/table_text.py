@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from rvmon.report.proportion import interval_text
 from rvmon.report.style import MARKS
 from rvmon.report.table import RunGroup, VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
@@ -17,11 +18,11 @@ if TYPE_CHECKING:
 ZERO = "·"
 """A count of nothing, so that the others stand out."""
 
-ABREAST = 3
-"""Groups of runs that fit beside each other into 80 columns."""
-
 WIDTH = 4
 """Characters of a column of counts."""
+
+WIDE = 7
+"""The same with intervals."""
 
 
 def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None = None) -> Group:
@@ -35,9 +36,10 @@ def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None
     from rich.console import Group
     from rich.text import Text
 
+    abreast = 2 if table.shows_intervals else 3  # so many fit into 80 columns
     grids = [
-        _grid(table, beside or {}, table.groups[first : first + ABREAST], with_checked=not first)
-        for first in range(0, len(table.groups), ABREAST)
+        _grid(table, beside or {}, table.groups[first : first + abreast], with_checked=not first)
+        for first in range(0, len(table.groups), abreast)
     ]
     notes = (Text(note, style="dim") for note in table.notes)
     return Group(Text(table.title, style="bold"), *grids, *notes)
@@ -65,7 +67,8 @@ def _grid(
     has_checked = with_checked and any(one.checked for one in (table, *others.values()))
     if has_checked:
         grid.add_column(Text("model\nchecking"), justify="center")
-    letters = "".join(f"{verdict.value:>{WIDTH}}" for verdict in Verdict)
+    width = WIDE if table.shows_intervals else WIDTH
+    letters = "".join(f"{verdict.value:>{width}}" for verdict in Verdict)
     for group in groups:
         runs = f"{group.name} ({group.runs})"
         grid.add_column(Text(f"{runs:^{len(letters)}}\n{letters}"), no_wrap=True)
@@ -75,7 +78,7 @@ def _grid(
             cells = [Text(heading, style="dim" if dim else "bold")]
             if has_checked:
                 cells.append(_checked_cell(source, name, dim=dim))
-            cells.extend(_counts_cell(source, group.name, name, dim=dim) for group in groups)
+            cells.extend(_counts_cell(source, group.name, name, width, dim=dim) for group in groups)
             grid.add_row(*cells)
     return grid
 
@@ -87,14 +90,20 @@ def _checked_cell(table: VerdictTable, name: str, *, dim: bool) -> Text:
     return Text(shown, style="dim" if dim else "")
 
 
-def _counts_cell(table: VerdictTable, group: str, name: str, *, dim: bool) -> Text:
+def _counts_cell(table: VerdictTable, group: str, name: str, width: int, *, dim: bool) -> Text:
+    """The counts of a group, and below them the intervals of their shares."""
     from rich.text import Text
 
     cell = Text()
-    counts = next((one.counts.get(name) for one in table.groups if one.name == group), None)
+    counts, runs = next(
+        ((one.counts.get(name), one.runs) for one in table.groups if one.name == group), (None, 0)
+    )
     for verdict in Verdict:
         count = None if counts is None else counts.get(verdict, 0)
         shown = "" if count is None else str(count) if count else ZERO
         style = "dim" if dim or not count else MARKS[verdict].terminal
-        cell.append(f"{shown:>{WIDTH}}", style=style)
+        cell.append(f"{shown:>{width}}", style=style)
+    if table.shows_intervals and counts is not None:
+        shares = (interval_text(counts.get(verdict, 0), runs) for verdict in Verdict)
+        cell.append("\n" + "".join(f"{share:>{width}}" for share in shares), style="dim")
     return cell

@@ -10,14 +10,18 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 
+from handover.campaign.campaign import handover_campaign
+from handover.campaign.spread import spread, spread_text
 from handover.checker import spec_path
 from handover.cli import main
 from handover.generator.files import directed
 from rvmon.cdv.execute import execute
 from rvmon.cdv.files import save
+from rvmon.cdv.plan import plan
 from rvmon.cli import campaign_run
 
 pytestmark = pytest.mark.campaign
@@ -29,8 +33,35 @@ ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 def demo(tmp_path_factory):
     """The files of a small demo."""
     folder = tmp_path_factory.mktemp("demo")
-    assert main(["demo", "--tests", "3", "--jobs", "1", "--out", str(folder)]) == 0
+    words = ["demo", "--tests", "3", "--conform", "1", "--jobs", "1", "--out", str(folder)]
+    assert main(words) == 0
     return folder
+
+
+def test_the_page_has_what_the_model_says(demo):
+    """Its claims about all runs, and that runs of the correct robot conform to it."""
+    page = (demo / "report.html").read_text()
+    section = page[page.index("<h2>The model</h2>") :]
+    claims = re.findall(r'<th scope="row">(R\d)</th><td>(\w)</td><td>(\w)</td>', section)
+    assert claims == [(f"R{number}", "T", "T") for number in range(1, 5)]
+    assert re.findall(r"<li>([\w-]+): 1 of 1 run conform", section)[:3] == [
+        "pseudorandom",
+        "constrained",
+        "model-based",
+    ]
+
+
+def test_the_paper_stands_beside_the_spread_over_seeds(demo):
+    """The counts that were kept hold what campaigns of these seeds count."""
+    found = spread()
+    assert spread_text() in (demo / "report.html").read_text()
+    campaign = replace(handover_campaign(("legacy",)), code=None)
+    for seed in (found.first, found.first + 1):
+        results = execute(plan(campaign, ("model-based",), seed=seed), jobs=1, controls=False)
+        for requirement, row in found.ranges["model-based"].items():
+            for verdict, (low, high) in row.items():
+                verdicts = [one.outcome.verdicts[requirement] for one in results.played]
+                assert low <= verdicts.count(verdict) <= high
 
 
 def test_the_demo_leaves_all_its_files(demo):
@@ -45,6 +76,16 @@ def test_the_demo_leaves_all_its_files(demo):
     assert {path.name for path in (demo / "templates").iterdir()} <= columns.keys()
     assert "likeliest by the model's weights" in " ".join((demo / "table.txt").read_text().split())
     assert "constrained-002" in {path.stem for path in (demo / "tests").iterdir()}
+
+
+def test_a_failing_test_is_shrunk(demo, tmp_path, capsys):
+    """To the protocol and the readings; the smallest test finds the fault again."""
+    test = demo / "tests/mutant-releases-late.json"
+    assert main(["shrink", str(test), "--out", str(tmp_path)]) == 0
+    assert "R1 fails: 6 of 9 actions" in capsys.readouterr().err
+    small = tmp_path / "mutant-releases-late-small.json"
+    assert main(["replay", str(small), "--expected"]) == 0
+    assert main(["shrink", str(demo / "tests/released.json")]) == 1
 
 
 def test_all_forms_of_the_table_agree(demo):

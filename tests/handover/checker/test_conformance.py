@@ -1,5 +1,7 @@
 """The correct robot does what the model says; robots with faults do not."""
 
+from dataclasses import replace
+
 import pytest
 
 from handover.checker.conformance import check_run
@@ -33,6 +35,21 @@ def test_runs_of_the_correct_robot_conform(network, test):
 def test_runs_that_follow_the_model_conform(network, of_the_model, witness):
     """So does it where the human does as the model has it."""
     assert check_run(network, run_test(of_the_model[witness])).conforms is True
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize(("moved_s", "conforms"), [(0.0, True), (None, False), (1.0, False)])
+def test_the_robot_goes_by_the_readiness_of_the_human(network, of_the_model, moved_s, conforms):
+    """A robot that senses without it, or before it, leaves the network."""
+    run = run_test(of_the_model[1])
+    samples = []
+    for t_ns, values in run.samples:
+        if "humanIsReady" in values:
+            values = {name: value for name, value in values.items() if name != "humanIsReady"}
+            if moved_s is not None:
+                samples.append((t_ns + round(moved_s * 1e9), {"humanIsReady": True}))
+        samples.append((t_ns, values))
+    assert check_run(network, replace(run, samples=tuple(samples))).conforms is conforms
 
 
 @pytest.mark.campaign

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from dataclasses import replace
 
 import pytest
 from rich.console import Console
@@ -58,6 +59,17 @@ def test_latex_is_as_agreed(golden):
 def test_csv_is_as_agreed(golden):
     """One row per table, group and requirement."""
     golden("table.csv", tables_csv({"ours": OURS, "paper": PAPER}))
+
+
+def test_intervals_are_as_agreed(golden):
+    """Below each count that of its share, outwards; a table beside it may have none."""
+    sampled = replace(OURS, shows_intervals=True)
+    golden("intervals.txt", as_text(table_text(sampled, beside={"paper": PAPER})))
+    golden("intervals.tex", table_latex(sampled))
+    golden("intervals.csv", tables_csv({"ours": sampled, "paper": PAPER}))
+    page = to_html(table_html(sampled, beside={"paper": PAPER}))
+    assert page.count("<small>23–44</small>") == 2
+    assert "<small>0–4</small>" in page
 
 
 def test_html_is_as_agreed(golden):

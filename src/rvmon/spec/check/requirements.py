@@ -19,7 +19,14 @@ from rvmon.spec.check.traps import capture_traps, traps_at_start, traps_at_trigg
 from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import Bound, BoundAtom, Captured, FieldValue, Formula
-from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, Mode, Requirement
+from rvmon.spec.checked.specification import (
+    Capture,
+    EndPolicy,
+    ForEach,
+    Mode,
+    Requirement,
+    RunShare,
+)
 from rvmon.spec.checked.tense import (
     end_part,
     future_part,
@@ -43,6 +50,7 @@ from rvmon.spec.syntax.items import (
     PropertyClause,
     RequirementItem,
     ResponseMonitor,
+    RunShareClause,
     ScopeClause,
     TagsClause,
     TextClause,
@@ -61,6 +69,7 @@ Parts = tuple[Mode, Formula, Formula]
 def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement | None:
     """Check a requirement; `None` if it is wrong, and then that is reported."""
     policy = _policy(checker, item)
+    share = _run_share(checker, item)
     try:
         for_each, outer = _instances(checker, item)
         captures, inner = _captures(checker, item, outer)
@@ -93,6 +102,7 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         span=item.span,
         ctl=ctl,
         scope=scopes[0] if scopes else "",
+        run_share=share,
     )
 
 
@@ -235,6 +245,15 @@ def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
             return EndPolicy(clause.policy.text)
         checker.report(rules.unknown_policy(clause.policy.span, policies))
     return EndPolicy.DEFAULT
+
+
+def _run_share(checker: Checker, item: RequirementItem) -> RunShare | None:
+    for clause in _clauses(item, RunShareClause):
+        number = clause.share
+        if number.value is not None and number.unit == "%" and 0 < number.value < 100:
+            return RunShare(clause.at_least, float(number.value))
+        checker.report(rules.bad_run_share(number.span))
+    return None
 
 
 def _instances(checker: Checker, item: RequirementItem) -> tuple[ForEach | None, Scope]:

@@ -101,6 +101,23 @@ class ForEach:
 
 
 @dataclass(frozen=True, slots=True)
+class RunShare:
+    """`in at least 95 % of runs`: single runs are judged as always, campaigns decide by all.
+
+    Attributes:
+        at_least: whether the requirement is to hold in so many runs, or in so many at most.
+        percent: above 0, below 100.
+    """
+
+    at_least: bool
+    percent: float
+
+    def __str__(self) -> str:
+        """As it is written."""
+        return f"in at {'least' if self.at_least else 'most'} {self.percent:.15g} % of runs"
+
+
+@dataclass(frozen=True, slots=True)
 class Requirement:
     """A requirement, split into trigger and consequent.
 
@@ -115,6 +132,7 @@ class Requirement:
         property: the CTL property's text, if it has one.
         ctl: the same, checked.
         scope: the `scope` clause as written; trigger and consequent have it worked in.
+        run_share: in what share of runs it is to hold; `None`: in each.
         span: of the whole item.
     """
 
@@ -135,6 +153,7 @@ class Requirement:
     span: Span | None = None
     ctl: Property | None = None
     scope: str = ""
+    run_share: RunShare | None = None
 
 
 class TimeModel(StrEnum):

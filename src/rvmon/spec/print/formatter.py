@@ -20,7 +20,17 @@ _CLAUSES = frozenset(
     {
         *("UPON", "WHENEVER", "THEN", "MONITOR_AS_RESPONSE", "MONITOR_AS_WRITTEN"),
         *("TEXT_CLAUSE", "SEVERITY", "TAGS"),
-        *("LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE", "GOAL", "WEIGHT", "UNWANTED"),
+        *(
+            "LET",
+            "FOR_EACH",
+            "AT_END",
+            "PROPERTY",
+            "SCOPE",
+            "RUN_SHARE",
+            "GOAL",
+            "WEIGHT",
+            "UNWANTED",
+        ),
     }
 )
 """Terminals that start a line inside an item."""

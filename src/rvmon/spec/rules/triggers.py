@@ -174,6 +174,31 @@ requirement R1
 """,
 )
 
+RUN_SHARE = Rule(
+    "RV075",
+    "bad-run-share",
+    Severity.ERROR,
+    "A share of runs is no percentage between 0 and 100.",
+    "What has to hold in every run, or in none, is the requirement itself or its negation; a share "
+    "of runs is decided by a test that can err.",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+  in at least 100 % of runs
+""",
+    """spec demo
+event asked, released
+
+requirement R1
+  upon asked
+  then within 3 s released
+  in at least 99 % of runs
+""",
+)
+
 RULES = (
     FUTURE_TRIGGER,
     END_NOT_ALONE,
@@ -182,6 +207,7 @@ RULES = (
     DOUBLE_CLAUSE,
     UNKNOWN_POLICY,
     NEVER_READ,
+    RUN_SHARE,
 )
 
 
@@ -251,6 +277,16 @@ def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:
     """A policy that does not exist."""
     mend = did_you_mean(span.text, policies, f"there are {', '.join(policies)}")
     return finding(UNKNOWN_POLICY, f"no policy named `{short(span.text)}`", span, mend=mend)
+
+
+def bad_run_share(span: Span) -> Diagnostic:
+    """A share of runs that no sample can decide, or that is no percentage."""
+    return finding(
+        RUN_SHARE,
+        f"`{short(span.text)}` is no percentage between 0 and 100",
+        span,
+        mend="write `in at least 95 % of runs`; for all runs the clause is left out",
+    )
 
 
 def never_read(span: Span, kind: str) -> Diagnostic:

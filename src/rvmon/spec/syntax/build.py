@@ -38,6 +38,7 @@ from rvmon.spec.syntax.items import (
     PropertyItem,
     RequirementItem,
     ResponseMonitor,
+    RunShareClause,
     SampledClause,
     ScopeClause,
     SignalItem,
@@ -180,6 +181,10 @@ class Builder(ExpressionBuilder):
 
     def owned_property(self, meta: Meta, children: Children) -> PropertyClause:
         return PropertyClause(children[1], self.span(meta))
+
+    def run_share(self, meta: Meta, children: Children) -> RunShareClause:
+        at_least = children[0].endswith("least")
+        return RunShareClause(at_least, self.number(meta, children[1:]), self.span(meta))
 
     def scope_before(self, meta: Meta, children: Children) -> ScopeClause:
         return ScopeClause(None, children[-1], True, self.span(meta))

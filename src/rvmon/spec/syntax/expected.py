@@ -26,7 +26,10 @@ _VALUE = {"NUMBER", "NAME", "CALL", "LPAR", "MINUS"}
 _DURATION = {"NUMBER", "NAME", "LPAR", "MINUS"}
 _ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
 _INFIX = {"AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS"}
-_CLAUSES = {"TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE"}
+_CLAUSES = {
+    "TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE",
+    "RUN_SHARE",
+}  # fmt: skip
 _WORDS = {
     "NAME": "a name",
     "NUMBER": "a number",
@@ -53,6 +56,8 @@ _WORDS = {
     "UNWANTED": "`ignore` or `illegal`",
     "FOR_EACH": "`for each`",
     "AT_END": "`at end`",
+    "RUN_SHARE": "`in at least`",
+    "_OF_RUNS": "`of runs`",
     "TRUTH": "`true` or `false`",
     "NOT": "`not`",
     "AND": "`and`",

@@ -219,8 +219,24 @@ class ScopeClause:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class RunShareClause:
+    """`in at least 95 % of runs`, `in at most 5 % of runs`."""
+
+    at_least: bool
+    share: Number
+    span: Span
+
+
 Clause = (
-    TextClause | TagsClause | LetClause | ForEachClause | AtEndClause | PropertyClause | ScopeClause
+    TextClause
+    | TagsClause
+    | LetClause
+    | ForEachClause
+    | AtEndClause
+    | PropertyClause
+    | ScopeClause
+    | RunShareClause
 )
 
 

@@ -61,6 +61,7 @@ def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> 
         or _name_mend(found, before.text)
         or _let_mend(found, before.text)
         or _ignore_mend(found, before.text)
+        or _share_mend(found, accepted)
         or _structure_mend(found, accepted, before.text)
         or _word_mend(found, accepted, parser, before.text)
         or _decimal_comma(before.text)
@@ -108,6 +109,13 @@ def _ignore_mend(found: str, before: str) -> str:
     """What mends what a signal ignores, in a wrong place or spelling."""
     if found == "ignore" and before.startswith("signal"):
         return "write `ignore NaN` behind the type and role, before `stale after`"
+    return ""
+
+
+def _share_mend(found: str, accepted: set[str]) -> str:
+    """What mends a share of runs in other words."""
+    if "_OF_RUNS" in accepted or (found == "in" and "AND" in accepted):
+        return "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
     return ""
 
 

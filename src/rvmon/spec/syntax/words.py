@@ -47,11 +47,11 @@ INFIX_WORDS = frozenset(" ".join(OPERATOR_TERMINALS["INFIX"]).split())
 
 CLAUSE_WORDS = frozenset(
     {
-        *("source", "rationale", "severity", "tags", "scope", "at", "let", "monitor"),
+        *("source", "rationale", "severity", "tags", "scope", "at", "let", "monitor", "in"),
         *("goal", "weight", "ignore", "illegal"),
     }
 )
 """Words that start a clause of an item; elsewhere they are names."""
 
-NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output", "stale"))
+NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output", "stale", "of"))
 """Words that do not count as the unit of a number before them."""

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rvmon.spec.checked.specification import EndPolicy, Mode
+from rvmon.spec.checked.specification import EndPolicy, Mode, RunShare
 from rvmon.spec.print.printer import format_formula
 
 
@@ -136,6 +136,27 @@ def test_clauses(requirement):
     assert (found.severity, found.rationale, found.source) == ("high", "because", "ISO")
     assert found.at_end is EndPolicy.STRONG
     assert [capture.name for capture in found.captures] == ["v"]
+
+
+@pytest.mark.parametrize(
+    ("clause", "share"),
+    [
+        ("in at least 95 % of runs", RunShare(True, 95.0)),
+        ("in  at most\n 0.5% of runs at end: weak", RunShare(False, 0.5)),
+        ('source "a"', None),
+    ],
+)
+def test_a_share_of_runs_is_kept(requirement, clause, share):
+    """For campaigns; written again, it reads the same."""
+    found = requirement(f"upon e then within 1 s a {clause}")
+    assert found.run_share == share
+    assert share is None or requirement(f"upon e then F a {share}").run_share == share
+
+
+@pytest.mark.parametrize("share", ["100 %", "0 %", "0.95", "95", "95 s", "1e999 %", "200 %"])
+def test_a_share_of_runs_is_a_percentage_between_0_and_100(codes, share):
+    """All runs, or none, need no such clause."""
+    assert codes(f"requirement R always a in at least {share} of runs") == ["RV075"]
 
 
 def test_let_is_of_the_trigger(codes, requirement):

@@ -1,0 +1,113 @@
+"""Does a requirement hold in so many runs? A campaign decides it, with errors that are stated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import ceil, log
+
+from rvmon.spec.checked.specification import RunShare
+from rvmon.verdict.verdict import Verdict
+
+ALPHA = 0.05
+"""How probable it is at most that what holds is rejected."""
+
+BETA = 0.05
+"""How probable it is at most that what does not hold is accepted."""
+
+HALF_WIDTH = 0.05
+"""Half the width of the region of indifference; less where the share is close to 0 or 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What the tests of a strategy say of a share of runs.
+
+    Attributes:
+        share: that was asked for.
+        holds: whether it was accepted or rejected; `None`: there were too few tests.
+        tests: triggered ones that were taken until then.
+        inconclusive: how many of these.
+        passed: how many of these.
+        missing: tests that are to come at least, if all of them go well; 0 if it is decided.
+        indifference: shares between which nothing is promised; if the true one is outside of them,
+            it is rejected wrongly with a probability of at most `ALPHA`, and accepted wrongly with
+            one of at most `BETA`.
+    """
+
+    share: RunShare
+    holds: bool | None
+    tests: int
+    inconclusive: int
+    passed: int
+    missing: int
+    indifference: tuple[float, float]
+
+    def __str__(self) -> str:
+        taken = f"{self.passed} of {self.tests} triggered tests passed"
+        if self.inconclusive:
+            taken += f", {self.inconclusive} inconclusive"
+        if self.holds is None:
+            go_well = "pass" if self.share.at_least else "fail"
+            return f"undecided ({taken}): {self.missing} more tests at least, if all {go_well}"
+        return f"{'holds' if self.holds else 'does not hold'} ({taken} up to the decision)"
+
+
+def decide(share: RunShare, verdicts: Iterable[Verdict]) -> Decision:
+    """Take tests one by one until the share is accepted or rejected: Wald's sequential test.
+
+    A test that was not triggered says nothing. One that is inconclusive counts as failed for what
+    its pass would favour, and as passed for what its failure would: the errors are kept however it
+    would have ended. The limits are those that keep them whenever one stops, 1/α and β.
+
+    Args:
+        share: above 0, below 1.
+        verdicts: of tests that are drawn independently of each other, in the order of the plan.
+
+    Source: Wald, Sequential Tests of Statistical Hypotheses, Annals of Mathematical Statistics
+    16(2), 1945, sections 3 and 5.3.
+
+    >>> limit = RunShare(at_least=True, percent=95.0)
+    >>> print(decide(limit, [Verdict.PASS] * 100))
+    holds (57 of 57 triggered tests passed up to the decision)
+    >>> print(decide(limit, [Verdict.PASS] * 20 + [Verdict.NOT_TRIGGERED] * 80))
+    undecided (20 of 20 triggered tests passed): 37 more tests at least, if all pass
+    """
+    wanted = share.percent / 100
+    half = min(HALF_WIDTH, wanted / 2, (1 - wanted) / 2)
+    low, high = wanted - half, wanted + half
+    good, bad = (high, low) if share.at_least else (low, high)
+    ratios = {Verdict.PASS: log(bad / good), Verdict.FAIL: log((1 - bad) / (1 - good))}
+    best, worst = min(ratios.values()), max(ratios.values())
+    favourable = unfavourable = (
+        0.0  # logarithms of likelihoods, what is inconclusive gone well, ill
+    )
+    tests = inconclusive = passed = 0
+    holds = None
+    for verdict in verdicts:
+        if verdict is Verdict.NOT_TRIGGERED:
+            continue
+        tests += 1
+        passed += verdict is Verdict.PASS
+        inconclusive += verdict is Verdict.INCONCLUSIVE
+        favourable += ratios.get(verdict, best)
+        unfavourable += ratios.get(verdict, worst)
+        if unfavourable <= log(BETA) or favourable >= -log(ALPHA):
+            holds = unfavourable <= log(BETA)
+            break
+    missing = ceil((log(BETA) - unfavourable) / best) if holds is None else 0
+    return Decision(share, holds, tests, inconclusive, passed, missing, (low, high))
+
+
+def errors_text(decision: Decision) -> str:
+    """What a decision promises, in a sentence.
+
+    >>> errors_text(decide(RunShare(at_least=True, percent=95.0), []))
+    'wrong with a probability of 5 % at most, unless the true share is between 92.5 and 97.5 %'
+    """
+    low, high = (f"{100 * bound:.4g}" for bound in decision.indifference)
+    most = f"{100 * max(ALPHA, BETA):g}"
+    return (
+        f"wrong with a probability of {most} % at most, unless the true share is between "
+        f"{low} and {high} %"
+    )

@@ -1,0 +1,228 @@
+"""From a test that fails to a smallest one that fails alike."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from msgspec import structs
+
+from rvmon.cdv.abstract_test import Test
+from rvmon.cdv.files import TestError, from_json, to_json
+from rvmon.cdv.outcome import Outcome
+from rvmon.coverage.record import Ending
+from rvmon.errors import UnknownNameError
+from rvmon.verdict.verdict import Verdict
+
+MOST = 2_000
+"""Tests that are played at most, to shrink one."""
+
+_ENDS = {
+    Ending.COMPLETED: "completes",
+    Ending.CRASHED: "crashes",
+    Ending.HUNG: "hangs",
+    Ending.LOST: "is lost",
+}
+
+_Test = TypeVar("_Test", bound=Test)
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """What is wrong with a run, and has to be with that of a smaller test.
+
+    Attributes:
+        requirement: that fails; empty: none, but the run does not complete.
+        ending: how the run ends, where no requirement is named.
+        error: the kind of exception that the code raised, where it crashed.
+    """
+
+    requirement: str
+    ending: Ending = Ending.COMPLETED
+    error: str = ""
+
+    def is_of(self, outcome: Outcome) -> bool:
+        """Whether a run fails in this way."""
+        if self.requirement:
+            return outcome.verdicts.get(self.requirement) is Verdict.FAIL
+        return outcome.ending is self.ending and _kind(outcome) == self.error
+
+    def __str__(self) -> str:
+        if self.requirement:
+            return f"{self.requirement} fails"
+        return f"the run {_ENDS[self.ending]}" + (f": {self.error}" if self.error else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Shrunk(Generic[_Test]):
+    """A test that was shrunk.
+
+    Attributes:
+        test: the smallest one that was found.
+        outcome: of its run.
+        failure: that it shares with the one it came from.
+        tried: tests that were played.
+        seconds: wall time that it took.
+        is_minimal: whether no single removal and no single simplification of the test's own type
+            fails alike; `False` if it was interrupted, or took too many tests.
+    """
+
+    test: _Test
+    outcome: Outcome
+    failure: Failure
+    tried: int
+    seconds: float
+    is_minimal: bool
+
+
+def shrink(
+    test: _Test,
+    outcome: Outcome,
+    play: Callable[[_Test], Outcome],
+    requirement: str | None = None,
+    *,
+    most: int = MOST,
+) -> Shrunk[_Test] | None:
+    """Shrink a test; `None` if its run does not fail.
+
+    A run that does not complete is shrunk to one that ends in the same way, any other to one that
+    fails the same requirement, at whatever instant. Ctrl-C ends the search with what was found.
+    It costs about as many tests as the test has parts and values.
+
+    Args:
+        test: that fails; its type says what is `removable`, and what is `simpler`.
+        outcome: of its run.
+        play: plays a test; the same test is to give the same run.
+        requirement: that is to fail; default: as the run ended, or the first that fails in it.
+        most: tests that are played at most.
+
+    Raises:
+        UnknownNameError: the requirement, or a field that the test's type calls removable, does
+            not exist.
+    """
+    if requirement is not None and requirement not in outcome.verdicts:
+        there_are = ", ".join(outcome.verdicts)
+        raise UnknownNameError(f"no requirement `{requirement}`: there are {there_are}")
+    failure = failure_of(outcome, requirement)
+    if failure is None:
+        return None
+    began = time.perf_counter()
+    search = _Search(test, outcome, play, failure, most)
+    is_minimal = search.run()
+    seconds = time.perf_counter() - began
+    return Shrunk(search.test, search.outcome, failure, search.tried, seconds, is_minimal)
+
+
+def failure_of(outcome: Outcome, requirement: str | None = None) -> Failure | None:
+    """What is wrong with a run; `None` if nothing is.
+
+    Args:
+        outcome: of the run.
+        requirement: that is looked at; default: as the run ended, or the first that fails in it.
+    """
+    if requirement is None and outcome.ending is not Ending.COMPLETED:
+        return Failure("", outcome.ending, _kind(outcome))
+    names = outcome.verdicts if requirement is None else (requirement,)
+    failures = (Failure(name) for name in names)
+    return next((failure for failure in failures if failure.is_of(outcome)), None)
+
+
+class _Search(Generic[_Test]):
+    """Takes away what can be, first large pieces, then single ones, then simplifies values.
+
+    Source: Zeller and Hildebrandt, Simplifying and Isolating Failure-Inducing Input, IEEE TSE
+    28(2), 2002, section 3 (`ddmin`; of the two tests of a halving one is the other's complement,
+    so only complements are played).
+    """
+
+    def __init__(
+        self,
+        test: _Test,
+        outcome: Outcome,
+        play: Callable[[_Test], Outcome],
+        failure: Failure,
+        most: int,
+    ) -> None:
+        self.test = test
+        self.outcome = outcome
+        self.tried = 0
+        self._play = play
+        self._failure = failure
+        self._most = most
+        self._seen = {to_json(test)}
+        known = {field.name for field in structs.fields(test)}
+        for name in test.removable:
+            if name not in known:
+                raise UnknownNameError(
+                    f"`{type(test).__name__}.removable` names `{name}`, which is no field of it: "
+                    f"there are {', '.join(sorted(known))}"
+                )
+
+    def run(self) -> bool:
+        """Go on until nothing can be taken away or simplified; `False` if it was ended before."""
+        try:
+            while True:
+                for name in self.test.removable:
+                    self._remove(name)
+                if not self._simplify():
+                    return True
+        except (_EnoughError, KeyboardInterrupt):
+            return False
+
+    def _remove(self, name: str) -> None:
+        """Take parts of a sequence away; at the end none can be by itself."""
+        size = len(getattr(self.test, name))
+        while size:
+            start = 0
+            is_smaller = False
+            while start < len(parts := _sequence(self.test, name)):
+                rest = (*parts[:start], *parts[start + size :])
+                if self._fails(structs.replace(self.test, **{name: rest})):
+                    is_smaller = True
+                else:
+                    start += size
+            size = (size + 1) // 2 if size > 1 else int(is_smaller)
+
+    def _simplify(self) -> bool:
+        """Simplify values until none can be by itself; whether one could."""
+        is_simpler = False
+        while any(self._fails(candidate) for candidate in self.test.simpler()):
+            is_simpler = True
+        return is_simpler
+
+    def _fails(self, test: _Test) -> bool:
+        """Whether a test that was not played yet fails alike; then it is the one to go on with."""
+        text = to_json(test)
+        if text in self._seen:
+            return False
+        self._seen.add(text)
+        if self.tried >= self._most:
+            raise _EnoughError
+        try:
+            checked = from_json(text, type(test))
+            self.tried += 1
+            outcome = self._play(checked)
+        except TestError:  # no such test can be made, or be played
+            return False
+        if self._failure.is_of(outcome):
+            self.test, self.outcome = checked, outcome
+            return True
+        return False
+
+
+class _EnoughError(Exception):
+    """So many tests were played as may be."""
+
+
+def _sequence(test: Test, name: str) -> Sequence[object]:
+    parts: Sequence[object] = getattr(test, name)
+    return parts
+
+
+def _kind(outcome: Outcome) -> str:
+    """The kind of exception that code raised: what is told before the colon."""
+    if outcome.ending is not Ending.CRASHED:
+        return ""
+    return (outcome.error or "").partition(":")[0]
