@@ -1,0 +1,162 @@
+"""`rvmon watch`: judge a running robot, line by line."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import os
+import threading
+from io import FileIO
+from typing import TYPE_CHECKING
+
+from rvmon.cli.numbers import positive, span
+from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.reading import add_map, add_time, mapped_names
+from rvmon.cli.say import warn
+from rvmon.errors import RvmonError, SpecError
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rvmon.cli.watch_output import Output
+    from rvmon.live import Live
+    from rvmon.session import Spec
+
+_TURN = 0.25
+"""Seconds between two looks at the specification."""
+
+_LAG_NS = 500_000_000
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "watch",
+        help="judge a running robot: verdicts as they fall",
+        description="Judge JSON lines as they arrive, and say each verdict as soon as it is sure: "
+        "a deadline that is missed is told when it is over. A change of the specification is taken "
+        "up at once. Ends with the stream, or with Ctrl-C.",
+        epilog="example: my_robot --telemetry | rvmon watch specs/base.rv",
+    )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument(
+        "source",
+        metavar="SOURCE",
+        nargs="?",
+        default="-",
+        help="a pipe or file of JSON lines; default: standard input. Lines with a time "
+        "(t, t_ns, --time) are judged at it, others as they arrive",
+    )
+    add_only(parser)
+    add_const(parser)
+    add_time(parser)
+    add_map(parser)
+    parser.add_argument(
+        "--robot", metavar="FIELD", help="the field that names the robot: each is judged by itself"
+    )
+    parser.add_argument(
+        "--realtime",
+        metavar="LAG",
+        nargs="?",
+        type=span,
+        const=_LAG_NS,
+        help="the stamps of the lines are the time of day since 1970, and lines arrive at most LAG "
+        "later (default: 500ms): deadlines pass while no line comes, too",
+    )
+    parser.add_argument(
+        "--room",
+        metavar="N",
+        type=positive,
+        default=10_000,
+        help="so many lines may wait (default: 10000); what finds no room is lost, and counted",
+    )
+    parser.add_argument("--failures", action="store_true", help="say what fails, not what passes")
+    parser.add_argument(
+        "--format",
+        choices=("view", "text", "json"),
+        help="a view that stays (default on a terminal), a line for each verdict, or JSON lines",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge until the stream ends or somebody ends it, and return the exit code."""
+    from rvmon.adapters.json_lines import JsonLines, read_lines, stamp_of
+    from rvmon.cli.watch_output import output_named
+    from rvmon.live import Clock, Live, SimulatedClock, WallClock
+
+    spec = _loaded(arguments)
+    only = ids_of(arguments.only, spec)
+    shown = output_named(arguments.format, failures_only=arguments.failures)
+    with _opened(arguments.source) as file:
+        lines = read_lines(file.fileno())
+        first = next((line for line in lines if line.strip()), None)
+        if first is None:
+            raise RvmonError(f"error: {arguments.source}: there is no line: nothing was judged")
+        began = stamp_of(first, spec.schema)
+        followed = None
+        clock: Clock = WallClock(since_1970=arguments.realtime is not None)
+        if began is not None and arguments.realtime is None:
+            clock = followed = SimulatedClock(began)
+        live = Live(
+            spec,
+            clock=clock,
+            only=only,
+            lag_ns=arguments.realtime,
+            room=arguments.room,
+            on_judged=shown.judged,
+        )
+        source = JsonLines(live, spec.schema, clock=followed, robot=arguments.robot)
+        feeding = threading.Thread(
+            target=source.feed, args=(itertools.chain([first], lines),), daemon=True
+        )
+        with live, shown:
+            feeding.start()
+            _follow(arguments, live, feeding, shown)
+    for name in source.ignored:
+        warn(f"ignored: {name} is not declared in the spec")
+    live.close()
+    shown.ended(live)
+    verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
+    return int(any(one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts))
+
+
+def _loaded(arguments: argparse.Namespace) -> Spec:
+    from rvmon.loading import load
+
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    return spec.reading(time=arguments.time, columns=mapped_names(arguments.map))
+
+
+def _follow(
+    arguments: argparse.Namespace, live: Live, feeding: threading.Thread, shown: Output
+) -> None:
+    """Show how it stands, and take changes of the specification up, while lines come."""
+    made = _age(arguments.spec)
+    try:
+        while feeding.is_alive():
+            feeding.join(_TURN)
+            if (age := _age(arguments.spec)) != made and age is not None:
+                made = age
+                try:
+                    live.replace_spec(_loaded(arguments))
+                    shown.note(f"{arguments.spec} has changed: judged by it from here on")
+                except (SpecError, RvmonError) as error:
+                    shown.note(f"{error}\nThe former specification goes on.")
+            shown.show(live)
+    except KeyboardInterrupt:
+        shown.note("ended")
+
+
+def _age(path: str) -> tuple[int, int] | None:
+    """What changes when a file is written; `None` while there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_ino
+
+
+def _opened(source: str) -> FileIO:
+    try:
+        return FileIO(0, closefd=False) if source == "-" else FileIO(source)
+    except OSError as error:
+        raise RvmonError(f"error: {source}: {error.strerror}") from None
