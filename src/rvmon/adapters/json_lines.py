@@ -83,7 +83,8 @@ class JsonLines:
             _log.warning("line %d is not taken: %s", number, error)
             values = dict.fromkeys((*self._schema.signals, *self._schema.events))
             for one in [robot] if robot or self._robot is None else self._last:
-                t_ns = self._last.get(one)
+                last = self._last.get(one)
+                t_ns = None if last is None else last + 1  # what came before stays known
                 self._driver.offer(values, robot=one, t_ns=t_ns, wait=t_ns is not None)
             return
         self._last[robot] = t_ns

@@ -13,7 +13,8 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import Clock, WallClock
 from rvmon.live.robot import Judgement, Robot, Watch
 from rvmon.live.status import Status
-from rvmon.live.waiting import Entry, Lost, NewRun, Offered, Values, Waiting
+from rvmon.live.waiting import Entry, Lost, Names, NewRun, Offered, Values, Waiting
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, whole_ticks
 from rvmon.verdict.verdict import Verdict
@@ -53,14 +54,15 @@ class Driver:
         lag_ns: how long samples that bring their own stamps may take to arrive; deadlines pass so
             much later. Default the `max delay` of the specification, or 0.
         room: so many samples may wait. Of one that finds no room the signals are unknown until
-            their next value and the events unknown at its instant, so that no verdict rests on it.
+            their next value and the events unknown at its instant, so that no verdict rests on it;
+            where 100,000 such instants are lost in a row, or a value of a signal that ignores NaN,
+            a new run begins, and what has not failed is inconclusive.
         most_robots: samples of more are refused.
         on_judged: called with each attempt that passes or fails.
         on_failure: called with each that fails.
         on_report: called with the name of the robot and the report of each run that ends.
 
     Attributes:
-        spec: as given, or the latest that replaced it.
         wake: to be set to what has `work` called soon; it is called from any thread.
         errors: so many callbacks raised something, which was logged.
 
@@ -108,7 +110,6 @@ class Driver:
         self._on_judged, self._on_failure, self._on_report = on_judged, on_failure, on_report
         self.wake: Callable[[], object] = int
         self.errors = 0
-        self._waiting = Waiting(room)
         self._lock = Lock()  # of what waits, and of the stamps that are given
         self._has_room = Condition(self._lock)
         self._working = RLock()  # of the monitors; callbacks may ask how they stand
@@ -116,21 +117,27 @@ class Driver:
         self._stamped = -(1 << 62)
         self._is_closed = False
         self._robots: dict[str, Robot] = {}
+        self._patience = _PATIENCE_NS if self._runs_by_itself else 0
         self._timers: list[tuple[int, str]] = []
-        self._asleep: set[str] = set()
-        self._turned_away: set[str] = set()
-        self._set_spec(spec)
+        self._wakes: dict[str, int] = {}
+        self._turned_away = False
+        self._watch, self._lag = self._watching(spec)
+        self._waiting = Waiting(room, _names(spec))
         self._clock.on_change(self._clock_was_set)
 
-    def _set_spec(self, spec: Spec) -> None:
+    def _watching(self, spec: Spec) -> tuple[Watch, int]:
+        """How robots are watched by a specification, and the lag, ns; it raises."""
         lag = (spec.checked.max_delay or 0) if self._asked_lag is None else self._asked_lag
         # Stamps that are not given here may be equal.
         settle = "now" if self._runs_by_itself and not lag else "next"
         watch = Watch(spec, self._only, self._sources, settle, self._keep)
-        watch.monitor()  # what is wrong with the arguments is told here
-        self._watch, self._lag = watch, lag
-        self.spec = spec
-        self._events = frozenset(spec.checked.events)
+        watch.monitor()
+        return watch, lag
+
+    @property
+    def spec(self) -> Spec:
+        """As given, or the latest that replaced it."""
+        return self._watch.spec
 
     # --- from any thread ---------------------------------------------------------------------
 
@@ -147,7 +154,7 @@ class Driver:
                 another thread than that which calls `work`.
 
         Returns:
-            Whether there was room; if not, the sample is lost.
+            Whether there was room for it, and for its robot; if not, the sample is lost.
 
         Raises:
             TraceError: it has no values by name, or its stamp is none or of another epoch than the
@@ -164,14 +171,26 @@ class Driver:
                 self._has_room.wait()
             if self._is_closed:
                 raise RvmonError("the monitors were closed: no sample is taken any more")
+            if robot not in self._waiting.robots and not self._is_room_for(robot):
+                return False
             if t_ns is None:
                 t_ns = max(self._clock.now_ns(), self._stamped)
                 self._stamped = t_ns + self._runs_by_itself
             was_empty = not len(self._waiting)
-            took = self._waiting.put(Offered(robot, t_ns, kept), self._events)
+            took = self._waiting.put(Offered(robot, t_ns, kept))
         if was_empty:
             self.wake()
         return took
+
+    def _is_room_for(self, robot: str) -> bool:
+        if len({*self._waiting.robots, *self._robots}) < self._most_robots:
+            return True
+        if robot in self._robots:
+            return True
+        if not self._turned_away:
+            _input_log.warning("robot %r is one too many: at most %d", robot, self._most_robots)
+        self._turned_away = True
+        return False
 
     def _near(self, t_ns: int) -> int:
         if self._runs_by_itself and abs(t_ns - self._clock.now_ns()) > _FAR_NS:
@@ -189,7 +208,9 @@ class Driver:
             UnknownNameError: it lacks what `only` or `sources` names; the former one stays.
         """
         with self._driving():
-            self._set_spec(spec)
+            self._watch, self._lag = self._watching(spec)
+            with self._lock:
+                self._waiting.expect(_names(spec))
             for robot in self._robots.values():
                 robot.end()
                 robot.begin(self._watch)
@@ -252,49 +273,43 @@ class Driver:
         if isinstance(entry, NewRun):
             for robot in self._robots.values():
                 robot.restart(HealthKind.CLOCK, entry.why)
-                self._watch_time(robot, self._clock.now_ns())
+                self._wakes.pop(robot.name, None)
             return
-        found = self._robots.get(entry.robot) or self._new_robot(entry.robot)
+        found = self._robots.get(entry.robot)
         if found is None:
-            return
+            _log.info("%sis watched", _heading(entry.robot))
+            found = Robot(entry.robot, self._watch, self._judged, self._ended)
+            self._robots[entry.robot] = found
         if isinstance(entry, Lost):
             _input_log.warning("%slost %d samples: no room", _heading(entry.robot), entry.count)
             found.lose(entry)
         else:
             if why := found.take(entry.t, entry.values):
                 _input_log.warning("%srefused a sample: %s", _heading(entry.robot), why)
-        if entry.robot in self._asleep:
-            self._asleep.discard(entry.robot)
-            self._watch_time(found, entry.t)
+        self._look_at(entry.robot, entry.t + self._lag + self._patience)
 
-    def _new_robot(self, name: str) -> Robot | None:
-        if len(self._robots) >= self._most_robots:
-            if name not in self._turned_away and len(self._turned_away) < self._most_robots:
-                self._turned_away.add(name)
-                _input_log.warning("robot %r is one too many: at most %d", name, self._most_robots)
-            return None
-        _log.info("%sis watched", _heading(name))
-        self._asleep.add(name)
-        self._robots[name] = robot = Robot(name, self._watch, self._judged, self._ended)
-        return robot
-
-    def _watch_time(self, robot: Robot, t: int) -> None:
-        """Have a robot looked at soon after an instant."""
-        patience = _PATIENCE_NS if self._runs_by_itself else 0
-        heapq.heappush(self._timers, (t + self._lag + patience, robot.name))
+    def _look_at(self, robot: str, t: int) -> None:
+        """Have a robot looked at when an instant has come, if it is not looked at before."""
+        known = self._wakes.get(robot)
+        if known is None or t < known:
+            self._wakes[robot] = t
+            heapq.heappush(self._timers, (t, robot))
 
     def _pass_to(self, now: int) -> float | None:
-        """Let time come to an instant on those whose timer is over; seconds to the next."""
+        """Let time come to an instant on those whose time it is; seconds to the next."""
         while self._timers and self._timers[0][0] <= now:
-            _, name = heapq.heappop(self._timers)
+            t, name = heapq.heappop(self._timers)
+            if self._wakes.get(name) != t:  # it was looked at before
+                continue
+            del self._wakes[name]
             robot = self._robots[name]
-            reached = now - self._lag
-            robot.pass_to(reached)
-            due = robot.due
-            if due is None:
-                self._asleep.add(name)
-            else:
-                heapq.heappush(self._timers, (max(due, reached + 1) + self._lag, name))
+            quiet = (t if robot.last is None else robot.last) + self._lag + self._patience
+            if quiet > now:  # what is due is decided by samples, which keep coming
+                self._look_at(name, quiet)
+                continue
+            robot.pass_to(now - self._lag)
+            if (due := robot.due) is not None:
+                self._look_at(name, max(due + self._lag, now + 1))
         if not self._timers:
             return None
         return self._clock.seconds_until(self._timers[0][0])
@@ -341,6 +356,13 @@ class Driver:
         except Exception:  # noqa: BLE001 - what others do wrong stops no monitor
             self.errors += 1
             _log.exception("a callback failed")
+
+
+def _names(spec: Spec) -> Names:
+    checked = spec.checked
+    is_position = checked.time is TimeModel.SAMPLED and checked.period is None
+    momentary = None if is_position else frozenset(checked.events)
+    return Names(tuple(checked.signals), momentary, frozenset(checked.ignoring))
 
 
 def _heading(robot: str) -> str:

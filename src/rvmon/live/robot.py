@@ -11,7 +11,6 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.live.status import Status
 from rvmon.live.waiting import Lost, Values
 from rvmon.spec.checked.selection import requirements_asked
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict, fold
@@ -95,6 +94,7 @@ class Robot:
 
     Attributes:
         run: the number of the run that is under way, from 1.
+        last: the instant of the latest sample, ns; `None` before the first.
         floor: no sample before this instant, ns, is taken any more; `None` before the first.
         reports: of the newest runs that have ended.
     """
@@ -130,6 +130,7 @@ class Robot:
         self.floor: int | None = None
         self._is_held_back = False
         self._since: int | None = None
+        self.last: int | None = None
         self._health: dict[tuple[HealthKind, str], Health] = {}
 
     def _hear(self, attempt: Attempt) -> None:
@@ -171,22 +172,24 @@ class Robot:
         return ""
 
     def lose(self, lost: Lost) -> None:
-        """Have unknown what was lost for want of room; where that cannot be said, begin a run."""
+        """Have unknown what was lost for want of room."""
         self._lost += lost.count
         self._note(HealthKind.DROPPED, lost.count, lost.t, "came faster than they were judged")
-        checked = self._watch.spec.checked
-        if lost.occurrences is None:
-            self.restart(HealthKind.DROPPED, "so many events were lost that a new run began")
-        elif checked.time is TimeModel.SAMPLED and checked.period is None:
-            why = "a new run began: in `time sampled` each sample that is lost is a position"
-            self.restart(HealthKind.DROPPED, why)
-        else:
-            signals = {name: None for name in lost.names if name in checked.signals}
-            at = {lost.t: signals}
-            for t, names in lost.occurrences:
-                at.setdefault(t, {}).update(dict.fromkeys(names))
-            for t, values in at.items():
-                self._step(t, values)
+        if lost.moments is None:
+            self._run_lost_much()
+            return
+        signals = self._watch.spec.checked.signals
+        at = {lost.t: {name: None for name in lost.names if name in signals}}
+        for t, names in lost.moments:
+            at.setdefault(t, {}).update(dict.fromkeys(names))
+        for t, values in at.items():
+            self._step(t, values)
+
+    def _run_lost_much(self) -> None:
+        """Begin a run, as nobody can say when what may have happened; nothing has passed then."""
+        for seen in self._before.values():
+            seen.add(Verdict.INCONCLUSIVE)
+        self.restart(HealthKind.DROPPED, "so much was lost that a new run began")
 
     def _lose_one(self, t: int, values: Values, *, is_late: bool) -> None:
         """What a sample said is unknown, from its instant on or, if that is over, from now on."""
@@ -199,6 +202,7 @@ class Robot:
 
     def _step(self, t: int, values: Values) -> None:
         self._monitor.step_ns(t, values)
+        self.last = t
         self._since = t if self._since is None else self._since
         self._is_held_back = self._watch.settle == "next"
         self.floor = t if self._is_held_back else t + 1

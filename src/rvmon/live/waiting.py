@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Mapping
+from collections import Counter, deque
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 Values = Mapping[str, Any]
+
+_MOST_MOMENTS = 100_000
+"""So many instants of what was lost in a row are kept: some ten megabytes."""
 
 
 @dataclass(slots=True)
@@ -25,6 +28,22 @@ class Offered:
     values: Values
 
 
+@dataclass(frozen=True, slots=True)
+class Names:
+    """What samples speak of.
+
+    Attributes:
+        signals: the signals.
+        momentary: what says something of an instant only: events; `None`: all, as each sample is a
+            position.
+        ignoring: signals that cannot be said to be unknown, as they `ignore NaN`.
+    """
+
+    signals: tuple[str, ...]
+    momentary: frozenset[str] | None
+    ignoring: frozenset[str]
+
+
 @dataclass(slots=True)
 class Lost:
     """Samples of a robot, one after the other, for which there was no room.
@@ -32,37 +51,29 @@ class Lost:
     Attributes:
         robot: whose they were.
         t: the instant of the first, ns.
-        last: of the last, ns.
         count: how many they were.
         names: what they spoke of.
-        occurrences: the instants at which events may have occurred, with their names; `None` if
-            there were too many to be kept.
+        moments: the instants at which there may be something, with the names of what: occurrences
+            of events, positions; `None` if there were too many to be kept, or what was lost cannot
+            be said to be unknown.
     """
 
     robot: str
     t: int
-    last: int
     count: int = 0
     names: set[str] = field(default_factory=set)
-    occurrences: list[tuple[int, tuple[str, ...]]] | None = field(default_factory=list)
+    moments: list[tuple[int, tuple[str, ...]]] | None = field(default_factory=list)
 
-    def add(self, t: int, values: Values, events: frozenset[str], most: int) -> None:
-        """One more sample is lost.
-
-        Args:
-            t: its instant, ns.
-            values: what it said.
-            events: the names that are events.
-            most: so many occurrences are kept.
-        """
-        self.last = t
+    def add(self, sample: Offered, known: Names) -> None:
+        """One more sample is lost."""
         self.count += 1
-        self.names.update(values)
-        occurred = tuple(name for name in values if name in events and values[name] is not False)
-        if occurred and self.occurrences is not None:
-            self.occurrences.append((t, occurred))
-            if len(self.occurrences) > most:
-                self.occurrences = None
+        self.names.update(sample.values)
+        gone = tuple(name for name in sample.values if _is_momentary(name, sample.values, known))
+        if gone and self.moments is not None:
+            self.moments.append((sample.t, gone))
+        too_many = self.moments is not None and len(self.moments) > _MOST_MOMENTS
+        if too_many or not known.ignoring.isdisjoint(_known(sample.values)):
+            self.moments = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,57 +95,80 @@ class Waiting:
 
     What was lost stands in the queue where it would have stood: one `Lost` for all samples of a
     robot between two that were taken, so that at most twice as many entries wait as there is room
-    for. It is not locked.
+    for. The first two values of a signal always find room: before them it is not born, and what is
+    lost then would be excused (SEMANTICS 1). It is not locked.
 
     Args:
         room: so many samples may wait.
+        names: what samples speak of.
     """
 
-    def __init__(self, room: int) -> None:
+    def __init__(self, room: int, names: Names) -> None:
         self.room = room
         self._entries: deque[Entry] = deque()
         self._losing: dict[str, Lost] = {}
+        self.expect(names)
 
     def __len__(self) -> int:
         return len(self._entries)
+
+    def expect(self, names: Names) -> None:
+        """Samples are of another specification from now on."""
+        self._names = names
+        self._unborn: dict[str, Counter[str]] = {}
 
     @property
     def is_full(self) -> bool:
         """Whether the next sample would be lost."""
         return len(self._entries) >= self.room
 
-    def put(self, sample: Offered, events: frozenset[str]) -> bool:
-        """Have a sample wait; tell whether there was room.
+    @property
+    def robots(self) -> Collection[str]:
+        """The robots whose samples came."""
+        return self._unborn.keys()
 
-        Args:
-            sample: the sample.
-            events: the names that are events.
-        """
-        if len(self._entries) < self.room:
+    def put(self, sample: Offered) -> bool:
+        """Have a sample wait; tell whether there was room."""
+        unborn = self._unborn.get(sample.robot)
+        if unborn is None:
+            unborn = self._unborn[sample.robot] = Counter(dict.fromkeys(self._names.signals, 2))
+        if len(self._entries) < self.room or (unborn and _bears(unborn, sample.values)):
+            if unborn:
+                unborn -= Counter(_known(sample.values))
             self._losing.pop(sample.robot, None)
             self._entries.append(sample)
             return True
         lost = self._losing.get(sample.robot)
         if lost is None:
-            lost = self._losing[sample.robot] = Lost(sample.robot, sample.t, sample.t)
+            lost = self._losing[sample.robot] = Lost(sample.robot, sample.t)
             self._entries.append(lost)
-        lost.add(sample.t, sample.values, events, self.room)
+        lost.add(sample, self._names)
+        if lost.moments is None:  # a new run will begin
+            del self._unborn[sample.robot]
         return False
 
     def put_new_run(self, why: str) -> None:
         """Have new runs begin behind all that wait."""
         self._losing.clear()
+        self._unborn.clear()
         self._entries.append(NewRun(why))
 
     def take(self, most: int) -> list[Entry]:
         """Take what has waited longest, at most so many entries."""
-        if len(self._entries) <= most:
-            taken = list(self._entries)
-            self._entries.clear()
-            self._losing.clear()
-            return taken
-        taken = [self._entries.popleft() for _ in range(most)]
+        taken = [self._entries.popleft() for _ in range(min(most, len(self._entries)))]
         for one in taken:
             if isinstance(one, Lost) and self._losing.get(one.robot) is one:
                 del self._losing[one.robot]
         return taken
+
+
+def _known(values: Values) -> list[str]:
+    return [name for name, value in values.items() if value is not None and value == value]
+
+
+def _is_momentary(name: str, values: Values, known: Names) -> bool:
+    return known.momentary is None or (name in known.momentary and values[name] is not False)
+
+
+def _bears(unborn: Collection[str], values: Values) -> bool:
+    return any(name in unborn for name in _known(values))
