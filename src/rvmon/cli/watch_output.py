@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections import Counter, deque
+from collections import deque
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -12,13 +12,14 @@ import msgspec
 
 from rvmon.cli.say import say, say_json, warn
 from rvmon.report.style import MARKS
-from rvmon.trace.time import format_ticks
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rvmon.live import Driver, Judgement, Status
+    from rvmon.session import Spec
 
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
@@ -74,7 +75,7 @@ class Output(logging.Handler):
         """Say what came of it."""
         from rvmon.report.terminal import Terminal
 
-        Terminal().print(_tables(driver.status()))
+        Terminal().print(_tables(driver))
 
 
 class JsonOutput(Output):
@@ -108,7 +109,7 @@ class View(Output):
 
         super().__init__(failures_only=failures_only)
         self._failures: deque[str] = deque(maxlen=_SHOWN_FAILURES)
-        self._screen = Screen(console=Terminal(), auto_refresh=False)
+        self._screen = Screen(console=Terminal(), auto_refresh=False, transient=True)
 
     def __enter__(self) -> View:
         super().__enter__()
@@ -146,7 +147,7 @@ class View(Output):
         from rich.text import Text
 
         failures = [Text(line, style=MARKS[Verdict.FAIL].terminal) for line in self._failures]
-        return Group(_tables(driver.status()), *failures)
+        return Group(_tables(driver), *failures)
 
 
 def output_named(name: str | None, *, failures_only: bool) -> Output:
@@ -170,18 +171,21 @@ def _line(judgement: Judgement) -> str:
     return f"{robot}{format_ticks(decided)}  {attempt.name} {attempt.verdict} {sign}{reason}"
 
 
-def _tables(found: dict[str, Status]) -> RenderableType:
+def _tables(driver: Driver) -> RenderableType:
     from rich.console import Group
 
+    found = driver.status()
     shown = dict(list(found.items())[:_SHOWN_ROBOTS])
     rest = len(found) - len(shown)
     more = [f"… and {rest} more robots"] if rest else []
-    return Group(*map(_table, shown.values()), *more)
+    return Group(*(_table(one, driver.spec) for one in shown.values()), *more)
 
 
-def _table(status: Status) -> RenderableType:
+def _table(status: Status, spec: Spec) -> RenderableType:
     from rich import box
+    from rich.console import Group
     from rich.table import Table
+    from rich.text import Text
 
     from rvmon.report.style import verdict_text
 
@@ -189,23 +193,17 @@ def _table(status: Status) -> RenderableType:
     heading = f"{status.robot}  " if status.robot else ""
     run = f"run {status.run}, " if status.run > 1 else ""
     lost = f", {status.lost:,} lost" if status.lost else ""
-    table = Table(
-        title=f"{heading}{run}{now}{status.samples:,} samples{lost}",
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        pad_edge=False,
-    )
-    for column in ("", "verdict", "open", "next deadline"):
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for column in ("", "verdict", "passed", "failed", "open", "until"):
         table.add_column(column, no_wrap=True)
-    owed = Counter(attempt.requirement for attempt in status.open)
+    table.add_column("requirement", style="dim")
     for name, verdict in status.verdicts.items():
-        deadlines = [
-            attempt.deadline
-            for attempt in status.open
-            if attempt.requirement == name and attempt.deadline is not None
-        ]
+        owed = [attempt for attempt in status.open if attempt.requirement == name]
+        deadlines = [attempt.deadline for attempt in owed if attempt.deadline is not None]
         left = ""
         if deadlines and status.floor is not None:
-            left = f"in {max(0, min(deadlines) - status.floor) / 1e9:.1f} s"
-        table.add_row(name, verdict_text(verdict), str(owed[name] or ""), left)
-    return table
+            left = f"{max(0, min(deadlines) - status.floor) / TICKS_PER_SECOND:.1f} s"
+        counts = [str(status.counts[name, one] or "") for one in (Verdict.PASS, Verdict.FAIL)]
+        text = spec.requirements[name].text
+        table.add_row(name, verdict_text(verdict), *counts, str(len(owed) or ""), left, text)
+    return Group(Text(f"{heading}{run}{now}{status.samples:,} samples{lost}"), table)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -120,6 +120,7 @@ class Robot:
     def begin(self, watch: Watch) -> None:
         """Begin to watch it: what earlier runs showed counts no more."""
         self._before: dict[str, set[Verdict]] = {name: set() for name in watch.ids}
+        self._counts: Counter[tuple[str, Verdict]] = Counter()
         self._begin(watch)
 
     def _begin(self, watch: Watch) -> None:
@@ -134,6 +135,7 @@ class Robot:
         self._health: dict[tuple[HealthKind, str], Health] = {}
 
     def _hear(self, attempt: Attempt) -> None:
+        self._counts[attempt.requirement, attempt.verdict] += 1
         self._judged(Judgement(self.name, self.run, attempt))
 
     def restart(self, kind: HealthKind, why: str) -> None:
@@ -236,6 +238,7 @@ class Robot:
             since=self._since,
             floor=self.floor,
             verdicts={name: fold([*self._before[name], now[name]]) for name in self._watch.ids},
+            counts=self._counts.copy(),
             open=tuple(self._monitor.open),
             samples=self._samples,
             lost=self._lost,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ class Status:
         since: the instant of its first sample, ns; `None` before it.
         floor: the instant to which time has come, ns.
         verdicts: of each requirement so far, over all runs.
+        counts: how many attempts of a requirement had a verdict since it is watched.
         open: the attempts that are owed now, with their deadlines.
         samples: so many were judged, over all runs.
         lost: so many were not.
@@ -30,6 +32,7 @@ class Status:
     since: int | None
     floor: int | None
     verdicts: Mapping[str, Verdict]
+    counts: Counter[tuple[str, Verdict]]
     open: tuple[Attempt, ...]
     samples: int
     lost: int
