@@ -79,7 +79,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge until the stream ends or somebody ends it, and return the exit code."""
-    from rvmon.adapters.json_lines import JsonLines, read_lines, stamp_of
+    from rvmon.adapters.json_lines import feed_lines, read_lines
+    from rvmon.adapters.json_objects import JsonObjects, stamp_of
     from rvmon.cli.watch_output import output_named
     from rvmon.live import Clock, Live, SimulatedClock, WallClock
 
@@ -104,9 +105,10 @@ def run(arguments: argparse.Namespace) -> int:
             room=arguments.room,
             on_judged=shown.judged,
         )
-        source = JsonLines(live, spec.schema, clock=followed, robot=arguments.robot)
+        source = JsonObjects(live, spec.schema, clock=followed)
+        every = itertools.chain([first], lines)
         feeding = threading.Thread(
-            target=source.feed, args=(itertools.chain([first], lines),), daemon=True
+            target=feed_lines, args=(source, every, arguments.robot), daemon=True
         )
         with live, shown:
             feeding.start()

@@ -5,7 +5,8 @@ import os
 import pytest
 
 from rvmon import Verdict, loads
-from rvmon.adapters.json_lines import JsonLines, read_lines, stamp_of
+from rvmon.adapters.json_lines import feed_lines, read_lines
+from rvmon.adapters.json_objects import JsonObjects, stamp_of
 from rvmon.live import Driver, SimulatedClock
 
 SPEC = """
@@ -22,11 +23,11 @@ def live():
     """A driver, its clock and a reader of lines with stamps."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock)
-    return driver, clock, JsonLines(driver, spec.schema, clock=clock)
+    return driver, clock, JsonObjects(driver, spec.schema, clock=clock)
 
 
-def _verdicts(driver, lines, source):
-    source.feed(lines)
+def _verdicts(driver, lines, source, robot=None):
+    feed_lines(source, lines, robot)
     while driver.work() == 0:
         pass
     driver.close()
@@ -37,7 +38,7 @@ def test_the_clock_follows_the_stamps(live):
     """It never goes back for a late line, but for one that is of another run."""
     driver, clock, source = live
     lines = [b'{"t": 20, "x": 0}', b'{"t": 19.5, "a": true}', b'{"t": 1, "x": 2}']
-    source.feed(lines[:2])
+    feed_lines(source, lines[:2])
     assert clock.now_ns() == 20_000_000_000
     assert _verdicts(driver, lines[2:], source) == {"": Verdict.FAIL}
     assert driver.status()[""].run == 2
@@ -64,7 +65,7 @@ def test_lines_without_a_time_are_stamped_as_they_arrive():
     """By the clock of the driver."""
     spec, clock = loads(SPEC), SimulatedClock(7)
     driver = Driver(spec, clock=clock)
-    assert _verdicts(driver, [b'{"x": 2}'], JsonLines(driver, spec.schema)) == {"": Verdict.FAIL}
+    assert _verdicts(driver, [b'{"x": 2}'], JsonObjects(driver, spec.schema)) == {"": Verdict.FAIL}
     assert driver.close()[""][0].attempts[0].decided == 7
 
 
@@ -72,14 +73,17 @@ def test_a_field_names_the_robot():
     """A line without it is of nobody known: it may be of any."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock)
-    source = JsonLines(driver, spec.schema, clock=clock, robot="id")
+    source = JsonObjects(driver, spec.schema, clock=clock)
     lines = [
         b'{"t": 0, "id": "left", "x": 0}',
         b'{"t": 0, "id": 2, "x": 3}',
         b'{"t": 1, "x": 0}',
         b'{"t": 2, "id": "left"}',
     ]
-    assert _verdicts(driver, lines, source) == {"left": Verdict.INCONCLUSIVE, "2": Verdict.FAIL}
+    assert _verdicts(driver, lines, source, "id") == {
+        "left": Verdict.INCONCLUSIVE,
+        "2": Verdict.FAIL,
+    }
 
 
 def test_lines_are_read_as_they_come():
