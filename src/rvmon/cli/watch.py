@@ -6,6 +6,8 @@ import argparse
 import itertools
 import os
 import threading
+import time
+from collections.abc import Callable
 from io import FileIO
 from typing import TYPE_CHECKING
 
@@ -17,8 +19,9 @@ from rvmon.errors import RvmonError, SpecError
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
+    from rvmon.adapters.json_objects import JsonObjects
     from rvmon.cli.watch_output import Output
-    from rvmon.live import Live
+    from rvmon.live import Clock, Judgement, Live
     from rvmon.session import Spec
 
 _TURN = 0.25
@@ -43,15 +46,23 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="SOURCE",
         nargs="?",
         default="-",
-        help="a pipe or file of JSON lines; default: standard input. Lines with a time "
-        "(t, t_ns, --time) are judged at it, others as they arrive",
+        help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, whose "
+        "first + names the robot, such as mqtt://localhost/robots/+/#. What has a time (t, t_ns, "
+        "--time) is judged at it, the rest as it arrives",
     )
     add_only(parser)
     add_const(parser)
     add_time(parser)
     add_map(parser)
     parser.add_argument(
-        "--robot", metavar="FIELD", help="the field that names the robot: each is judged by itself"
+        "--robot",
+        metavar="FIELD",
+        help="the field of lines that names the robot: each is judged by itself",
+    )
+    parser.add_argument(
+        "--publish",
+        metavar="TOPIC",
+        help="with MQTT: publish each verdict, as JSON, under TOPIC/REQUIREMENT",
     )
     parser.add_argument(
         "--realtime",
@@ -79,14 +90,26 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge until the stream ends or somebody ends it, and return the exit code."""
-    from rvmon.adapters.json_lines import feed_lines, read_lines
-    from rvmon.adapters.json_objects import JsonObjects, stamp_of
     from rvmon.cli.watch_output import output_named
-    from rvmon.live import Clock, Live, SimulatedClock, WallClock
 
     spec = _loaded(arguments)
-    only = ids_of(arguments.only, spec)
     shown = output_named(arguments.format, failures_only=arguments.failures)
+    over_mqtt = arguments.source.startswith("mqtt:")
+    live, objects = (_watch_mqtt if over_mqtt else _watch_lines)(arguments, spec, shown)
+    for name in objects.ignored:
+        warn(f"ignored: {name} is not declared in the spec")
+    shown.ended(live)
+    verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
+    return int(any(one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts))
+
+
+def _watch_lines(
+    arguments: argparse.Namespace, spec: Spec, shown: Output
+) -> tuple[Live, JsonObjects]:
+    from rvmon.adapters.json_lines import feed_lines, read_lines
+    from rvmon.adapters.json_objects import JsonObjects, stamp_of
+    from rvmon.live import SimulatedClock, WallClock
+
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
         first = next((line for line in lines if line.strip()), None)
@@ -97,28 +120,56 @@ def run(arguments: argparse.Namespace) -> int:
         clock: Clock = WallClock(since_1970=arguments.realtime is not None)
         if began is not None and arguments.realtime is None:
             clock = followed = SimulatedClock(began)
-        live = Live(
-            spec,
-            clock=clock,
-            only=only,
-            lag_ns=arguments.realtime,
-            room=arguments.room,
-            on_judged=shown.judged,
-        )
-        source = JsonObjects(live, spec.schema, clock=followed)
+        live = _live(arguments, spec, clock, shown.judged)
+        objects = JsonObjects(live, spec.schema, clock=followed)
         every = itertools.chain([first], lines)
         feeding = threading.Thread(
-            target=feed_lines, args=(source, every, arguments.robot), daemon=True
+            target=feed_lines, args=(objects, every, arguments.robot), daemon=True
         )
         with live, shown:
             feeding.start()
-            _follow(arguments, live, feeding, shown)
-    for name in source.ignored:
-        warn(f"ignored: {name} is not declared in the spec")
-    live.close()
-    shown.ended(live)
-    verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
-    return int(any(one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts))
+            _follow(arguments, live, shown, feeding)
+    return live, objects
+
+
+def _watch_mqtt(
+    arguments: argparse.Namespace, spec: Spec, shown: Output
+) -> tuple[Live, JsonObjects]:
+    from rvmon.adapters.json_objects import JsonObjects
+    from rvmon.adapters.mqtt import MqttSource, address_of
+    from rvmon.live import WallClock
+
+    address = address_of(arguments.source)
+
+    def judged(judgement: Judgement) -> None:
+        shown.judged(judgement)
+        source.publish(judgement)
+
+    clock = WallClock(since_1970=arguments.realtime is not None)
+    live = _live(arguments, spec, clock, judged)
+    objects = JsonObjects(live, spec.schema)
+    source = MqttSource(objects, address, verdicts=arguments.publish)
+    with live, source, shown:
+        _follow(arguments, live, shown)
+    return live, objects
+
+
+def _live(
+    arguments: argparse.Namespace,
+    spec: Spec,
+    clock: Clock,
+    judged: Callable[[Judgement], object],
+) -> Live:
+    from rvmon.live import Live
+
+    return Live(
+        spec,
+        clock=clock,
+        only=ids_of(arguments.only, spec),
+        lag_ns=arguments.realtime,
+        room=arguments.room,
+        on_judged=judged,
+    )
 
 
 def _loaded(arguments: argparse.Namespace) -> Spec:
@@ -129,13 +180,19 @@ def _loaded(arguments: argparse.Namespace) -> Spec:
 
 
 def _follow(
-    arguments: argparse.Namespace, live: Live, feeding: threading.Thread, shown: Output
+    arguments: argparse.Namespace,
+    live: Live,
+    shown: Output,
+    feeding: threading.Thread | None = None,
 ) -> None:
-    """Show how it stands, and take changes of the specification up, while lines come."""
+    """Show how it stands, and take changes of the specification up, while anything comes."""
     made = _age(arguments.spec)
     try:
-        while feeding.is_alive():
-            feeding.join(_TURN)
+        while feeding is None or feeding.is_alive():
+            if feeding is None:
+                time.sleep(_TURN)
+            else:
+                feeding.join(_TURN)
             if (age := _age(arguments.spec)) != made and age is not None:
                 made = age
                 try:
