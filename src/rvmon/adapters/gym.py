@@ -26,7 +26,10 @@ Observe = Callable[[Any, Any, Mapping[str, Any]], Mapping[str, Any]]
 """Gives the values of signals and events for an observation, the action before it, and its info."""
 
 
-class Judged(gymnasium.Wrapper[_Observation, _Action, _Observation, _Action]):
+class Judged(
+    gymnasium.Wrapper[_Observation, _Action, _Observation, _Action],
+    gymnasium.utils.RecordConstructorArgs,
+):
     """Judges the episodes of an environment: each is a run, its steps are samples.
 
     After each step `info["rv"]` holds `verdicts` so far by requirement, `decided` (the attempts
@@ -60,7 +63,15 @@ class Judged(gymnasium.Wrapper[_Observation, _Action, _Observation, _Action]):
         ends_on_failure: bool = False,
         shaping: Callable[[Sequence[Measured]], float] | None = None,
     ) -> None:
-        super().__init__(env)
+        gymnasium.utils.RecordConstructorArgs.__init__(
+            self,
+            spec=spec,
+            observe=observe,
+            step_s=step_s,
+            ends_on_failure=ends_on_failure,
+            shaping=shaping,
+        )
+        gymnasium.Wrapper.__init__(self, env)
         from rvmon.trace.time import ticks_of_seconds
 
         self._step_ns = ticks_of_seconds(step_s)
