@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive, span
 from rvmon.cli.options import add_const, add_only, constants_of, ids_of
-from rvmon.cli.reading import add_map, add_time, mapped_names
+from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
 from rvmon.cli.say import warn
 from rvmon.errors import RvmonError, SpecError
 from rvmon.verdict.verdict import Verdict
@@ -28,6 +28,9 @@ _TURN = 0.25
 """Seconds between two looks at the specification."""
 
 _LAG_NS = 500_000_000
+
+_LAST_DOMAIN = 232
+"""The last domain of DDS that has ports."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -47,13 +50,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         nargs="?",
         default="-",
         help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, whose "
-        "first + names the robot, such as mqtt://localhost/robots/+/#. What has a time (t, t_ns, "
-        "--time) is judged at it, the rest as it arrives",
+        "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (topics of ROS 1) or "
+        "dds:DOMAIN (those of ROS 2). What has a time (t, t_ns, --time) is judged at it, the "
+        "rest as it arrives",
     )
     add_only(parser)
     add_const(parser)
     add_time(parser)
     add_map(parser)
+    add_binding(parser)
     parser.add_argument(
         "--robot",
         metavar="FIELD",
@@ -62,7 +67,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--publish",
         metavar="TOPIC",
-        help="with MQTT: publish each verdict, as JSON, under TOPIC/REQUIREMENT",
+        help="publish each verdict, as JSON: over MQTT under TOPIC/REQUIREMENT, by ROS on TOPIC",
     )
     parser.add_argument(
         "--realtime",
@@ -94,18 +99,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     spec = _loaded(arguments)
     shown = output_named(arguments.format, failures_only=arguments.failures)
-    over_mqtt = arguments.source.startswith("mqtt:")
-    live, objects = (_watch_mqtt if over_mqtt else _watch_lines)(arguments, spec, shown)
-    for name in objects.ignored:
-        warn(f"ignored: {name} is not declared in the spec")
+    watch = next((one for start, one in _DOORS if arguments.source.startswith(start)), _watch_lines)
+    live = watch(arguments, spec, shown)
     shown.ended(live)
     verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
     return int(any(one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts))
 
 
-def _watch_lines(
-    arguments: argparse.Namespace, spec: Spec, shown: Output
-) -> tuple[Live, JsonObjects]:
+def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     from rvmon.adapters.json_lines import feed_lines, read_lines
     from rvmon.adapters.json_objects import JsonObjects, stamp_of
     from rvmon.live import SimulatedClock, WallClock
@@ -129,29 +130,79 @@ def _watch_lines(
         with live, shown:
             feeding.start()
             _follow(arguments, live, shown, feeding)
-    return live, objects
+    _tell_ignored(objects)
+    return live
 
 
-def _watch_mqtt(
-    arguments: argparse.Namespace, spec: Spec, shown: Output
-) -> tuple[Live, JsonObjects]:
+def _tell_ignored(objects: JsonObjects) -> None:
+    for name in objects.ignored:
+        warn(f"ignored: {name} is not declared in the spec")
+
+
+def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     from rvmon.adapters.json_objects import JsonObjects
     from rvmon.adapters.mqtt import MqttSource, address_of
-    from rvmon.live import WallClock
 
     address = address_of(arguments.source)
-
-    def judged(judgement: Judgement) -> None:
-        shown.judged(judgement)
-        source.publish(judgement)
-
-    clock = WallClock(since_1970=arguments.realtime is not None)
-    live = _live(arguments, spec, clock, judged)
+    live, hear = _live_here(arguments, spec, shown)
     objects = JsonObjects(live, spec.schema)
     source = MqttSource(objects, address, verdicts=arguments.publish)
+    hear(source.publish)
     with live, source, shown:
         _follow(arguments, live, shown)
-    return live, objects
+    _tell_ignored(objects)
+    return live
+
+
+def _watch_ros1(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+    from rvmon.adapters.messages import MessageFeed
+    from rvmon.adapters.ros1 import Ros1Source
+
+    live, hear = _live_here(arguments, spec, shown)
+    source = Ros1Source(MessageFeed(live, spec.schema), verdicts=arguments.publish)
+    hear(source.publish)
+    with live, source, shown:
+        _follow(arguments, live, shown)
+    return live
+
+
+def _watch_dds(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+    from rvmon.adapters.dds import DdsSource
+    from rvmon.adapters.messages import MessageFeed
+
+    domain = arguments.source.partition(":")[2] or os.environ.get("ROS_DOMAIN_ID", "0")
+    if not domain.isdecimal() or int(domain) > _LAST_DOMAIN:
+        raise RvmonError(f"{arguments.source}: expected a domain of DDS, 0 to {_LAST_DOMAIN}")
+    live, hear = _live_here(arguments, spec, shown)
+    source = DdsSource(
+        MessageFeed(live, spec.schema),
+        domain=int(domain),
+        definitions=spec.schema.binding.definitions,
+        verdicts=arguments.publish,
+    )
+    hear(source.publish)
+    with live, source, shown:
+        _follow(arguments, live, shown)
+    return live
+
+
+_DOORS = (("mqtt:", _watch_mqtt), ("ros1:", _watch_ros1), ("dds:", _watch_dds))
+
+
+def _live_here(
+    arguments: argparse.Namespace, spec: Spec, shown: Output
+) -> tuple[Live, Callable[[Callable[[Judgement], object]], object]]:
+    """Monitors whose samples are stamped here, and how somebody else hears their verdicts."""
+    from rvmon.live import WallClock
+
+    hearing: list[Callable[[Judgement], object]] = [shown.judged]
+
+    def judged(judgement: Judgement) -> None:
+        for one in hearing:
+            one(judgement)
+
+    clock = WallClock(since_1970=arguments.realtime is not None)
+    return _live(arguments, spec, clock, judged), hearing.append
 
 
 def _live(
@@ -176,7 +227,8 @@ def _loaded(arguments: argparse.Namespace) -> Spec:
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    return spec.reading(time=arguments.time, columns=mapped_names(arguments.map))
+    columns = mapped_names(arguments.map)
+    return spec.reading(time=arguments.time, columns=columns, binding=arguments.binding)
 
 
 def _follow(

@@ -189,7 +189,6 @@ def _table(status: Status, spec: Spec) -> RenderableType:
 
     from rvmon.report.style import verdict_text
 
-    now = "" if status.floor is None else f"to {format_ticks(status.floor)}, "
     heading = f"{status.robot}  " if status.robot else ""
     run = f"run {status.run}, " if status.run > 1 else ""
     lost = f", {status.lost:,} lost" if status.lost else ""
@@ -201,9 +200,12 @@ def _table(status: Status, spec: Spec) -> RenderableType:
         owed = [attempt for attempt in status.open if attempt.requirement == name]
         deadlines = [attempt.deadline for attempt in owed if attempt.deadline is not None]
         left = ""
-        if deadlines and status.floor is not None:
-            left = f"{max(0, min(deadlines) - status.floor) / TICKS_PER_SECOND:.1f} s"
+        if deadlines:
+            left = f"{max(0, min(deadlines) - status.now) / TICKS_PER_SECOND:.1f} s"
         counts = [str(status.counts[name, one] or "") for one in (Verdict.PASS, Verdict.FAIL)]
         text = spec.requirements[name].text
         table.add_row(name, verdict_text(verdict), *counts, str(len(owed) or ""), left, text)
-    return Group(Text(f"{heading}{run}{now}{status.samples:,} samples{lost}"), table)
+    return Group(
+        Text(f"{heading}{run}to {format_ticks(status.now)}, {status.samples:,} samples{lost}"),
+        table,
+    )

@@ -218,7 +218,8 @@ class Driver:
     def status(self) -> dict[str, Status]:
         """How each robot stands."""
         with self._working:
-            return {name: robot.status() for name, robot in self._robots.items()}
+            now = self._clock.now_ns()
+            return {name: robot.status(now) for name, robot in self._robots.items()}
 
     @property
     def waiting(self) -> int:

@@ -229,14 +229,14 @@ class Robot:
             return self.floor + 1  # the sample is judged then
         return self._monitor.next_due
 
-    def status(self) -> Status:
-        """How it stands."""
+    def status(self, t: int) -> Status:
+        """How it stands at an instant."""
         now = self._monitor.verdicts
         return Status(
             robot=self.name,
             run=self.run,
             since=self._since,
-            floor=self.floor,
+            now=t,
             verdicts={name: fold([*self._before[name], now[name]]) for name in self._watch.ids},
             counts=self._counts.copy(),
             open=tuple(self._monitor.open),

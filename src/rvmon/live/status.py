@@ -18,7 +18,7 @@ class Status:
         robot: its name; empty if there is one only.
         run: the number of the run that is under way, from 1.
         since: the instant of its first sample, ns; `None` before it.
-        floor: the instant to which time has come, ns.
+        now: the instant to which time has come, ns.
         verdicts: of each requirement so far, over all runs.
         counts: how many attempts of a requirement had a verdict since it is watched.
         open: the attempts that are owed now, with their deadlines.
@@ -30,7 +30,7 @@ class Status:
     robot: str
     run: int
     since: int | None
-    floor: int | None
+    now: int
     verdicts: Mapping[str, Verdict]
     counts: Counter[tuple[str, Verdict]]
     open: tuple[Attempt, ...]
