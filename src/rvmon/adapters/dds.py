@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from threading import Lock
+from threading import Event, Thread
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -61,10 +61,14 @@ class DdsSource:
         self._definitions = tuple(sorted((definitions or {}).items()))
         self._verdicts = verdicts
         self._writer: Any = None
-        self._readers: dict[str, Any] = {}
+        self._readers: dict[str, tuple[Any, Topic]] = {}
         self._told: set[str] = set()
-        self._lock = Lock()
-        self._listener = Listener
+        self._news = Event()
+        self._stops = False
+        # Within a call of DDS no entity can be made: it only wakes the thread that makes and reads.
+        self._listener = Listener(
+            on_data_available=lambda _: self._news.set(), on_sample_lost=self._lose
+        )
 
     def __enter__(self) -> DdsSource:
         """Join the domain.
@@ -83,14 +87,28 @@ class DdsSource:
             raise RvmonError(f"domain {self._domain} of DDS cannot be joined: {error}") from None
         if self._verdicts is not None:
             self._writer = self._written(self._verdicts)
-        with self._lock:
-            self._finder = BuiltinDataReader(
-                self._participant,
-                BuiltinTopicDcpsPublication,
-                listener=self._listener(on_data_available=lambda _: self._find()),
-            )
-        self._find()
+        self._finder = BuiltinDataReader(
+            self._participant, BuiltinTopicDcpsPublication, listener=self._listener
+        )
+        self._news.set()  # for what was there before
+        self._thread = Thread(target=self._drive, name="rvmon.dds", daemon=True)
+        self._thread.start()
         return self
+
+    def _drive(self) -> None:
+        while not self._stops:
+            self._news.wait()
+            self._news.clear()
+            self._find()
+            for reader, topic in self._readers.values():
+                for content in reader.take(N=_DEPTH):
+                    if content.sample_info.valid_data:
+                        self._feed.take(topic, content)
+
+    def _lose(self, reader: Any, _: object) -> None:
+        for known, topic in tuple(self._readers.values()):
+            if known is reader:
+                self._feed.lose(topic.name, "DDS has lost some before it")
 
     def _written(self, topic: str) -> Any:
         from cyclonedds.pub import DataWriter
@@ -103,11 +121,10 @@ class DdsSource:
 
     def _find(self) -> None:
         """Read the topics that are wanted and published."""
-        with self._lock:
-            for one in self._finder.take(N=1_000):
-                name = getattr(one, "topic_name", "").removeprefix(_PREFIX)
-                if name in self._wanted and name not in self._readers:
-                    self._begin(name, one.type_name)
+        for one in self._finder.take(N=1_000):
+            name = getattr(one, "topic_name", "").removeprefix(_PREFIX)
+            if name in self._wanted and name not in self._readers:
+                self._begin(name, one.type_name)
 
     def _begin(self, name: str, wire_type: str) -> None:
         from cyclonedds.core import Policy, Qos
@@ -122,23 +139,10 @@ class DdsSource:
                 self._feed.lose(topic.name, f"{kind}: {topic.fault}")
             return
         qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(_DEPTH))
-        reading = self._listener(
-            on_data_available=lambda _: self._take(name, topic),
-            on_sample_lost=lambda *_: self._feed.lose(topic.name, "DDS has lost some"),
-        )
-        self._readers[name] = DataReader(
-            self._participant,
-            DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions)),
-            qos=qos,
-            listener=reading,
-        )
-
-    def _take(self, name: str, topic: Topic) -> None:
-        with self._lock:
-            reader = self._readers.get(name)
-        for content in () if reader is None else reader.take(N=_DEPTH):
-            if content.sample_info.valid_data:
-                self._feed.take(topic, content)
+        wire = DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions))
+        reader = DataReader(self._participant, wire, qos=qos, listener=self._listener)
+        self._readers[name] = reader, topic
+        self._news.set()  # for what came before the listener
 
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
@@ -152,11 +156,9 @@ class DdsSource:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        with self._lock:
-            for reader in self._readers.values():
-                reader.set_listener(None)
-            self._finder.set_listener(None)
-            self._readers.clear()
+        self._stops = True
+        self._news.set()
+        self._thread.join()
 
 
 @cache

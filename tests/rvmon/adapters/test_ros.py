@@ -7,6 +7,8 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -28,6 +30,9 @@ requirement R2
   upon stop
   then within 300 ms base.speed == 0
 """
+LONG = 60.0
+"""Seconds after which a process is ended that does not end."""
+
 SYSTEM = "/usr/lib/python3/dist-packages"
 WATCH = f"import sys; sys.path.append({SYSTEM!r}); from rvmon.cli import main; sys.exit(main())"
 LO = (
@@ -44,21 +49,35 @@ def _missing(what):
     pytest.skip(f"{what} is not installed")
 
 
+@contextmanager
+def _ended(process):
+    """A process that does not outlive the test, nor hold it up."""
+    alarm = threading.Timer(LONG, process.kill)
+    alarm.start()
+    with process:
+        try:
+            yield process
+        finally:
+            alarm.cancel()
+            process.kill()
+
+
 def _failures(folder, source, talker, environment):
     """What `rvmon watch` says of a source by the second failure; then it is ended by Ctrl-C."""
     (folder / "s.rv").write_text(SPEC)
     environment = {**os.environ, **environment}
     command = [sys.executable, "-c", WATCH, "watch", "s.rv", source, "--format", "json"]
     with (
-        subprocess.Popen(talker, env=environment) as talking,  # noqa: S603
-        subprocess.Popen(  # noqa: S603
-            command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
+        _ended(subprocess.Popen(talker, env=environment)),  # noqa: S603
+        _ended(
+            subprocess.Popen(  # noqa: S603
+                command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
+            )
         ) as watching,
     ):
         lines = [json.loads(watching.stdout.readline()) for _ in range(2)]
         watching.send_signal(signal.SIGINT)
-        last = json.loads(watching.stdout.read().splitlines()[-1])
-        talking.terminate()
+        last = json.loads(watching.communicate(timeout=LONG)[0].splitlines()[-1])
     assert watching.returncode == 1
     assert last["verdicts"] == {"R1": "F", "R2": "F"}
     return [(line["attempt"], line["verdict"]) for line in lines]
@@ -73,9 +92,9 @@ def master():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    with subprocess.Popen(  # noqa: S603
-        [program, "--core", "-p", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    ) as process:
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    command = [program, "--core", "-p", str(port)]
+    with _ended(subprocess.Popen(command, **quiet)) as process:  # noqa: S603
         while True:
             try:
                 socket.create_connection(("127.0.0.1", port), 1).close()
@@ -83,7 +102,6 @@ def master():
             except OSError:
                 assert process.poll() is None
         yield f"http://127.0.0.1:{port}"
-        process.terminate()
 
 
 @pytest.mark.process
