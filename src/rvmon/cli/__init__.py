@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 COMMANDS = {
     "check": "find what is wrong in specifications",
     "run": "judge recordings by a specification",
+    "watch": "judge a running robot: verdicts as they fall",
     "format": "lay specifications out in the canonical form",
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",

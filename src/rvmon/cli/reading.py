@@ -33,9 +33,8 @@ def add_time(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_reading(parser: argparse.ArgumentParser) -> None:
-    """Declare what says how recordings tell things."""
-    add_time(parser)
+def add_map(parser: argparse.ArgumentParser) -> None:
+    """Declare `--map`."""
     parser.add_argument(
         "--map",
         metavar="NAME=COLUMN",
@@ -43,6 +42,12 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="the column of a declared name that is called otherwise; can be given repeatedly",
     )
+
+
+def add_reading(parser: argparse.ArgumentParser) -> None:
+    """Declare what says how recordings tell things."""
+    add_time(parser)
+    add_map(parser)
     parser.add_argument(
         "--nan",
         choices=[reading.replace(" ", "-") for reading in READINGS_OF_NAN],

@@ -17,6 +17,7 @@ class HealthKind(StrEnum):
     LATE = "late"
     CONFLICT = "conflict"
     IGNORED = "ignored"
+    DROPPED = "dropped"
     UNIT = "unit"
     CLOCK = "clock"
     INTERRUPTED = "interrupted"

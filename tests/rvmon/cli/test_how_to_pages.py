@@ -17,6 +17,7 @@ PAGES = {
         {"run", "compare"},
     ),
     "after-an-incident": (["base.rv"], {"clip", "run"}),
+    "watch-a-running-robot": (["base.rv", "robot.jsonl"], {"watch"}),
 }
 """The files that a page writes, in its order, and the commands that it shows."""
 
@@ -31,7 +32,7 @@ def test_the_page_is_true(tmp_path, monkeypatch, capsys, name):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "examples" / "base.csv", tmp_path)
     commands = set()
-    for kind, text in re.findall(r"```(rv|csv|toml|console|python)\n(.*?)```", page, re.DOTALL):
+    for kind, text in re.findall(r"```(rv|csv|jsonl|toml|console|python)\n(.*?)```", page, re.DOTALL):
         if kind == "python":
             exec(text, {})  # noqa: S102 - our page
             capsys.readouterr()

@@ -140,7 +140,7 @@ def ros_topic(
     if definition[1]:
         store, fault = _store(type_name, *definition)
     else:
-        store, fault = _store_of(tuple(sorted(others.items())))
+        store, fault = ros_types(tuple(sorted(others.items())))
         if not fault and type_name not in store.fielddefs:
             fault = _UNDEFINED
     if fault:
@@ -191,7 +191,7 @@ _UNDEFINED = (
 
 
 @lru_cache(maxsize=8)
-def _store_of(definitions: tuple[Definition, ...]) -> tuple[Any, str]:
+def ros_types(definitions: tuple[Definition, ...]) -> tuple[Any, str]:
     """The types of ROS itself and these, by type and text; or why there are none."""
     from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 

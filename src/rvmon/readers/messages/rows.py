@@ -43,7 +43,7 @@ def message_rows(
 def _rows(
     source: Messages, bounds: Mapping[str, Bound], schema: Schema, skew: Skew
 ) -> Iterator[Row]:
-    readers = _Readers(bounds, schema)
+    readers = MessageReaders(bounds, schema)
     counts: dict[str, int] = defaultdict(int)
     number = 0
     for topic, logged, content in source.read({bound.topic for bound in bounds.values()}):
@@ -57,8 +57,13 @@ def _rows(
             raise TraceError(f"message {counts[topic]} of {topic}: {error}") from None
 
 
-class _Readers:
-    """What reads the messages, by topic: made for the first one of each."""
+class MessageReaders:
+    """What reads the messages, by topic: made for the first one of each.
+
+    Args:
+        bounds: what feeds the declared names.
+        schema: the kinds of their values.
+    """
 
     def __init__(self, bounds: Mapping[str, Bound], schema: Schema) -> None:
         self._schema = schema
@@ -70,7 +75,16 @@ class _Readers:
     def take(
         self, topic: Topic, logged: int, content: Any
     ) -> Iterator[tuple[int, dict[str, Value]]]:
-        """What a message says, and when: of each clock that is asked for."""
+        """What a message says, and when: of each clock that is asked for.
+
+        Args:
+            topic: of the message.
+            logged: ticks at which it came, or was recorded.
+            content: an object with attributes, or a mapping.
+
+        Raises:
+            TraceError: it does not fit what is declared.
+        """
         made = self._made.get(topic.name)
         if made is None:
             made = self._made[topic.name] = self._make(topic, isinstance(content, Mapping))

@@ -1,0 +1,193 @@
+"""Live data of ROS 2 over DDS, without a ROS installation; needs cyclonedds, the extra `dds`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from threading import Event, Thread
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from rvmon.adapters.messages import MessageFeed
+from rvmon.errors import RvmonError
+from rvmon.live.robot import Judgement
+from rvmon.readers.messages.ros import ros_topic, ros_types
+
+if TYPE_CHECKING:
+    from rvmon.readers.messages.topic import Topic
+
+_DEPTH = 1_000
+"""Messages of a topic that wait at most within DDS."""
+
+_PREFIX = "rt/"
+"""Before the names of topics of ROS 2 on the wire."""
+
+
+class DdsSource:
+    """A participant that offers what the topics of a feed say, from `with` on.
+
+    Topics are found as somebody publishes them. Their types are those of ROS itself, and those of
+    the definitions.
+
+    Args:
+        feed: gets the messages.
+        domain: of DDS, as `ROS_DOMAIN_ID` names it.
+        definitions: of messages by type, as a binding has them.
+        verdicts: the topic on which verdicts are published, as JSON in `std_msgs/msg/String`;
+            `None`: none are.
+
+    Raises:
+        RvmonError: cyclonedds is not installed.
+    """
+
+    def __init__(
+        self,
+        feed: MessageFeed,
+        *,
+        domain: int = 0,
+        definitions: Mapping[str, str] | None = None,
+        verdicts: str | None = None,
+    ) -> None:
+        try:
+            from cyclonedds.core import Listener
+        except ImportError:
+            raise RvmonError(
+                "DDS needs cyclonedds, which is not installed: pip install 'rvmon[dds]'"
+            ) from None
+        self._feed = feed
+        self._domain = domain
+        self._definitions = tuple(sorted((definitions or {}).items()))
+        self._verdicts = verdicts
+        self._writer: Any = None
+        self._readers: dict[str, tuple[Any, Topic]] = {}
+        self._told: set[str] = set()
+        self._news = Event()
+        self._stops = False
+        # Within a call of DDS no entity can be made: it only wakes the thread that makes and reads.
+        self._listener = Listener(
+            on_data_available=lambda _: self._news.set(), on_sample_lost=self._lose
+        )
+
+    def __enter__(self) -> DdsSource:
+        """Join the domain.
+
+        Raises:
+            RvmonError: that cannot be.
+        """
+        from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
+        from cyclonedds.core import DDSException
+        from cyclonedds.domain import DomainParticipant
+
+        self._wanted = {topic.lstrip("/"): topic for topic in self._feed.topics()}
+        try:
+            self._participant = DomainParticipant(self._domain)
+        except DDSException as error:
+            raise RvmonError(f"domain {self._domain} of DDS cannot be joined: {error}") from None
+        if self._verdicts is not None:
+            self._writer = self._written(self._verdicts)
+        self._finder = BuiltinDataReader(
+            self._participant, BuiltinTopicDcpsPublication, listener=self._listener
+        )
+        self._news.set()  # for what was there before
+        self._thread = Thread(target=self._drive, name="rvmon.dds", daemon=True)
+        self._thread.start()
+        return self
+
+    def _drive(self) -> None:
+        while not self._stops:
+            self._news.wait()
+            self._news.clear()
+            self._find()
+            for reader, topic in self._readers.values():
+                for content in reader.take(N=_DEPTH):
+                    if content.sample_info.valid_data:
+                        self._feed.take(topic, content)
+
+    def _lose(self, reader: Any, _: object) -> None:
+        for known, topic in tuple(self._readers.values()):
+            if known is reader:
+                self._feed.lose(topic.name, "DDS has lost some before it")
+
+    def _written(self, topic: str) -> Any:
+        from cyclonedds.pub import DataWriter
+        from cyclonedds.topic import Topic as DdsTopic
+
+        kind = _idl_type("std_msgs/msg/String", ())
+        return DataWriter(
+            self._participant, DdsTopic(self._participant, _PREFIX + topic.lstrip("/"), kind)
+        )
+
+    def _find(self) -> None:
+        """Read the topics that are wanted and published."""
+        for one in self._finder.take(N=1_000):
+            name = getattr(one, "topic_name", "").removeprefix(_PREFIX)
+            if name in self._wanted and name not in self._readers:
+                self._begin(name, one.type_name)
+
+    def _begin(self, name: str, wire_type: str) -> None:
+        from cyclonedds.core import Policy, Qos
+        from cyclonedds.sub import DataReader
+        from cyclonedds.topic import Topic as DdsTopic
+
+        kind = wire_type.replace("::dds_::", "/").replace("::", "/").removesuffix("_")
+        topic, _ = ros_topic(self._wanted[name], kind, ("msg", ""), False, dict(self._definitions))
+        if topic.fault:
+            if name not in self._told:
+                self._told.add(name)
+                self._feed.lose(topic.name, f"{kind}: {topic.fault}")
+            return
+        qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(_DEPTH))
+        wire = DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions))
+        reader = DataReader(self._participant, wire, qos=qos, listener=self._listener)
+        self._readers[name] = reader, topic
+        self._news.set()  # for what came before the listener
+
+    def publish(self, judgement: Judgement) -> None:
+        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        if self._writer is not None:
+            kind = _idl_type("std_msgs/msg/String", ())
+            self._writer.write(kind(data=msgspec.json.encode(judgement.to_dict()).decode()))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._stops = True
+        self._news.set()
+        self._thread.join()
+
+
+@cache
+def _idl_type(name: str, definitions: tuple[tuple[str, str], ...]) -> Any:
+    """The class by which cyclonedds packs and unpacks messages of a type.
+
+    Args:
+        name: of the type, `package/msg/Name`.
+        definitions: by type, those that are not of ROS itself.
+    """
+    from cyclonedds.idl import make_idl_struct, types
+    from rosbags.interfaces import Nodetype
+
+    def made(node: Any, inner: Any) -> Any:
+        if node is Nodetype.NAME:
+            return _idl_type(inner, definitions)
+        if node is Nodetype.BASE:
+            return _PLAIN.get(inner[0]) or getattr(types, inner[0])
+        of, length = made(*inner[0]), inner[1]
+        if node is Nodetype.ARRAY:
+            return types.array[of, length]
+        return types.sequence[of, length] if length else types.sequence[of]
+
+    store, _ = ros_types(definitions)
+    fields = {field: made(*kind) for field, kind in store.fielddefs[name][1]}
+    package, _, short = name.rpartition("/")
+    wire = f"{package.replace('/', '::')}::dds_::{short}_"
+    return make_idl_struct(short, wire, fields)
+
+
+_PLAIN = {"bool": bool, "string": str}
+"""Types of ROS that cyclonedds calls otherwise."""

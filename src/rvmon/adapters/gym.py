@@ -1,0 +1,127 @@
+"""Requirements over any environment of Gymnasium; needs gymnasium, the extra `gym`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, SupportsFloat, TypeVar
+
+from rvmon.errors import RvmonError
+
+try:
+    import gymnasium
+except ImportError:
+    raise RvmonError(
+        "environments need gymnasium, which is not installed: pip install 'rvmon[gym]'"
+    ) from None
+
+if TYPE_CHECKING:
+    from rvmon.monitor.robustness.values import Measured
+    from rvmon.session import Spec
+    from rvmon.verdict.attempt import Attempt
+
+_Observation = TypeVar("_Observation")
+_Action = TypeVar("_Action")
+
+Observe = Callable[[Any, Any, Mapping[str, Any]], Mapping[str, Any]]
+"""Gives the values of signals and events for an observation, the action before it, and its info."""
+
+
+class Judged(
+    gymnasium.Wrapper[_Observation, _Action, _Observation, _Action],
+    gymnasium.utils.RecordConstructorArgs,
+):
+    """Judges the episodes of an environment: each is a run, its steps are samples.
+
+    After each step `info["rv"]` holds `verdicts` so far by requirement, `decided` (the attempts
+    that this step decided) and, where it is asked for, `margins` (the figures of robustness that
+    nothing can change any more). With the last step of an episode the run ends, and `verdicts` are
+    those of its report.
+
+    Args:
+        env: any environment.
+        spec: what an agent must do.
+        observe: gives the values of a step; the action is `None` behind `reset`.
+        step_s: seconds from one step to the next.
+        ends_on_failure: whether an episode is terminated where a requirement has failed.
+        shaping: gives what is added to the reward for the figures of robustness of a step; `None`:
+            nothing is measured.
+
+    Raises:
+        RvmonError: `step_s` is no time.
+
+    Source: reward by robustness: Li, Vasile and Belta 2017 (Reinforcement Learning with Temporal
+    Logic Rewards).
+    """
+
+    def __init__(
+        self,
+        env: gymnasium.Env[_Observation, _Action],
+        spec: Spec,
+        observe: Observe,
+        *,
+        step_s: float = 1.0,
+        ends_on_failure: bool = False,
+        shaping: Callable[[Sequence[Measured]], float] | None = None,
+    ) -> None:
+        gymnasium.utils.RecordConstructorArgs.__init__(
+            self,
+            spec=spec,
+            observe=observe,
+            step_s=step_s,
+            ends_on_failure=ends_on_failure,
+            shaping=shaping,
+        )
+        gymnasium.Wrapper.__init__(self, env)
+        from rvmon.trace.time import ticks_of_seconds
+
+        self._step_ns = ticks_of_seconds(step_s)
+        if self._step_ns <= 0:
+            raise RvmonError(f"step_s={step_s!r}: expected seconds, more than 0")
+        self._spec = spec
+        self._observe = observe
+        self._ends_on_failure = ends_on_failure
+        self._shaping = shaping
+        self._monitor = spec.monitor()
+        self._decided: list[Attempt] = []
+        self._monitor.on_decided(self._decided.append)
+        self._begin()
+
+    def _begin(self) -> None:
+        self._monitor.reset()
+        self._measuring = None if self._shaping is None else self._spec.robustness_monitor()
+        self._t = 0
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[_Observation, dict[str, Any]]:
+        """Begin an episode, and a run."""
+        observation, info = self.env.reset(seed=seed, options=options)
+        self._begin()
+        judged, _ = self._judge(self._observe(observation, None, info), over=False)
+        return observation, {**info, "rv": judged}
+
+    def step(
+        self, action: _Action
+    ) -> tuple[_Observation, SupportsFloat, bool, bool, dict[str, Any]]:
+        """Take a step, and judge it."""
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        self._t += self._step_ns
+        values = self._observe(observation, action, info)
+        judged, added = self._judge(values, over=terminated or truncated)
+        if self._ends_on_failure and "F" in judged["verdicts"].values():
+            terminated = True
+        return observation, float(reward) + added, terminated, truncated, {**info, "rv": judged}
+
+    def _judge(self, values: Mapping[str, Any], *, over: bool) -> tuple[dict[str, Any], float]:
+        """What `info["rv"]` holds, and what is added to the reward."""
+        self._decided.clear()
+        self._monitor.step_ns(self._t, values)
+        verdicts = self._monitor.finish_ns().verdicts if over else self._monitor.verdicts
+        judged: dict[str, Any] = {"verdicts": dict(verdicts), "decided": [*self._decided]}
+        if self._measuring is None or self._shaping is None:
+            return judged, 0.0
+        figures = [*self._measuring.step_ns(self._t, values)]
+        if over:
+            figures += self._measuring.finish_ns()
+        judged["margins"] = figures
+        return judged, float(self._shaping(figures))

@@ -1,0 +1,118 @@
+"""Live data as JSON objects, one for each sample."""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from typing import Any
+
+import msgspec
+
+from rvmon.errors import TraceError
+from rvmon.live.clock import SimulatedClock
+from rvmon.live.driver import Driver
+from rvmon.readers.jsonl_rows import decoded, read_object
+from rvmon.readers.naming import DEFAULT_COLUMNS
+from rvmon.trace.sample import Value
+from rvmon.trace.schema import Schema
+from rvmon.trace.time import TICKS_PER_SECOND
+
+_log = logging.getLogger("rvmon.live.input")
+
+_JUMP_NS = 10 * TICKS_PER_SECOND
+"""Stamps that go back by more than this are not late, but of another run."""
+
+
+class JsonObjects:
+    """Offers what objects say, as recordings in JSON lines have them.
+
+    Objects without a time are stamped as they arrive. Those with a time are judged at it. One that
+    cannot be read may have said anything: all names are unknown from there on.
+
+    Args:
+        driver: gets the samples.
+        schema: the declared names, and what objects call them.
+        clock: follows the stamps of the objects; `None`: the clock of the driver runs by itself.
+
+    Attributes:
+        ignored: the names that the specification does not declare, with how often they came.
+        unread: so many objects could not be read.
+    """
+
+    def __init__(
+        self, driver: Driver, schema: Schema, *, clock: SimulatedClock | None = None
+    ) -> None:
+        self.ignored: Counter[str] = Counter()
+        self.unread = 0
+        self._driver = driver
+        self._schema = schema
+        self._clock = clock
+        self._last: dict[str, int | None] = {}
+
+    def take(self, fields: Any, robot: str = "", *, wait: bool = False) -> None:
+        """Offer what an object says.
+
+        Args:
+            fields: a decoded object.
+            robot: whose it is.
+            wait: whether to wait for room; see `Driver.offer`.
+
+        Raises:
+            TraceError: it cannot be read; nothing was offered.
+        """
+        t_ns, values = _read(fields, self._schema, self.ignored)
+        self._last[robot] = t_ns
+        if self._clock is not None and t_ns is not None:
+            now = self._clock.now_ns()
+            if t_ns > now or t_ns < now - _JUMP_NS:
+                self._clock.set_ns(t_ns)
+        self._driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
+
+    def lose(self, where: str, why: Exception, robot: str | None) -> None:
+        """Have everything unknown that something may have said which cannot be read.
+
+        Args:
+            where: what it was, for the log.
+            why: it cannot be read.
+            robot: whose it was; `None`: of any.
+        """
+        self.unread += 1
+        _log.warning("%s is not taken: %s", where, why)
+        everything = dict.fromkeys((*self._schema.signals, *self._schema.events))
+        for one in self._last if robot is None else [robot]:
+            last = self._last.get(one)
+            t_ns = None if last is None else last + 1  # what came before stays known
+            self._driver.offer(everything, robot=one, t_ns=t_ns, wait=last is not None)
+
+
+def decoded_object(text: bytes) -> Any:
+    """What a text says.
+
+    Raises:
+        TraceError: it is no JSON.
+    """
+    try:
+        return decoded(text, msgspec.json.decode)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise TraceError(str(error)) from None
+
+
+def stamp_of(text: bytes, schema: Schema) -> int | None:
+    """The instant, ns, that an object says; `None` if it says none, or cannot be read."""
+    try:
+        return _read(decoded_object(text), schema, Counter())[0]
+    except TraceError:
+        return None
+
+
+def _read(
+    fields: Any, schema: Schema, ignored: Counter[str]
+) -> tuple[int | None, dict[str, Value]]:
+    """What an object says: its instant, if it has one, and values."""
+    stamps = DEFAULT_COLUMNS if schema.stamps is None else (schema.stamps.column,)
+    try:
+        if not isinstance(fields, dict) or any(name in fields for name in stamps):
+            return read_object(fields, schema, ignored)
+        return None, read_object({**fields, stamps[0]: 0}, schema, ignored)[1]
+    except RecursionError:
+        raise TraceError("it is nested too deeply") from None

@@ -1,0 +1,91 @@
+"""Live data as messages of topics, as recordings have them."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from typing import Any
+
+from rvmon.errors import TraceError
+from rvmon.live.driver import Driver
+from rvmon.readers.messages.match import matched
+from rvmon.readers.messages.rows import MessageReaders
+from rvmon.readers.messages.topic import Topic
+from rvmon.trace.schema import Schema
+from rvmon.trace.time import TIME_LIMIT
+
+_log = logging.getLogger("rvmon.live.input")
+
+_NOW = 1 - TIME_LIMIT
+"""Stands for the instant at which a message comes."""
+
+
+class MessageFeed:
+    """Offers what messages say of the declared names, by the binding of the schema or by name.
+
+    A message that cannot be read has unknown what its topic feeds.
+
+    Args:
+        driver: gets the samples.
+        schema: the declared names, and which topics and fields feed them.
+        robot: whose they are.
+    """
+
+    def __init__(self, driver: Driver, schema: Schema, robot: str = "") -> None:
+        self._driver = driver
+        self._schema = schema
+        self._robot = robot
+        self._readers: dict[str, MessageReaders] = {}
+        self._fed: dict[str, tuple[str, ...]] = {}
+
+    def topics(self) -> Iterator[str]:
+        """The topics that may feed something: those of the binding, and those that names name."""
+        bounds = self._schema.binding.bounds
+        found = dict.fromkeys(bound.topic for bound in bounds.values())
+        for name in (*self._schema.signals, *self._schema.events):
+            column = self._schema.columns.get(name)
+            if column is not None:
+                found |= dict.fromkeys(_leading(column.strip("/").replace(".", "/")))
+            elif name not in bounds:
+                found |= dict.fromkeys(_leading(name.replace(".", "/")))
+        yield from found
+
+    def take(self, topic: Topic, content: Any) -> None:
+        """Offer what a message says.
+
+        Args:
+            topic: of the message.
+            content: an object with attributes, or a mapping.
+        """
+        try:
+            readers = self._readers.get(topic.name) or self._reading(topic)
+            for t, values in readers.take(topic, _NOW, content):
+                t_ns = None if t == _NOW else t
+                self._driver.offer(values, robot=self._robot, t_ns=t_ns)
+        except TraceError as error:
+            self.lose(topic.name, str(error))
+
+    def _reading(self, topic: Topic) -> MessageReaders:
+        self._fed.setdefault(topic.name, ())
+        bounds = matched(self._schema, {topic.name: topic}).bounds
+        self._fed[topic.name] = tuple(bounds)
+        made = self._readers[topic.name] = MessageReaders(bounds, self._schema)
+        return made
+
+    def lose(self, topic: str, why: str) -> None:
+        """Have unknown what a topic feeds."""
+        _log.warning("a message of %s is not taken: %s", topic, why)
+        everything = (*self._schema.signals, *self._schema.events)
+        names = self._fed.get(topic) or everything
+        self._driver.offer(dict.fromkeys(names), robot=self._robot)
+
+
+def _leading(path: str) -> Iterator[str]:
+    """The topics that a name may begin with.
+
+    >>> list(_leading("base/odom"))
+    ['/base/odom', '/base']
+    """
+    while path:
+        yield f"/{path}"
+        path = path.rpartition("/")[0]

@@ -1,0 +1,178 @@
+"""Live data over MQTT, and verdicts back; needs paho-mqtt, the extra `mqtt`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from threading import Event
+from types import TracebackType
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+import msgspec
+
+from rvmon.adapters.json_objects import JsonObjects, decoded_object
+from rvmon.errors import RvmonError, TraceError
+from rvmon.live.robot import Judgement
+
+_PORT = 1883
+_PATIENCE_S = 10.0
+"""Seconds in which a broker has to answer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Address:
+    """Where a broker is, and what is read there.
+
+    Attributes:
+        host: of the broker.
+        port: of it.
+        user: name and password, or empty.
+        password: see there.
+        topics: a filter of MQTT; its first `+` is the name of the robot.
+    """
+
+    host: str
+    port: int
+    user: str
+    password: str
+    topics: str
+
+    @property
+    def prefix(self) -> int:
+        """The levels of a topic that are no part of a name."""
+        levels = self.topics.split("/")
+        return len(levels) - (levels[-1] == "#")
+
+    @property
+    def robot(self) -> int | None:
+        """The level of a topic that names the robot."""
+        levels = self.topics.split("/")
+        return levels.index("+") if "+" in levels else None
+
+
+def address_of(url: str) -> Address:
+    """Read `mqtt://USER:PASSWORD@HOST:PORT/TOPICS`.
+
+    Raises:
+        RvmonError: it has another form.
+
+    >>> address_of("mqtt://broker/robots/+/#")
+    Address(host='broker', port=1883, user='', password='', topics='robots/+/#')
+    """
+    form = "expected mqtt://HOST/TOPICS, such as mqtt://localhost/robots/+/#"
+    # What urlsplit takes for a fragment is the filter's end.
+    parts = urlsplit(url.replace("#", "%23"))
+    topics = unquote(parts.path[1:])
+    levels = topics.split("/")
+    try:
+        port = parts.port or _PORT
+    except ValueError:
+        raise RvmonError(f"{url}: its port is no number up to 65535: {form}") from None
+    if parts.scheme != "mqtt" or not parts.hostname or not topics:
+        raise RvmonError(f"{url}: {form}")
+    if "#" in levels[:-1] or any(len(one) > 1 and ("+" in one or "#" in one) for one in levels):
+        raise RvmonError(f"{url}: in a filter, + stands for one level, # for all behind the last /")
+    user, password = unquote(parts.username or ""), unquote(parts.password or "")
+    return Address(parts.hostname, port, user, password, topics)
+
+
+class MqttSource:
+    """Offers what is published: a JSON object or value for each message, from `with` on.
+
+    The levels of a topic behind the filter's prefix are names before that of the fields: with
+    `robots/+/#`, `0.3` under `robots/left/arm/speed` is `arm.speed` of the robot `left`, as is
+    `{"speed": 0.3}` under `robots/left/arm`. Where the connection is lost, all names are unknown
+    until their next value: what was published meanwhile is not known.
+
+    Args:
+        objects: get what is said.
+        address: where it is.
+        verdicts: the topic under which verdicts are published, each as JSON under the name of its
+            requirement; `None`: none are.
+
+    Raises:
+        RvmonError: paho-mqtt is not installed.
+    """
+
+    def __init__(
+        self, objects: JsonObjects, address: Address, *, verdicts: str | None = None
+    ) -> None:
+        try:
+            from paho.mqtt.client import Client
+            from paho.mqtt.enums import CallbackAPIVersion
+        except ImportError:
+            raise RvmonError(
+                "MQTT needs paho-mqtt, which is not installed: pip install 'rvmon[mqtt]'"
+            ) from None
+        self._objects = objects
+        self._address = address
+        self._verdicts = verdicts
+        self._connected = Event()
+        self._refusal = ""
+        self._client = Client(CallbackAPIVersion.VERSION2)
+        self._client.max_queued_messages_set(0)
+        self._client.on_connect = self._on_connect
+        self._client.on_subscribe = lambda *_: self._connected.set()
+        self._client.on_disconnect = self._on_disconnect
+        self._client.on_message = lambda _, __, message: self._take(
+            message.topic, bytes(message.payload)
+        )
+        if address.user:
+            self._client.username_pw_set(address.user, address.password)
+
+    def __enter__(self) -> MqttSource:
+        """Connect and subscribe.
+
+        Raises:
+            RvmonError: the broker cannot be reached, or refuses.
+        """
+        where = f"{self._address.host}:{self._address.port}"
+        try:
+            self._client.connect(self._address.host, self._address.port)
+        except OSError as error:
+            raise RvmonError(f"no broker of MQTT answers at {where}: {error}") from None
+        self._client.loop_start()
+        if not self._connected.wait(_PATIENCE_S) or self._refusal:
+            self._client.loop_stop()
+            why = self._refusal or f"it did not answer in {_PATIENCE_S:.0f} s"
+            raise RvmonError(f"the broker of MQTT at {where} refuses: {why}")
+        return self
+
+    def _on_connect(self, client: Any, _: object, __: object, reason: Any, ___: object) -> None:
+        if reason.is_failure:
+            self._refusal = str(reason)
+            self._connected.set()
+        else:  # after each loss of the connection, too
+            client.subscribe(self._address.topics, qos=1)
+
+    def _on_disconnect(self, _: object, __: object, ___: object, reason: Any, ____: object) -> None:
+        if reason.is_failure:
+            lost = RvmonError(f"{reason}: what is published until it is back is not known")
+            self._objects.lose("the connection to the broker", lost, None)
+
+    def _take(self, topic: str, payload: bytes) -> None:
+        levels = topic.split("/")
+        place = self._address.robot
+        robot = "" if place is None else levels[place]
+        try:
+            said = decoded_object(payload)
+            for name in reversed(levels[self._address.prefix :]):
+                said = {name: said}
+            self._objects.take(said, robot)
+        except TraceError as error:
+            self._objects.lose(f"a message of {topic}", error, robot)
+
+    def publish(self, judgement: Judgement) -> None:
+        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        if self._verdicts is not None:
+            said = msgspec.json.encode(judgement.to_dict())
+            self._client.publish(f"{self._verdicts}/{judgement.attempt.requirement}", said, qos=1)
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._client.disconnect()
+        self._client.loop_stop()

@@ -1,0 +1,273 @@
+"""`rvmon watch`: judge a running robot, line by line."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import os
+import threading
+import time
+from collections.abc import Callable
+from io import FileIO
+from typing import TYPE_CHECKING
+
+from rvmon.cli.numbers import positive, span
+from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
+from rvmon.cli.say import warn
+from rvmon.errors import RvmonError, SpecError
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rvmon.adapters.json_objects import JsonObjects
+    from rvmon.cli.watch_output import Output
+    from rvmon.live import Clock, Judgement, Live
+    from rvmon.session import Spec
+
+_TURN = 0.25
+"""Seconds between two looks at the specification."""
+
+_LAG_NS = 500_000_000
+
+_LAST_DOMAIN = 232
+"""The last domain of DDS that has ports."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "watch",
+        help="judge a running robot: verdicts as they fall",
+        description="Judge JSON lines as they arrive, and say each verdict as soon as it is sure: "
+        "a deadline that is missed is told when it is over. A change of the specification is taken "
+        "up at once. Ends with the stream, or with Ctrl-C.",
+        epilog="example: my_robot --telemetry | rvmon watch specs/base.rv",
+    )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument(
+        "source",
+        metavar="SOURCE",
+        nargs="?",
+        default="-",
+        help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, whose "
+        "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (topics of ROS 1) or "
+        "dds:DOMAIN (those of ROS 2). What has a time (t, t_ns, --time) is judged at it, the "
+        "rest as it arrives",
+    )
+    add_only(parser)
+    add_const(parser)
+    add_time(parser)
+    add_map(parser)
+    add_binding(parser)
+    parser.add_argument(
+        "--robot",
+        metavar="FIELD",
+        help="the field of lines that names the robot: each is judged by itself",
+    )
+    parser.add_argument(
+        "--publish",
+        metavar="TOPIC",
+        help="publish each verdict, as JSON: over MQTT under TOPIC/REQUIREMENT, by ROS on TOPIC",
+    )
+    parser.add_argument(
+        "--realtime",
+        metavar="LAG",
+        nargs="?",
+        type=span,
+        const=_LAG_NS,
+        help="the stamps of the lines are the time of day since 1970, and lines arrive at most LAG "
+        "later (default: 500ms): deadlines pass while no line comes, too",
+    )
+    parser.add_argument(
+        "--room",
+        metavar="N",
+        type=positive,
+        default=10_000,
+        help="so many lines may wait (default: 10000); what finds no room is lost, and counted",
+    )
+    parser.add_argument("--failures", action="store_true", help="say what fails, not what passes")
+    parser.add_argument(
+        "--format",
+        choices=("view", "text", "json"),
+        help="a view that stays (default on a terminal), a line for each verdict, or JSON lines",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge until the stream ends or somebody ends it, and return the exit code."""
+    from rvmon.cli.watch_output import output_named
+
+    spec = _loaded(arguments)
+    shown = output_named(arguments.format, failures_only=arguments.failures)
+    watch = next((one for start, one in _DOORS if arguments.source.startswith(start)), _watch_lines)
+    live = watch(arguments, spec, shown)
+    shown.ended(live)
+    verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
+    return int(any(one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts))
+
+
+def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+    from rvmon.adapters.json_lines import feed_lines, read_lines
+    from rvmon.adapters.json_objects import JsonObjects, stamp_of
+    from rvmon.live import SimulatedClock, WallClock
+
+    with _opened(arguments.source) as file:
+        lines = read_lines(file.fileno())
+        first = next((line for line in lines if line.strip()), None)
+        if first is None:
+            raise RvmonError(f"error: {arguments.source}: there is no line: nothing was judged")
+        began = stamp_of(first, spec.schema)
+        followed = None
+        clock: Clock = WallClock(since_1970=arguments.realtime is not None)
+        if began is not None and arguments.realtime is None:
+            clock = followed = SimulatedClock(began)
+        live = _live(arguments, spec, clock, shown.judged)
+        objects = JsonObjects(live, spec.schema, clock=followed)
+        every = itertools.chain([first], lines)
+        feeding = threading.Thread(
+            target=feed_lines, args=(objects, every, arguments.robot), daemon=True
+        )
+        with live, shown:
+            feeding.start()
+            _follow(arguments, live, shown, feeding)
+    _tell_ignored(objects)
+    return live
+
+
+def _tell_ignored(objects: JsonObjects) -> None:
+    for name in objects.ignored:
+        warn(f"ignored: {name} is not declared in the spec")
+
+
+def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+    from rvmon.adapters.json_objects import JsonObjects
+    from rvmon.adapters.mqtt import MqttSource, address_of
+
+    address = address_of(arguments.source)
+    live, hear = _live_here(arguments, spec, shown)
+    objects = JsonObjects(live, spec.schema)
+    source = MqttSource(objects, address, verdicts=arguments.publish)
+    hear(source.publish)
+    with live, source, shown:
+        _follow(arguments, live, shown)
+    _tell_ignored(objects)
+    return live
+
+
+def _watch_ros1(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+    from rvmon.adapters.messages import MessageFeed
+    from rvmon.adapters.ros1 import Ros1Source
+
+    live, hear = _live_here(arguments, spec, shown)
+    source = Ros1Source(MessageFeed(live, spec.schema), verdicts=arguments.publish)
+    hear(source.publish)
+    with live, source, shown:
+        _follow(arguments, live, shown)
+    return live
+
+
+def _watch_dds(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+    from rvmon.adapters.dds import DdsSource
+    from rvmon.adapters.messages import MessageFeed
+
+    domain = arguments.source.partition(":")[2] or os.environ.get("ROS_DOMAIN_ID", "0")
+    if not domain.isdecimal() or int(domain) > _LAST_DOMAIN:
+        raise RvmonError(f"{arguments.source}: expected a domain of DDS, 0 to {_LAST_DOMAIN}")
+    live, hear = _live_here(arguments, spec, shown)
+    source = DdsSource(
+        MessageFeed(live, spec.schema),
+        domain=int(domain),
+        definitions=spec.schema.binding.definitions,
+        verdicts=arguments.publish,
+    )
+    hear(source.publish)
+    with live, source, shown:
+        _follow(arguments, live, shown)
+    return live
+
+
+_DOORS = (("mqtt:", _watch_mqtt), ("ros1:", _watch_ros1), ("dds:", _watch_dds))
+
+
+def _live_here(
+    arguments: argparse.Namespace, spec: Spec, shown: Output
+) -> tuple[Live, Callable[[Callable[[Judgement], object]], object]]:
+    """Monitors whose samples are stamped here, and how somebody else hears their verdicts."""
+    from rvmon.live import WallClock
+
+    hearing: list[Callable[[Judgement], object]] = [shown.judged]
+
+    def judged(judgement: Judgement) -> None:
+        for one in hearing:
+            one(judgement)
+
+    clock = WallClock(since_1970=arguments.realtime is not None)
+    return _live(arguments, spec, clock, judged), hearing.append
+
+
+def _live(
+    arguments: argparse.Namespace,
+    spec: Spec,
+    clock: Clock,
+    judged: Callable[[Judgement], object],
+) -> Live:
+    from rvmon.live import Live
+
+    return Live(
+        spec,
+        clock=clock,
+        only=ids_of(arguments.only, spec),
+        lag_ns=arguments.realtime,
+        room=arguments.room,
+        on_judged=judged,
+    )
+
+
+def _loaded(arguments: argparse.Namespace) -> Spec:
+    from rvmon.loading import load
+
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    columns = mapped_names(arguments.map)
+    return spec.reading(time=arguments.time, columns=columns, binding=arguments.binding)
+
+
+def _follow(
+    arguments: argparse.Namespace,
+    live: Live,
+    shown: Output,
+    feeding: threading.Thread | None = None,
+) -> None:
+    """Show how it stands, and take changes of the specification up, while anything comes."""
+    made = _age(arguments.spec)
+    try:
+        while feeding is None or feeding.is_alive():
+            if feeding is None:
+                time.sleep(_TURN)
+            else:
+                feeding.join(_TURN)
+            if (age := _age(arguments.spec)) != made and age is not None:
+                made = age
+                try:
+                    live.replace_spec(_loaded(arguments))
+                    shown.note(f"{arguments.spec} has changed: judged by it from here on")
+                except (SpecError, RvmonError) as error:
+                    shown.note(f"{error}\nThe former specification goes on.")
+            shown.show(live)
+    except KeyboardInterrupt:
+        shown.note("ended")
+
+
+def _age(path: str) -> tuple[int, int] | None:
+    """What changes when a file is written; `None` while there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_ino
+
+
+def _opened(source: str) -> FileIO:
+    try:
+        return FileIO(0, closefd=False) if source == "-" else FileIO(source)
+    except OSError as error:
+        raise RvmonError(f"error: {source}: {error.strerror}") from None

@@ -1,0 +1,211 @@
+"""What `rvmon watch` shows: a view, lines for people, or JSON lines."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections import deque
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from rvmon.cli.say import say, say_json, warn
+from rvmon.report.style import MARKS
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rvmon.live import Driver, Judgement, Status
+    from rvmon.session import Spec
+
+_SHOWN_FAILURES = 5
+_SHOWN_ROBOTS = 8
+
+
+class Output(logging.Handler):
+    """Lines for people, one for each verdict; what is wrong with the input goes to standard error.
+
+    Args:
+        failures_only: whether what passed is left out.
+    """
+
+    def __init__(self, *, failures_only: bool) -> None:
+        super().__init__()
+        self._failures_only = failures_only
+        self._log = logging.getLogger("rvmon.live.input")
+
+    def __enter__(self) -> Output:
+        self._log.addHandler(self)
+        self._log.propagate = False
+        logging.getLogger("rvmon.live").addHandler(logging.NullHandler())
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._log.removeHandler(self)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Say what is wrong with the input."""
+        self.note(record.getMessage())
+
+    def judged(self, judgement: Judgement) -> None:
+        """Say a verdict, if it is asked for."""
+        if judgement.attempt.verdict is Verdict.FAIL or not self._failures_only:
+            self.say(judgement)
+
+    def say(self, judgement: Judgement) -> None:
+        """Say a verdict."""
+        say(_line(judgement), flush=True)
+
+    def note(self, text: str) -> None:
+        """Say something beside the verdicts."""
+        warn(text)
+
+    def show(self, driver: Driver) -> None:
+        """Show how it stands; called a few times in a second."""
+
+    def ended(self, driver: Driver) -> None:
+        """Say what came of it."""
+        from rvmon.report.terminal import Terminal
+
+        Terminal().print(_tables(driver))
+
+
+class JsonOutput(Output):
+    """A JSON line for each verdict, and at the end one for each robot."""
+
+    def say(self, judgement: Judgement) -> None:
+        """Say a verdict."""
+        say_json(msgspec.json.encode(judgement.to_dict()).decode())
+        sys.stdout.flush()
+
+    def ended(self, driver: Driver) -> None:
+        """Say what came of it."""
+        for name, status in driver.status().items():
+            said = {
+                "robot": name,
+                "runs": status.run,
+                "verdicts": status.verdicts,
+                "samples": status.samples,
+                "lost": status.lost,
+            }
+            say_json(msgspec.json.encode(said).decode())
+
+
+class View(Output):
+    """A table that stays in its place: verdicts, what is owed and until when, what failed last."""
+
+    def __init__(self, *, failures_only: bool) -> None:
+        from rich.live import Live as Screen
+
+        from rvmon.report.terminal import Terminal
+
+        super().__init__(failures_only=failures_only)
+        self._failures: deque[str] = deque(maxlen=_SHOWN_FAILURES)
+        self._screen = Screen(console=Terminal(), auto_refresh=False, transient=True)
+
+    def __enter__(self) -> View:
+        super().__enter__()
+        self._screen.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._screen.stop()
+        super().__exit__(kind, error, trace)
+
+    def judged(self, judgement: Judgement) -> None:
+        """Remember what failed."""
+        if judgement.attempt.verdict is Verdict.FAIL:
+            self._failures.append(_line(judgement))
+
+    def note(self, text: str) -> None:
+        """Say something above the table."""
+        self._screen.console.print(text)
+
+    def show(self, driver: Driver) -> None:
+        """Show how it stands."""
+        self._screen.update(self._drawn(driver), refresh=True)
+
+    def ended(self, driver: Driver) -> None:
+        """Show how it stands at the end."""
+        self._screen.console.print(self._drawn(driver))
+
+    def _drawn(self, driver: Driver) -> RenderableType:
+        from rich.console import Group
+        from rich.text import Text
+
+        failures = [Text(line, style=MARKS[Verdict.FAIL].terminal) for line in self._failures]
+        return Group(_tables(driver), *failures)
+
+
+def output_named(name: str | None, *, failures_only: bool) -> Output:
+    """The output of a name; by default a view on a terminal, and lines elsewhere.
+
+    Args:
+        name: `view`, `text` or `json`.
+        failures_only: whether what passed is left out.
+    """
+    kinds = {"view": View, "text": Output, "json": JsonOutput}
+    chosen = name or ("view" if sys.stdout.isatty() else "text")
+    return kinds[chosen](failures_only=failures_only)
+
+
+def _line(judgement: Judgement) -> str:
+    attempt = judgement.attempt
+    robot = f"{judgement.robot}  " if judgement.robot else ""
+    decided = attempt.triggered if attempt.decided is None else attempt.decided
+    sign = MARKS[attempt.verdict].sign
+    reason = f"  {attempt.reason}" if attempt.reason else ""
+    return f"{robot}{format_ticks(decided)}  {attempt.name} {attempt.verdict} {sign}{reason}"
+
+
+def _tables(driver: Driver) -> RenderableType:
+    from rich.console import Group
+
+    found = driver.status()
+    shown = dict(list(found.items())[:_SHOWN_ROBOTS])
+    rest = len(found) - len(shown)
+    more = [f"… and {rest} more robots"] if rest else []
+    return Group(*(_table(one, driver.spec) for one in shown.values()), *more)
+
+
+def _table(status: Status, spec: Spec) -> RenderableType:
+    from rich import box
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    from rvmon.report.style import verdict_text
+
+    heading = f"{status.robot}  " if status.robot else ""
+    run = f"run {status.run}, " if status.run > 1 else ""
+    lost = f", {status.lost:,} lost" if status.lost else ""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for column in ("", "verdict", "passed", "failed", "open", "until"):
+        table.add_column(column, no_wrap=True)
+    table.add_column("requirement", style="dim")
+    for name, verdict in status.verdicts.items():
+        owed = [attempt for attempt in status.open if attempt.requirement == name]
+        deadlines = [attempt.deadline for attempt in owed if attempt.deadline is not None]
+        left = ""
+        if deadlines:
+            left = f"{max(0, min(deadlines) - status.now) / TICKS_PER_SECOND:.1f} s"
+        counts = [str(status.counts[name, one] or "") for one in (Verdict.PASS, Verdict.FAIL)]
+        text = spec.requirements[name].text
+        table.add_row(name, verdict_text(verdict), *counts, str(len(owed) or ""), left, text)
+    return Group(
+        Text(f"{heading}{run}to {format_ticks(status.now)}, {status.samples:,} samples{lost}"),
+        table,
+    )

@@ -1,0 +1,370 @@
+"""What puts samples through monitors and lets time pass on them; it never sleeps."""
+
+from __future__ import annotations
+
+import heapq
+import logging
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from threading import Condition, Lock, RLock
+from typing import TYPE_CHECKING, TypeVar
+
+from rvmon.errors import RvmonError, TraceError
+from rvmon.live.clock import Clock, WallClock
+from rvmon.live.robot import Judgement, Robot, Watch
+from rvmon.live.status import Status
+from rvmon.live.waiting import Entry, Lost, Names, NewRun, Offered, Values, Waiting
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.trace.health import HealthKind
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, whole_ticks
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rvmon.session import Spec
+    from rvmon.verdict.report import Report
+
+_log = logging.getLogger("rvmon.live")
+_input_log = logging.getLogger("rvmon.live.input")
+
+_T = TypeVar("_T")
+
+_BATCH = 1_000
+"""So many entries are judged before anybody else gets a turn."""
+
+_PATIENCE_NS = 2_000_000
+"""Monitors are asked what is due when no sample came for so long: a sample decides it as well."""
+
+_FAR_NS = 365 * 86_400 * TICKS_PER_SECOND
+"""Stamps that are so far from the clock are of another epoch."""
+
+
+class Driver:
+    r"""Judges samples of any number of robots, as they are offered and as time passes.
+
+    `offer` may be called from any thread. Whoever drives it calls `work` whenever `wake` was called
+    and when the seconds that `work` returned are over. Nothing that a robot sends stops it: what a
+    monitor refuses is counted, logged as `rvmon.live.input`, and unknown from there on.
+
+    Args:
+        spec: what each robot must do.
+        clock: what time it is; default a `WallClock`.
+        only: ids of the requirements; default all.
+        sources: the names that can arrive; default all.
+        keep: so many records of each verdict are kept per requirement; `None`: all.
+        lag_ns: how long samples that bring their own stamps may take to arrive; deadlines pass so
+            much later. Default the `max delay` of the specification, or 0.
+        room: so many samples may wait. Of one that finds no room the signals are unknown until
+            their next value and the events unknown at its instant, so that no verdict rests on it;
+            where 100,000 such instants are lost in a row, or a value of a signal that ignores NaN,
+            a new run begins, and what has not failed is inconclusive.
+        most_robots: samples of more are refused.
+        on_judged: called with each attempt that passes or fails.
+        on_failure: called with each that fails.
+        on_report: called with the name of the robot and the report of each run that ends.
+
+    Attributes:
+        wake: to be set to what has `work` called soon; it is called from any thread.
+        errors: so many callbacks raised something, which was logged.
+
+    Raises:
+        RvmonError: `room`, `most_robots` or `keep` is no count.
+        UnknownNameError: `only` or `sources` names what does not exist.
+
+    >>> from rvmon import loads
+    >>> from rvmon.live import Driver, SimulatedClock
+    >>> spec = loads("spec s\nevent a, b\nrequirement R\n  upon a\n  then within 2 s b\n")
+    >>> clock = SimulatedClock()
+    >>> driver = Driver(spec, clock=clock, on_failure=lambda one: print(one.attempt.name))
+    >>> _ = driver.offer({"a": True})
+    >>> _ = driver.work()
+    >>> clock.set_ns(2_000_000_001)
+    >>> _ = driver.work()
+    R#1
+    """
+
+    def __init__(
+        self,
+        spec: Spec,
+        *,
+        clock: Clock | None = None,
+        only: Iterable[str] | None = None,
+        sources: Iterable[str] | None = None,
+        keep: int | None = 1_000,
+        lag_ns: int | None = None,
+        room: int = 10_000,
+        most_robots: int = 1_000,
+        on_judged: Callable[[Judgement], object] | None = None,
+        on_failure: Callable[[Judgement], object] | None = None,
+        on_report: Callable[[str, Report], object] | None = None,
+    ) -> None:
+        for name, count in (("room", room), ("most_robots", most_robots)):
+            if type(count) is not int or count < 1:
+                raise RvmonError(f"{name}={count!r}: expected a whole number from 1 on")
+        self._clock = WallClock() if clock is None else clock
+        self._runs_by_itself = isinstance(self._clock, WallClock)
+        self._only = None if only is None else tuple(only)
+        self._sources = None if sources is None else tuple(sources)
+        self._keep = keep
+        self._asked_lag = lag_ns
+        self._most_robots = most_robots
+        self._on_judged, self._on_failure, self._on_report = on_judged, on_failure, on_report
+        self.wake: Callable[[], object] = int
+        self.errors = 0
+        self._lock = Lock()  # of what waits, and of the stamps that are given
+        self._has_room = Condition(self._lock)
+        self._working = RLock()  # of the monitors; callbacks may ask how they stand
+        self._is_working = False
+        self._stamped = -(1 << 62)
+        self._is_closed = False
+        self._robots: dict[str, Robot] = {}
+        self._patience = _PATIENCE_NS if self._runs_by_itself else 0
+        self._timers: list[tuple[int, str]] = []
+        self._wakes: dict[str, int] = {}
+        self._turned_away = False
+        self._watch, self._lag = self._watching(spec)
+        self._waiting = Waiting(room, _names(spec))
+        self._clock.on_change(self._clock_was_set)
+
+    def _watching(self, spec: Spec) -> tuple[Watch, int]:
+        """How robots are watched by a specification, and the lag, ns; it raises."""
+        lag = (spec.checked.max_delay or 0) if self._asked_lag is None else self._asked_lag
+        # Stamps that are not given here may be equal.
+        settle = "now" if self._runs_by_itself and not lag else "next"
+        watch = Watch(spec, self._only, self._sources, settle, self._keep)
+        watch.monitor()
+        return watch, lag
+
+    @property
+    def spec(self) -> Spec:
+        """As given, or the latest that replaced it."""
+        return self._watch.spec
+
+    # --- from any thread ---------------------------------------------------------------------
+
+    def offer(
+        self, values: Values, *, robot: str = "", t_ns: int | None = None, wait: bool = False
+    ) -> bool:
+        """Have a sample judged soon.
+
+        Args:
+            values: what was updated or occurred, as for `Monitor.step`.
+            robot: whose it is.
+            t_ns: its stamp, ns; default the time now.
+            wait: where there is no room, to wait for some: for what reads a file or a pipe, in
+                another thread than that which calls `work`.
+
+        Returns:
+            Whether there was room for it, and for its robot; if not, the sample is lost.
+
+        Raises:
+            TraceError: it has no values by name, or its stamp is none or of another epoch than the
+                clock.
+            RvmonError: this was closed.
+        """
+        if not isinstance(values, Mapping):
+            raise TraceError(f"expected values by name, found {values!r}")
+        if t_ns is not None:
+            t_ns = self._near(whole_ticks(t_ns))
+        kept = dict(values)
+        with self._has_room:
+            while wait and self._waiting.is_full and not self._is_closed:
+                self._has_room.wait()
+            if self._is_closed:
+                raise RvmonError("the monitors were closed: no sample is taken any more")
+            if robot not in self._waiting.robots and not self._is_room_for(robot):
+                return False
+            if t_ns is None:
+                t_ns = max(self._clock.now_ns(), self._stamped)
+                self._stamped = t_ns + self._runs_by_itself
+            was_empty = not len(self._waiting)
+            took = self._waiting.put(Offered(robot, t_ns, kept))
+        if was_empty:
+            self.wake()
+        return took
+
+    def _is_room_for(self, robot: str) -> bool:
+        if len({*self._waiting.robots, *self._robots}) < self._most_robots:
+            return True
+        if robot in self._robots:
+            return True
+        if not self._turned_away:
+            _input_log.warning("robot %r is one too many: at most %d", robot, self._most_robots)
+        self._turned_away = True
+        return False
+
+    def _near(self, t_ns: int) -> int:
+        if self._runs_by_itself and abs(t_ns - self._clock.now_ns()) > _FAR_NS:
+            raise TraceError(
+                f"the stamp {format_ticks(t_ns)} is years from the clock, which says "
+                f"{format_ticks(self._clock.now_ns())}: give the driver the clock of the stamps, "
+                "such as WallClock(since_1970=True)"
+            )
+        return t_ns
+
+    def replace_spec(self, spec: Spec) -> None:
+        """Judge by another specification from now on: each robot begins a new run.
+
+        Raises:
+            UnknownNameError: it lacks what `only` or `sources` names; the former one stays.
+        """
+        with self._driving():
+            self._watch, self._lag = self._watching(spec)
+            with self._lock:
+                self._waiting.expect(_names(spec))
+            for robot in self._robots.values():
+                robot.end()
+                robot.begin(self._watch)
+
+    def status(self) -> dict[str, Status]:
+        """How each robot stands."""
+        with self._working:
+            now = self._clock.now_ns()
+            return {name: robot.status(now) for name, robot in self._robots.items()}
+
+    @property
+    def waiting(self) -> int:
+        """So many samples wait to be judged."""
+        return len(self._waiting)
+
+    def _clock_was_set(self, before: int, now: int) -> None:
+        if now < before:
+            with self._lock:
+                self._stamped = now
+                why = f"a new run began: the clock went back by {format_ticks(before - now)}"
+                self._waiting.put_new_run(why)
+        self.wake()
+
+    # --- from whoever drives it --------------------------------------------------------------
+
+    def work(self) -> float | None:
+        """Judge what waits, and let time pass.
+
+        Returns:
+            The seconds after which to call it again if `wake` is not called before; `None`: it will
+            be.
+        """
+        with self._driving():
+            return self._work()
+
+    @contextmanager
+    def _driving(self) -> Iterator[None]:
+        """Have the monitors alone; a callback that wants it would find them in mid-step."""
+        with self._working:
+            if self._is_working:
+                raise RvmonError("a callback cannot drive, close or replace what calls it")
+            self._is_working = True
+            try:
+                yield
+            finally:
+                self._is_working = False
+
+    def _work(self) -> float | None:
+        with self._has_room:
+            entries = self._waiting.take(_BATCH)
+            more = len(self._waiting) > 0
+            now = self._clock.now_ns()
+            if not more:  # what is offered from now on is stamped no earlier
+                self._stamped = max(self._stamped, now)
+            self._has_room.notify_all()
+        for entry in entries:
+            self._take(entry)
+        return 0.0 if more else self._pass_to(now)
+
+    def _take(self, entry: Entry) -> None:
+        if isinstance(entry, NewRun):
+            for robot in self._robots.values():
+                robot.restart(HealthKind.CLOCK, entry.why)
+                self._wakes.pop(robot.name, None)
+            return
+        found = self._robots.get(entry.robot)
+        if found is None:
+            _log.info("%sis watched", _heading(entry.robot))
+            found = Robot(entry.robot, self._watch, self._judged, self._ended)
+            self._robots[entry.robot] = found
+        if isinstance(entry, Lost):
+            _input_log.warning("%slost %d samples: no room", _heading(entry.robot), entry.count)
+            found.lose(entry)
+        else:
+            if why := found.take(entry.t, entry.values):
+                _input_log.warning("%srefused a sample: %s", _heading(entry.robot), why)
+        self._look_at(entry.robot, entry.t + self._lag + self._patience)
+
+    def _look_at(self, robot: str, t: int) -> None:
+        """Have a robot looked at when an instant has come, if it is not looked at before."""
+        known = self._wakes.get(robot)
+        if known is None or t < known:
+            self._wakes[robot] = t
+            heapq.heappush(self._timers, (t, robot))
+
+    def _pass_to(self, now: int) -> float | None:
+        """Let time come to an instant on those whose time it is; seconds to the next."""
+        while self._timers and self._timers[0][0] <= now:
+            t, name = heapq.heappop(self._timers)
+            if self._wakes.get(name) != t:  # it was looked at before
+                continue
+            del self._wakes[name]
+            robot = self._robots[name]
+            quiet = (t if robot.last is None else robot.last) + self._lag + self._patience
+            if quiet > now:  # what is due is decided by samples, which keep coming
+                self._look_at(name, quiet)
+                continue
+            robot.pass_to(now - self._lag)
+            if (due := robot.due) is not None:
+                self._look_at(name, max(due + self._lag, now + 1))
+        if not self._timers:
+            return None
+        return self._clock.seconds_until(self._timers[0][0])
+
+    def close(self) -> dict[str, tuple[Report, ...]]:
+        """Judge what waits, end all runs now, and take nothing any more.
+
+        Returns:
+            By robot the reports of its newest runs, the last one last; the same again if it was
+            closed before.
+        """
+        with self._driving():
+            with self._has_room:
+                was_closed, self._is_closed = self._is_closed, True
+                self._has_room.notify_all()
+            if not was_closed:
+                while len(self._waiting):
+                    self._work()
+                now = self._clock.now_ns() - self._lag
+                for robot in self._robots.values():
+                    robot.pass_to(now)
+                    robot.end()
+            return {name: tuple(robot.reports) for name, robot in self._robots.items()}
+
+    # --- to whoever wants to know ------------------------------------------------------------
+
+    def _judged(self, judgement: Judgement) -> None:
+        if judgement.attempt.verdict is Verdict.FAIL:
+            _log.warning("%s%s", _heading(judgement.robot), judgement.attempt)
+            self._call(self._on_failure, judgement)
+        self._call(self._on_judged, judgement)
+
+    def _ended(self, robot: str, report: Report) -> None:
+        _log.info("%sa run ended", _heading(robot))
+        if self._on_report is not None:
+            on_report = self._on_report
+            self._call(lambda one: on_report(robot, one), report)
+
+    def _call(self, callback: Callable[[_T], object] | None, what: _T) -> None:
+        if callback is None:
+            return
+        try:
+            callback(what)
+        except Exception:  # noqa: BLE001 - what others do wrong stops no monitor
+            self.errors += 1
+            _log.exception("a callback failed")
+
+
+def _names(spec: Spec) -> Names:
+    checked = spec.checked
+    is_position = checked.time is TimeModel.SAMPLED and checked.period is None
+    momentary = None if is_position else frozenset(checked.events)
+    return Names(tuple(checked.signals), momentary, frozenset(checked.ignoring))
+
+
+def _heading(robot: str) -> str:
+    return f"{robot}: " if robot else ""

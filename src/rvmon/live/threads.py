@@ -1,0 +1,81 @@
+"""Live monitors in a thread of their own."""
+
+from __future__ import annotations
+
+from threading import Condition, Thread, current_thread
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from rvmon.live.driver import Driver
+
+if TYPE_CHECKING:
+    from rvmon.session import Spec
+    from rvmon.verdict.report import Report
+
+
+class Live(Driver):
+    r"""A driver with a thread that drives it, from `with` or `start` to `close`.
+
+    Args:
+        spec: as for `Driver`.
+        **options: as for `Driver`.
+
+    >>> from rvmon import loads
+    >>> from rvmon.live import Live
+    >>> spec = loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n")
+    >>> with Live(spec) as live:
+    ...     _ = live.offer({"x": 5.0})
+    >>> live.close()[""][0].verdicts["R"]
+    <Verdict.FAIL: 'F'>
+    """
+
+    def __init__(self, spec: Spec, **options: Any) -> None:
+        super().__init__(spec, **options)
+        self._changed = Condition()
+        self._is_called = False
+        self._stops = False
+        self._thread: Thread | None = None
+        self.wake = self._wake
+
+    def start(self) -> Live:
+        """Begin to judge; once."""
+        if self._thread is None:
+            self._thread = Thread(target=self._drive, name="rvmon.live", daemon=True)
+            self._thread.start()
+        return self
+
+    def _wake(self) -> None:
+        with self._changed:
+            self._is_called = True
+            self._changed.notify()
+
+    def _drive(self) -> None:
+        while True:
+            seconds = self.work()
+            with self._changed:
+                if not self._is_called and not self._stops and seconds != 0:
+                    self._changed.wait(seconds)
+                self._is_called = False
+                if self._stops:
+                    return
+
+    def close(self) -> dict[str, tuple[Report, ...]]:
+        """As `Driver.close`; the thread has ended then."""
+        if current_thread() is not self._thread:  # a callback is refused below
+            with self._changed:
+                self._stops = True
+                self._changed.notify()
+            if self._thread is not None:
+                self._thread.join()
+        return super().close()
+
+    def __enter__(self) -> Live:
+        return self.start()
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

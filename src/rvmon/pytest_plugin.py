@@ -1,0 +1,233 @@
+"""Requirements in pytest: a fixture that judges what a test does, and `.rv` files as tests.
+
+pytest loads it by itself where rvmon is installed; what it needs is imported when it is used.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from rvmon.monitor import Monitor
+    from rvmon.session import Spec
+    from rvmon.verdict.report import Report
+    from rvmon.verdict.verdict import Verdict
+
+_PROPERTY = "rv:"
+"""Begins the properties of tests that are verdicts; they stand in JUnit XML as well."""
+
+_RECORDINGS = "rv_recordings"
+
+_judges: pytest.StashKey[list[Judge]] = pytest.StashKey()
+
+
+class RequirementError(AssertionError):
+    """A requirement failed; the message says why."""
+
+
+class Judge:
+    """Judges what a test does by a specification; made by the fixture `rv`.
+
+    Args:
+        spec: the requirements.
+        strict: whether I and NT are failures as well.
+        expect: by requirement the verdict that is wanted instead of no failure.
+        only: ids of the requirements; default all.
+    """
+
+    def __init__(
+        self,
+        spec: Spec,
+        *,
+        strict: bool = False,
+        expect: Mapping[str, str] | None = None,
+        only: Iterable[str] | None = None,
+    ) -> None:
+        from rvmon.errors import UnknownNameError
+
+        self.spec = spec
+        self.only = None if only is None else tuple(only)
+        self._strict = strict
+        self._expect = dict(expect or {})
+        for name in self._expect:
+            if name not in spec.requirements:
+                raise UnknownNameError(f"no requirement {name}: {', '.join(spec.requirements)}")
+        self._monitor: Monitor | None = None
+        self._reports: list[Report] = []
+
+    @property
+    def monitor(self) -> Monitor:
+        """A monitor for what the test does; its run ends with the test."""
+        if self._monitor is None:
+            self._monitor = self.spec.monitor(only=self.only)
+        return self._monitor
+
+    def step(self, t: float, values: Mapping[str, Any]) -> None:
+        """Judge a sample; see `Monitor.step`."""
+        self.monitor.step(t, values)
+
+    def check(self, trace: Any, **reading: Any) -> Report:
+        """Judge a finished trace; see `Spec.evaluate`. A failure fails the test at its end."""
+        report = self.spec.evaluate(trace, only=self.only, **reading)
+        self._reports.append(report)
+        return report
+
+    def finish(self) -> list[Report]:
+        """End the run and give what was judged; once."""
+        if self._monitor is not None:
+            self._reports.append(self._monitor.finish())
+            self._monitor = None
+        reports, self._reports = self._reports, []
+        return reports
+
+    def wrong(self, report: Report) -> list[str]:
+        """The requirements that are not as they are wanted."""
+        return [
+            name for name, verdict in report.verdicts.items() if not self._is_wanted(name, verdict)
+        ]
+
+    def _is_wanted(self, name: str, verdict: Verdict) -> bool:
+        if name in self._expect:
+            return verdict == self._expect[name]
+        return verdict == "P" or (verdict != "F" and not self._strict)
+
+
+@pytest.fixture
+def rv(request: pytest.FixtureRequest) -> Any:
+    """Judge what a test does: `rv("base.rv")` or `rv(spec)` gives a `Judge`.
+
+    The test fails at its end where a requirement failed, with the explanation. A path is that of a
+    file beside the test, or from where pytest began.
+    """
+    from rvmon.loading import load
+    from rvmon.session import Spec
+
+    judges = request.node.stash.setdefault(_judges, [])
+
+    def judge(spec: str | Path | Spec, **wanted: Any) -> Judge:
+        if not isinstance(spec, Spec):
+            beside = request.path.parent / spec
+            spec = load(beside if beside.exists() else spec)
+        made = Judge(spec, **wanted)
+        judges.append(made)
+        return made
+
+    return judge
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None]:
+    """Judge what a test did, when it did not fail by itself."""
+    yield
+    for judge in item.stash.get(_judges, []):
+        _conclude(item, judge)
+
+
+def _conclude(item: pytest.Item, judge: Judge) -> None:
+    texts = []
+    for report in judge.finish():
+        for name, verdict in report.verdicts.items():
+            item.user_properties.append((_PROPERTY + name, verdict.value))
+        if wrong := judge.wrong(report):
+            texts.append(_explained(report, judge.spec, wrong))
+    if texts:
+        raise RequirementError("\n".join(texts))
+
+
+def _explained(report: Report, spec: Spec, wrong: list[str]) -> str:
+    """What a person needs to see of these requirements."""
+    from rvmon.report.run_text import print_report
+    from rvmon.report.terminal import Terminal
+
+    console = Terminal(width=100, color_system=None)
+    with console.capture() as captured:
+        print_report(report, spec.checked, console)
+    return f"not as wanted: {', '.join(wrong)}\n{captured.get().strip()}"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare the settings."""
+    parser.addini(
+        _RECORDINGS,
+        "recordings by which .rv files are tested, as patterns from the root: *.csv, bags/*",
+        type="linelist",
+        default=[],
+    )
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """A specification is a file of tests where recordings are named."""
+    if file_path.suffix == ".rv" and parent.config.getini(_RECORDINGS):
+        collected: pytest.Collector = SpecFile.from_parent(parent, path=file_path)
+        return collected
+    return None
+
+
+class SpecFile(pytest.File):
+    """A specification: a test for each recording and requirement."""
+
+    def collect(self) -> Iterator[RequirementItem]:
+        """The tests."""
+        from rvmon.loading import load
+
+        spec = load(self.path)
+        root = self.config.rootpath
+        patterns = self.config.getini(_RECORDINGS)
+        found = sorted({path for pattern in patterns for path in root.glob(pattern)})
+        if not found:
+            raise self.CollectError(f"{_RECORDINGS} = {' '.join(patterns)}: there is no such file")
+        for recording in found:
+            for name in spec.requirements:
+                shown = f"{recording.relative_to(root)}::{name}"
+                yield RequirementItem.from_parent(
+                    self, name=shown, judge=Judge(spec, only=[name]), recording=recording
+                )
+
+
+class RequirementItem(pytest.Item):
+    """A requirement on a recording."""
+
+    def __init__(self, *, judge: Judge, recording: Path, **told: Any) -> None:
+        super().__init__(**told)
+        self._judge = judge
+        self._recording = recording
+
+    def runtest(self) -> None:
+        """Judge it."""
+        self._judge.check(self._recording, allow_missing=True)
+        _conclude(self, self._judge)
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
+        """The explanation alone."""
+        from rvmon.errors import RvmonError
+
+        if isinstance(excinfo.value, RequirementError | RvmonError):
+            return str(excinfo.value)
+        return str(super().repr_failure(excinfo, style))
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Where it is."""
+        return self.path, 0, self.name
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """A table of all verdicts, of all processes."""
+    counts: dict[str, Counter[str]] = defaultdict(Counter)
+    for category in ("passed", "failed"):
+        for report in terminalreporter.getreports(category):
+            for name, verdict in getattr(report, "user_properties", ()):
+                if name.startswith(_PROPERTY) and getattr(report, "when", "") == "call":
+                    counts[name.removeprefix(_PROPERTY)][verdict] += 1
+    if not counts:
+        return
+    terminalreporter.section("requirements")
+    width = max(map(len, counts))
+    terminalreporter.line(f"{'':<{width}}{'P':>7}{'F':>7}{'NT':>7}{'I':>7}")
+    for name in sorted(counts):
+        row = "".join(f"{counts[name][verdict] or '':>7}" for verdict in ("P", "F", "NT", "I"))
+        terminalreporter.line(f"{name:<{width}}{row}", red=bool(counts[name]["F"]))

@@ -1,0 +1,106 @@
+"""JSON lines as live data."""
+
+import os
+
+import pytest
+
+from rvmon import Verdict, loads
+from rvmon.adapters.json_lines import feed_lines, read_lines
+from rvmon.adapters.json_objects import JsonObjects, stamp_of
+from rvmon.live import Driver, SimulatedClock
+
+SPEC = """
+spec s
+signal x : real
+event a
+requirement R
+  always x <= 1
+"""
+
+
+@pytest.fixture
+def live():
+    """A driver, its clock and a reader of lines with stamps."""
+    spec, clock = loads(SPEC), SimulatedClock()
+    driver = Driver(spec, clock=clock)
+    return driver, clock, JsonObjects(driver, spec.schema, clock=clock)
+
+
+def _verdicts(driver, lines, source, robot=None):
+    feed_lines(source, lines, robot)
+    while driver.work() == 0:
+        pass
+    driver.close()
+    return {name: status.verdicts["R"] for name, status in driver.status().items()}
+
+
+def test_the_clock_follows_the_stamps(live):
+    """It never goes back for a late line, but for one that is of another run."""
+    driver, clock, source = live
+    lines = [b'{"t": 20, "x": 0}', b'{"t": 19.5, "a": true}', b'{"t": 1, "x": 2}']
+    feed_lines(source, lines[:2])
+    assert clock.now_ns() == 20_000_000_000
+    assert _verdicts(driver, lines[2:], source) == {"": Verdict.FAIL}
+    assert driver.status()[""].run == 2
+
+
+def test_a_line_that_cannot_be_read_may_have_said_anything(live):
+    """Nothing passes on what it may have said."""
+    driver, _, source = live
+    found = _verdicts(driver, [b'{"t": 0, "x": 0}', b"x: 7", b'{"t": 2}'], source)
+    assert found == {"": Verdict.INCONCLUSIVE}
+    assert source.unread == 1
+
+
+def test_names_that_are_not_declared_are_counted(live):
+    """As in recordings."""
+    driver, _, source = live
+    assert _verdicts(driver, [b'{"t": 0, "x": 0, "y": 1}', b"", b'{"t": 1}'], source) == {
+        "": Verdict.PASS
+    }
+    assert source.ignored == {"y": 1}
+
+
+def test_lines_without_a_time_are_stamped_as_they_arrive():
+    """By the clock of the driver."""
+    spec, clock = loads(SPEC), SimulatedClock(7)
+    driver = Driver(spec, clock=clock)
+    assert _verdicts(driver, [b'{"x": 2}'], JsonObjects(driver, spec.schema)) == {"": Verdict.FAIL}
+    assert driver.close()[""][0].attempts[0].decided == 7
+
+
+def test_a_field_names_the_robot():
+    """A line without it is of nobody known: it may be of any."""
+    spec, clock = loads(SPEC), SimulatedClock()
+    driver = Driver(spec, clock=clock)
+    source = JsonObjects(driver, spec.schema, clock=clock)
+    lines = [
+        b'{"t": 0, "id": "left", "x": 0}',
+        b'{"t": 0, "id": 2, "x": 3}',
+        b'{"t": 1, "x": 0}',
+        b'{"t": 2, "id": "left"}',
+    ]
+    assert _verdicts(driver, lines, source, "id") == {
+        "left": Verdict.INCONCLUSIVE,
+        "2": Verdict.FAIL,
+    }
+
+
+def test_lines_are_read_as_they_come():
+    """A pipe gives them in pieces; the last one may lack its end."""
+    read, write = os.pipe()
+    lines = read_lines(read)
+    os.write(write, b'{"t": 1}\n{"t"')
+    assert next(lines) == b'{"t": 1}'
+    os.write(write, b": 2}")
+    os.close(write)
+    assert list(lines) == [b'{"t": 2}']
+    os.close(read)
+
+
+def test_the_stamp_of_a_line():
+    """`None` if it has none, or is no line."""
+    schema = loads(SPEC).schema
+    assert stamp_of(b'{"t_ns": 5}', schema) == 5
+    assert stamp_of(b'{"x": 5}', schema) is None
+    assert stamp_of(b"nonsense", schema) is None

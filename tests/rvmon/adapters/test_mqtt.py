@@ -1,0 +1,185 @@
+"""MQTT, by a real broker."""
+
+import json
+import os
+import shutil
+import socket
+import subprocess
+import threading
+import time
+
+import pytest
+
+from rvmon import RvmonError, Verdict, loads
+from rvmon.adapters.json_objects import JsonObjects
+from rvmon.adapters.mqtt import MqttSource, address_of
+from rvmon.live import Live
+
+SPEC = """
+spec s
+signal arm.speed : real
+event stop
+requirement R1
+  always arm.speed <= 1
+requirement R2
+  upon stop
+  then within 20 ms arm.speed == 0
+"""
+LONG = 30.0
+
+
+def _mosquitto():
+    found = shutil.which("mosquitto") or shutil.which("/usr/sbin/mosquitto")
+    if found is None and os.environ.get("CI"):
+        pytest.fail("mosquitto is not installed")
+    return found or pytest.skip("mosquitto is not installed: apt install mosquitto")
+
+
+class Broker:
+    """A broker that can be stopped and started again at its port."""
+
+    def __init__(self, folder) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        self._settings = folder / "mosquitto.conf"
+        self._settings.write_text(f"listener {self.port} 127.0.0.1\nallow_anonymous true\n")
+        self._program = _mosquitto()
+        self.start()
+
+    def start(self) -> None:
+        """Begin, and be there."""
+        self._process = subprocess.Popen(  # noqa: S603
+            [self._program, "-c", str(self._settings)], stderr=subprocess.DEVNULL
+        )
+        end = time.monotonic() + LONG
+        while time.monotonic() < end:
+            try:
+                socket.create_connection(("127.0.0.1", self.port), 1).close()
+                return
+            except OSError:
+                time.sleep(0.02)
+        pytest.fail("the broker does not answer")
+
+    def stop(self) -> None:
+        """End."""
+        self._process.terminate()
+        self._process.wait(LONG)
+
+
+@pytest.fixture
+def broker(tmp_path):
+    """A broker on a port of its own."""
+    pytest.importorskip("paho.mqtt.client")
+    made = Broker(tmp_path)
+    yield made
+    made.stop()
+
+
+@pytest.fixture
+def publish(broker):
+    """What publishes a text, as soon as the broker is there."""
+    from paho.mqtt.client import CallbackAPIVersion, Client
+
+    client = Client(CallbackAPIVersion.VERSION2)
+    client.connect("127.0.0.1", broker.port)
+    client.loop_start()
+    yield lambda topic, text: client.publish(topic, text, qos=1)
+    client.disconnect()
+    client.loop_stop()
+
+
+def _until(true):
+    end = time.monotonic() + LONG
+    while not true():
+        assert time.monotonic() < end, "it did not come"
+        time.sleep(0.01)
+
+
+@pytest.mark.process
+def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
+    """A value under a topic, an object above it, an event; each robot by itself."""
+    from paho.mqtt.client import CallbackAPIVersion, Client
+
+    heard = []
+    listener = Client(CallbackAPIVersion.VERSION2)
+    listener.on_message = lambda _, __, message: heard.append((message.topic, message.payload))
+    listener.connect("127.0.0.1", broker.port)
+    listener.subscribe("verdicts/#", qos=1)
+    listener.loop_start()
+    spec = loads(SPEC)
+    live = Live(spec, on_judged=lambda one: source.publish(one))
+    objects = JsonObjects(live, spec.schema)
+    address = address_of(f"mqtt://127.0.0.1:{broker.port}/robots/+/#")
+    source = MqttSource(objects, address, verdicts="verdicts")
+    with live, source:
+        publish("robots/left/arm/speed", "0.5")
+        publish("robots/right/arm", '{"speed": 2, "heat": 3}')
+        publish("robots/left", '{"stop": true}')
+        _until(lambda: len(heard) == 2)
+        status = live.status()
+    listener.disconnect()
+    listener.loop_stop()
+    assert status["right"].verdicts["R1"] is Verdict.FAIL
+    assert status["left"].verdicts == {"R1": Verdict.NOT_TRIGGERED, "R2": Verdict.FAIL}
+    assert objects.ignored == {"arm.heat": 1}
+    assert sorted((topic, json.loads(text)["robot"]) for topic, text in heard) == [
+        ("verdicts/R1", "right"),
+        ("verdicts/R2", "left"),
+    ]
+
+
+@pytest.mark.process
+def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
+    """Nothing passes over the gap; a failure behind it is found, as the subscription comes back."""
+    spec = loads(SPEC)
+    failed = threading.Event()
+    live = Live(spec, on_failure=lambda _: failed.set())
+    objects = JsonObjects(live, spec.schema)
+    address = address_of(f"mqtt://127.0.0.1:{broker.port}/#")
+    with live, MqttSource(objects, address):
+        publish("arm", '{"speed": 0.5}')
+        _until(lambda: live.status()[""].samples == 1 if live.status() else False)
+        broker.stop()
+        _until(lambda: objects.unread == 1)
+        broker.start()
+        while not failed.wait(0.1):
+            publish("arm", '{"speed": 5}')
+    (report,) = live.close()[""]
+    assert report.verdicts["R1"] is Verdict.FAIL
+    assert report.counts["R1"][Verdict.PASS] == 0
+
+
+@pytest.mark.process
+def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
+    """It may have said anything."""
+    spec = loads(SPEC)
+    live = Live(spec)
+    objects = JsonObjects(live, spec.schema)
+    with live, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{broker.port}/#")):
+        publish("arm/speed", "0.5")
+        publish("arm/speed", "fast!")
+        _until(lambda: objects.unread == 1)
+    assert live.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
+
+
+def test_a_broker_that_is_not_there_is_told():
+    """With its place."""
+    pytest.importorskip("paho.mqtt.client")
+    spec = loads(SPEC)
+    with (
+        Live(spec) as live,
+        pytest.raises(RvmonError, match=r"answers at 127\.0\.0\.1:1"),
+        MqttSource(JsonObjects(live, spec.schema), address_of("mqtt://127.0.0.1:1/#")),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    "url",
+    ["mqtt://host", "mqtt:///a", "http://host/a", "mqtt://host:99999/a", "mqtt://h/a/#/b"],
+)
+def test_a_wrong_address_is_told(url):
+    """With the form that it should have."""
+    with pytest.raises(RvmonError, match=r"mqtt://|behind the last"):
+        address_of(url)

@@ -1,0 +1,164 @@
+"""Topics of ROS 1 and ROS 2, by a real master and real DDS, in processes of their own."""
+
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from tests.rvmon.adapters.talkers import DDS, ROS1
+
+from rvmon import RvmonError, loads
+from rvmon.adapters.messages import MessageFeed
+from rvmon.live import Driver, SimulatedClock
+from rvmon.readers.messages.topic import Topic
+from rvmon.trace.schema import Kind
+
+SPEC = """
+spec s
+signal base.speed : real
+event stop
+requirement R1
+  always base.speed <= 1
+requirement R2
+  upon stop
+  then within 300 ms base.speed == 0
+"""
+LONG = 60.0
+"""Seconds after which a process is ended that does not end."""
+
+SYSTEM = "/usr/lib/python3/dist-packages"
+WATCH = f"import sys; sys.path.append({SYSTEM!r}); from rvmon.cli import main; sys.exit(main())"
+LO = (
+    '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="false"/>'
+    "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>"
+    '<ParticipantIndex>auto</ParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers>'
+    "</Discovery></Domain></CycloneDDS>"
+)
+
+
+def _missing(what):
+    if os.environ.get("CI"):
+        pytest.fail(f"{what} is not installed")
+    pytest.skip(f"{what} is not installed")
+
+
+@contextmanager
+def _ended(process):
+    """A process that does not outlive the test, nor hold it up."""
+    alarm = threading.Timer(LONG, process.kill)
+    alarm.start()
+    with process:
+        try:
+            yield process
+        finally:
+            alarm.cancel()
+            process.kill()
+
+
+def _failures(folder, source, talker, environment):
+    """What `rvmon watch` says of a source by the second failure; then it is ended by Ctrl-C."""
+    (folder / "s.rv").write_text(SPEC)
+    environment = {**os.environ, **environment}
+    command = [sys.executable, "-c", WATCH, "watch", "s.rv", source, "--format", "json"]
+    with (
+        _ended(subprocess.Popen(talker, env=environment)),  # noqa: S603
+        _ended(
+            subprocess.Popen(  # noqa: S603
+                command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
+            )
+        ) as watching,
+    ):
+        lines = [json.loads(watching.stdout.readline()) for _ in range(2)]
+        watching.send_signal(signal.SIGINT)
+        last = json.loads(watching.communicate(timeout=LONG)[0].splitlines()[-1])
+    assert watching.returncode == 1
+    assert last["verdicts"] == {"R1": "F", "R2": "F"}
+    return [(line["attempt"], line["verdict"]) for line in lines]
+
+
+@pytest.fixture
+def master():
+    """The address of a master of ROS 1."""
+    program = shutil.which("rosmaster")
+    if program is None or not Path(SYSTEM, "rospy").exists():
+        _missing("rosmaster, or rospy")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    command = [program, "--core", "-p", str(port)]
+    with _ended(subprocess.Popen(command, **quiet)) as process:  # noqa: S603
+        while True:
+            try:
+                socket.create_connection(("127.0.0.1", port), 1).close()
+                break
+            except OSError:
+                assert process.poll() is None
+        yield f"http://127.0.0.1:{port}"
+
+
+@pytest.mark.process
+def test_topics_of_ros_1_are_judged(tmp_path, master):
+    """Names lead to topics; types come with the messages."""
+    pytest.importorskip("rosbags")
+    environment = {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_HOME": str(tmp_path)}
+    talker = ["/usr/bin/python3", "-c", ROS1]
+    assert _failures(tmp_path, "ros1:", talker, environment) == [("R1#1", "F"), ("R2#1", "F")]
+
+
+@pytest.mark.process
+def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
+    """Without an installation of ROS, in a domain of its own."""
+    pytest.importorskip("cyclonedds")
+    domain = str(100 + os.getpid() % 100)
+    talker = [sys.executable, "-c", DDS, domain]
+    found = _failures(tmp_path, f"dds:{domain}", talker, {"CYCLONEDDS_URI": LO})
+    assert found == [("R1#1", "F"), ("R2#1", "F")]
+
+
+def test_what_is_not_there_is_told(tmp_path, monkeypatch):
+    """With what to install, or where nobody answers."""
+    from rvmon.adapters.ros1 import Ros1Source
+
+    spec = loads(SPEC)
+    feed = MessageFeed(Driver(spec, clock=SimulatedClock()), spec.schema)
+    monkeypatch.setitem(sys.modules, "rospy", None)
+    with pytest.raises(RvmonError, match="python3-rospy"):
+        Ros1Source(feed)
+
+
+FLOAT = Topic("/base/speed", "std_msgs/msg/Float64", {"data": Kind.REAL})
+
+
+@pytest.fixture
+def feed():
+    """A feed, its driver and clock."""
+    spec, clock = loads(SPEC), SimulatedClock()
+    driver = Driver(spec, clock=clock)
+    return MessageFeed(driver, spec.schema), driver, clock
+
+
+def test_names_lead_to_the_topics_that_are_read(feed):
+    """A name may be a topic, or a field of one."""
+    assert set(feed[0].topics()) == {"/base/speed", "/base", "/stop"}
+
+
+def test_a_message_that_does_not_fit_is_unknown(feed):
+    """What its topic feeds; the rest is judged as before."""
+    messages, driver, clock = feed
+    messages.take(FLOAT, {"data": 0.5})
+    messages.take(FLOAT, {"data": "fast"})
+    driver.work()
+    clock.set_ns(10**9)
+    messages.take(Topic("/stop", "std_msgs/msg/Empty", {}), {})
+    driver.work()
+    (report,) = driver.close()[""]
+    assert report.verdicts["R1"] == "I"
+    assert [one.name for one in report.health if one.kind == "none"] == ["base.speed"]

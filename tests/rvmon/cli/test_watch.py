@@ -1,0 +1,110 @@
+"""`rvmon watch` as a person uses it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from rvmon.cli import main
+
+SPEC = """
+spec door "A door"
+signal closed : bool input
+event knock input
+requirement D1 "Knocking opens the door"
+  upon knock
+  then within 2 s not closed
+"""
+FAILS = '{"t": 0, "closed": true, "knock": true}\n{"t": 3, "closed": false, "noise": 1}\n'
+
+
+@pytest.fixture
+def door(tmp_path, monkeypatch):
+    """A folder with a spec and a stream that fails."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "door.rv").write_text(SPEC)
+    (tmp_path / "a.jsonl").write_text(FAILS)
+    return tmp_path
+
+
+def test_each_verdict_is_a_line_and_the_end_a_table(door, capsys):
+    """The exit code says whether something failed; what is ignored is said."""
+    assert main(["watch", "door.rv", "a.jsonl"]) == 1
+    told = capsys.readouterr()
+    assert told.out.startswith("2.000000001 s  D1#1 F ✗  `closed` had to become false")
+    assert "D1   F  ✗" in told.out
+    assert "noise is not declared" in told.err
+
+
+def test_as_json_each_line_can_be_read(door, capsys):
+    """A line for each verdict, and the last one for the robot."""
+    assert main(["watch", "door.rv", "a.jsonl", "--format", "json"]) == 1
+    first, last = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (first["attempt"], first["verdict"], first["decided"]) == ("D1#1", "F", 2_000_000_001)
+    assert last == {"robot": "", "runs": 1, "verdicts": {"D1": "F"}, "samples": 2, "lost": 0}
+
+
+def test_what_passes_can_be_left_out(door, capsys):
+    """With `--failures`; the exit code is 0 where nothing failed."""
+    lines = FAILS.replace('"t": 3', '"t": 1')
+    (door / "a.jsonl").write_text(lines)
+    assert main(["watch", "door.rv", "a.jsonl", "--failures", "--format", "text"]) == 0
+    assert "D1#1" not in capsys.readouterr().out
+
+
+def test_the_view_holds_what_failed(door, capsys):
+    """Also where nobody can see it move."""
+    assert main(["watch", "door.rv", "a.jsonl", "--format", "view"]) == 1
+    assert "D1#1 F ✗" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (["watch", "door.rv", "none.jsonl"], "none.jsonl"),
+        (["watch", "door.rv", "empty.jsonl"], "there is no line"),
+        (["watch", "door.rv", "."], "directory"),
+        (["watch", "none.rv", "a.jsonl"], "none.rv"),
+        (["watch", "door.rv", "a.jsonl", "--only", "D2"], "D2"),
+        (["watch", "door.rv", "a.jsonl", "--map", "sped=x"], "sped"),
+    ],
+)
+def test_wrong_input_is_told(door, capsys, words, why):
+    """Before anything is judged, with code 2."""
+    (door / "empty.jsonl").write_text("\n")
+    assert main(words) == 2
+    assert why in capsys.readouterr().err
+
+
+@pytest.mark.process
+def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
+    """While the stream is open; a change that is wrong is told and the former one goes on."""
+    command = [sys.executable, "-m", "rvmon", "watch", "door.rv", "--format", "text"]
+    process = subprocess.Popen(  # noqa: S603
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )
+    with process:
+        process.stdin.write('{"closed": true}\n{"knock": true, "closed": false}\n')
+        process.stdin.flush()
+        assert process.stdout.readline().split()[2:4] == ["D1#1", "P"]
+        for text, said in ((SPEC + "requirement", "RV001"), (SPEC + "\n", "has changed")):
+            (door / "new.rv").write_text(text)
+            os.replace("new.rv", "door.rv")
+            while said not in process.stdout.readline():
+                pass
+        process.stdin.write('{"knock": true, "closed": false}\n')
+        process.stdin.flush()
+        while "D1#1" not in process.stdout.readline():
+            pass
+        process.send_signal(signal.SIGINT)
+        rest = process.stdout.read()
+    assert "run 2" in rest
+    assert process.returncode == 0

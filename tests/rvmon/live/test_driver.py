@@ -1,0 +1,312 @@
+"""Samples of running robots, judged on a clock that stands until the test sets it."""
+
+import logging
+
+import pytest
+
+from rvmon import RvmonError, TraceError, Verdict, loads
+from rvmon.errors import UnknownNameError
+from rvmon.live import Driver, SimulatedClock
+from rvmon.trace.health import HealthKind
+
+S = 1_000_000_000
+DOOR = """
+spec door
+signal speed : real
+event knock, opened
+requirement D1
+  upon knock
+  then within 2 s opened
+requirement D2
+  always speed <= 1
+"""
+
+
+class Door:
+    """A driver of the door, its clock, and the names of what was judged."""
+
+    def __init__(self, text: str = DOOR, **options) -> None:
+        self.clock = SimulatedClock()
+        self.judged = []
+        options.setdefault("on_judged", lambda one: self.judged.append(one.attempt.name))
+        self.driver = Driver(loads(text), clock=self.clock, **options)
+
+    def at(self, seconds: float) -> None:
+        """Time comes to an instant, and what waits is judged."""
+        self.clock.set_ns(round(seconds * S))
+        self.work()
+
+    def work(self) -> None:
+        """Judge what waits."""
+        while self.driver.work() == 0:
+            pass
+
+
+def test_a_deadline_that_is_missed_is_told_by_time_alone():
+    """No sample comes after the trigger: the tick after the deadline decides, not one before."""
+    door = Door()
+    door.driver.offer({"knock": True})
+    door.at(2)
+    assert door.judged == []
+    door.clock.set_ns(2 * S + 1)
+    assert door.driver.work() is None
+    assert door.judged == ["D1#1"]
+
+
+def test_the_seconds_to_the_next_call_are_those_to_the_deadline():
+    """Who drives it by another clock that stands has nothing to wait for but that it is set."""
+    door = Door()
+    door.driver.offer({"knock": True})
+    assert door.driver.work() is None
+    assert door.clock.seconds_until(0) == 0
+
+
+def test_failures_are_told_apart_from_passes():
+    """`on_failure` hears of failures only, `on_judged` of both, with robot and run."""
+    failed = []
+    door = Door(on_failure=failed.append)
+    door.driver.offer({"knock": True, "speed": 2.0}, robot="left")
+    door.at(1)
+    door.driver.offer({"opened": True}, robot="left")
+    door.at(1.1)
+    assert door.judged == ["D2#1", "D1#1"]
+    assert [(one.robot, one.run, one.attempt.name) for one in failed] == [("left", 1, "D2#1")]
+    assert failed[0].to_dict()["decided"] == 0
+
+
+def test_robots_are_judged_apart():
+    """What one does is nothing to the other; each has a report."""
+    door = Door()
+    door.driver.offer({"knock": True}, robot="left")
+    door.driver.offer({"knock": True}, robot="right")
+    door.at(1)
+    door.driver.offer({"opened": True}, robot="right")
+    door.at(3)
+    reports = door.driver.close()
+    assert {name: found[0].verdicts["D1"] for name, found in reports.items()} == {
+        "left": Verdict.FAIL,
+        "right": Verdict.PASS,
+    }
+
+
+def test_a_robot_too_many_is_turned_away(caplog):
+    """It is said once; the others are judged as before."""
+    door = Door(most_robots=1)
+    assert door.driver.offer({"speed": 0.0}, robot="left")
+    with caplog.at_level(logging.WARNING, "rvmon.live.input"):
+        assert not door.driver.offer({"speed": 9.0}, robot="right")
+        assert not door.driver.offer({"speed": 9.0}, robot="more")
+    assert door.driver.offer({"speed": 0.5}, robot="left")
+    door.at(1)
+    assert list(door.driver.status()) == ["left"]
+    assert len(caplog.records) == 1
+
+
+def test_what_finds_no_room_leaves_no_verdict_that_needs_it():
+    """The lost opening may have come: no F. The lost speed may have been high: no P."""
+    door = Door(room=1)
+    door.driver.offer({"speed": 0.5})
+    door.driver.offer({"speed": 0.5, "knock": True})  # a second value: it always finds room
+    assert not door.driver.offer({"opened": True, "speed": 5.0})
+    door.at(9)
+    status = door.driver.status()[""]
+    assert (status.samples, status.lost) == (2, 1)
+    (report,) = door.driver.close()[""]
+    assert report.verdicts == {"D1": Verdict.INCONCLUSIVE, "D2": Verdict.INCONCLUSIVE}
+    dropped = [one for one in report.health if one.kind is HealthKind.DROPPED]
+    assert [(one.count, one.requirements) for one in dropped] == [(1, ("D1", "D2"))]
+
+
+def test_first_values_always_find_room():
+    """Before a signal is born nothing is owed, and what is lost then would be excused."""
+    door = Door(room=1)
+    door.driver.offer({"knock": False})
+    assert door.driver.offer({"speed": 5.0})
+    door.at(1)
+    assert door.driver.status()[""].verdicts["D2"] is Verdict.FAIL
+
+
+def test_much_that_is_lost_begins_a_run_in_which_nothing_has_passed():
+    """100,000 instants of events are kept, not more."""
+    door = Door(room=1)
+    door.driver.offer({"knock": True, "opened": True})
+    for _ in range(100_001):
+        door.driver.offer({"knock": True})
+    door.at(1)
+    status = door.driver.status()[""]
+    assert status.run == 2
+    assert status.verdicts["D1"] is Verdict.INCONCLUSIVE
+
+
+def test_what_ignores_nan_cannot_be_unknown_and_begins_a_run():
+    """A lost value of such a signal cannot be said to be lost otherwise."""
+    door = Door(DOOR.replace("real", "real ignore NaN"), room=1)
+    for speed in (0.0, 0.1, 0.2):
+        door.driver.offer({"speed": speed})
+    door.at(1)
+    assert door.driver.status()[""].verdicts["D2"] is Verdict.INCONCLUSIVE
+
+
+def test_each_lost_sample_is_a_position_of_sampled_time():
+    """`X` is the next sample, also if that is lost: nobody knows what it said."""
+    spec = "spec s\ntime sampled\nevent a, b, c\nrequirement R\n  upon a\n  then next b\n"
+    door = Door(spec, room=1)
+    door.driver.offer({"a": True})
+    for t, name in ((1, "b"), (2, "c")):
+        door.driver.offer({name: True}, t_ns=t)
+    door.work()
+    door.driver.offer({"c": True}, t_ns=3)
+    door.at(1)
+    assert door.driver.close()[""][0].verdicts["R"] is Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize(
+    ("values", "why"), [({"sped": 1.0}, "no signal or event"), ({"speed": "fast"}, "a number")]
+)
+def test_a_sample_that_is_refused_stops_nothing(values, why, caplog):
+    """It is said, counted, and what it spoke of is unknown."""
+    door = Door()
+    door.driver.offer({"speed": 0.5})
+    door.at(1)
+    with caplog.at_level(logging.WARNING, "rvmon.live.input"):
+        door.driver.offer({**values, "speed": values.get("speed", 0.5)})
+        door.at(2)
+    assert why in caplog.text
+    status = door.driver.status()[""]
+    assert status.lost == 1
+    assert why in status.refusal
+    assert door.driver.close()[""][0].verdicts["D2"] is Verdict.INCONCLUSIVE
+
+
+def test_a_sample_that_comes_late_is_unknown_from_then_on():
+    """Time has passed it: it is not judged, and what it spoke of is not vouched for."""
+    door = Door()
+    door.driver.offer({"speed": 0.5})
+    door.at(5)
+    door.driver.offer({"speed": 9.0}, t_ns=3 * S)
+    door.at(6)
+    (report,) = door.driver.close()[""]
+    assert report.verdicts["D2"] is Verdict.INCONCLUSIVE
+    assert [one.count for one in report.health if one.kind is HealthKind.LATE] == [1]
+
+
+def test_with_a_lag_samples_may_come_late():
+    """Deadlines pass so much later."""
+    door = Door(lag_ns=2 * S)
+    door.driver.offer({"knock": True}, t_ns=0)
+    door.at(3)
+    door.driver.offer({"opened": True}, t_ns=2 * S)
+    door.at(9)
+    assert door.driver.status()[""].verdicts["D1"] is Verdict.PASS
+
+
+def test_a_clock_that_goes_back_begins_a_new_run():
+    """As a simulation that starts again: the report of the first says why, and both count."""
+    ended = []
+    door = Door(on_report=lambda robot, report: ended.append((robot, report)))
+    door.driver.offer({"speed": 3.0})
+    door.at(5)
+    door.at(0)
+    door.driver.offer({"speed": 0.5})
+    door.at(1)
+    status = door.driver.status()[""]
+    assert (status.run, status.verdicts["D2"]) == (2, Verdict.FAIL)
+    ((robot, report),) = ended
+    assert robot == ""
+    assert "clock went back by 5 s" in report.health[-1].remark
+    assert door.driver.close()[""][1].verdicts["D2"] is Verdict.PASS
+
+
+def test_another_specification_is_taken_up_at_once():
+    """The former run ends; what it showed does not count for the new one."""
+    door = Door()
+    door.driver.offer({"speed": 1.5})
+    door.at(1)
+    door.driver.replace_spec(loads(DOOR.replace("<= 1", "<= 2")))
+    door.driver.offer({"speed": 1.5})
+    door.at(2)
+    assert door.driver.status()[""].verdicts["D2"] is Verdict.NOT_TRIGGERED
+    first, second = door.driver.close()[""]
+    assert (first.verdicts["D2"], second.verdicts["D2"]) == (Verdict.FAIL, Verdict.PASS)
+
+
+def test_a_specification_that_lacks_what_was_asked_for_is_refused():
+    """The former one goes on."""
+    door = Door(only=["D2"])
+    door.driver.offer({"speed": 5.0})
+    with pytest.raises(UnknownNameError):
+        door.driver.replace_spec(loads(DOOR.replace("D2", "D3")))
+    door.at(1)
+    assert door.driver.status()[""].verdicts == {"D2": Verdict.FAIL}
+
+
+def test_what_a_callback_raises_stops_nothing(caplog):
+    """It is logged and counted; the next failure is told all the same."""
+    door = Door(on_failure=lambda _: 1 // 0)
+    with caplog.at_level(logging.ERROR, "rvmon.live"):
+        for t, speed in enumerate((2.0, 0.0, 2.0)):
+            door.driver.offer({"speed": speed})
+            door.at(t + 1)
+    assert door.driver.errors == 2
+    assert door.judged == ["D2#1", "D2#2"]
+    assert "ZeroDivisionError" in caplog.text
+
+
+def test_a_callback_may_look_but_not_drive():
+    """It is called in the middle of a step."""
+    seen = []
+
+    def look(_):
+        seen.append(door.driver.status()[""].verdicts["D2"])
+        for drive in (door.driver.work, door.driver.close):
+            with pytest.raises(RvmonError, match="callback"):
+                drive()
+
+    door = Door(on_failure=look)
+    door.driver.offer({"speed": 2.0})
+    door.at(1)
+    assert len(seen) == 1
+    assert door.driver.errors == 0
+
+
+def test_what_is_open_is_in_the_status_with_its_deadline():
+    """For a view that counts down."""
+    door = Door()
+    door.driver.offer({"knock": True})
+    door.at(1)
+    (owed,) = [one for one in door.driver.status()[""].open if one.requirement == "D1"]
+    assert owed.deadline == 2 * S
+
+
+def test_closing_judges_what_waits_and_is_the_end():
+    """It may be closed twice; what is offered then is refused."""
+    door = Door()
+    door.driver.offer({"speed": 2.0})
+    reports = door.driver.close()
+    assert reports[""][0].verdicts["D2"] is Verdict.FAIL
+    assert door.driver.close() == reports
+    with pytest.raises(RvmonError, match="closed"):
+        door.driver.offer({"speed": 0.0})
+
+
+def test_wrong_arguments_are_told_when_it_is_made():
+    """And not when the first robot comes."""
+    with pytest.raises(RvmonError, match="room"):
+        Door(room=0)
+    with pytest.raises(UnknownNameError):
+        Door(only=["D9"])
+    with pytest.raises(UnknownNameError):
+        Door(sources=["sped"])
+
+
+def test_stamps_of_another_epoch_are_refused():
+    """By a clock that began with 0, deadlines of stamps since 1970 would never pass."""
+    driver = Driver(loads(DOOR))
+    with pytest.raises(TraceError, match="since_1970"):
+        driver.offer({"speed": 0.0}, t_ns=1_700_000_000 * S)
+
+
+def test_a_sample_is_values_by_name():
+    """Who offers something else hears of it."""
+    with pytest.raises(TraceError, match="values by name"):
+        Door().driver.offer([1, 2])

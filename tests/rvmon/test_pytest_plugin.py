@@ -1,0 +1,107 @@
+"""The plugin of pytest, in a pytest of its own."""
+
+import pytest
+
+pytest_plugins = ["pytester"]
+SPEC = """
+spec door
+signal closed : bool
+event knock
+requirement D1 "Knocking opens the door"
+  upon knock
+  then within 2 s not closed
+requirement D2
+  always not closed
+"""
+
+
+@pytest.fixture
+def folder(pytester):
+    """A folder with a specification."""
+    pytester.makefile(".rv", door=SPEC)
+    return pytester
+
+
+def _run(folder, test, *words):
+    folder.makepyfile(test)
+    return folder.runpytest_subprocess("-p", "no:cacheprovider", *words)
+
+
+@pytest.mark.process
+def test_a_requirement_that_fails_fails_the_test_with_the_explanation(folder):
+    """In the test itself, not behind it; a table stands at the end."""
+    told = _run(
+        folder,
+        """
+        def test_fails(rv):
+            door = rv("door.rv", only=["D1"])
+            door.step(0, {"closed": True, "knock": True})
+            door.step(3, {"closed": True})
+
+        def test_passes(rv):
+            rv("door.rv", only=["D1"]).step(0, {"closed": False, "knock": True})
+        """,
+    )
+    told.assert_outcomes(failed=1, passed=1)
+    told.stdout.fnmatch_lines(
+        ["*not as wanted: D1*", "*had to become false between 0 s and 2 s*", "*then within 2 s*"]
+    )
+    told.stdout.re_match_lines([r".* requirements .*", r" +P +F +NT +I", r"D1 +1 +1"])
+
+
+@pytest.mark.process
+def test_verdicts_can_be_wanted_and_recordings_checked(folder):
+    """`expect` for one that has to fail, `strict` for all that have to be triggered."""
+    folder.makefile(".csv", run="t,closed,knock\n0,1,1\n3,,\n")
+    told = _run(
+        folder,
+        """
+        def test_expected(rv):
+            assert rv("door.rv", expect={"D1": "F", "D2": "F"}).check("run.csv").end == 3 * 10**9
+
+        def test_strict(rv):
+            rv("door.rv", only=["D1"], strict=True).check([(0, {"closed": False})])
+
+        def test_own_failure(rv):
+            rv("door.rv").step(0, {"closed": True})
+            assert False, "its own"
+        """,
+    )
+    told.assert_outcomes(failed=2, passed=1)
+    told.stdout.fnmatch_lines(["*not as wanted: D1*", "*its own*"])
+
+
+@pytest.mark.process
+def test_specifications_are_tests_of_recordings(folder):
+    """One for each recording and requirement; verdicts stand in JUnit XML, also by xdist."""
+    folder.makefile(".csv", run="t,closed,knock\n0,0,1\n3,,\n", other="t,closed,knock\n0,1,\n3,,\n")
+    folder.makeini("[pytest]\nrv_recordings = *.csv\n")
+    told = folder.runpytest_subprocess("-n", "1", "--junitxml=out.xml", "-p", "no:cacheprovider")
+    told.assert_outcomes(failed=1, passed=3)
+    told.stdout.fnmatch_lines(["*other.csv::D2*", "*`closed` was true at 0 s*"])
+    told.stdout.re_match_lines([r"D1 +1 +1", r"D2 +1 +1"])
+    assert '<property name="rv:D1" value="NT"' in (folder.path / "out.xml").read_text()
+
+
+@pytest.mark.process
+def test_wrong_specifications_and_recordings_are_told(folder):
+    """With place and mend, and no traceback of rvmon."""
+    folder.makefile(".csv", run="t,closed\n0,maybe\n")
+    folder.makeini("[pytest]\nrv_recordings = *.csv\n")
+    told = folder.runpytest_subprocess("-p", "no:cacheprovider")
+    told.assert_outcomes(failed=2)
+    told.stdout.fnmatch_lines(["*maybe*"])
+    assert "Traceback" not in told.stdout.str()
+    (folder.path / "door.rv").write_text("requirement")
+    told = folder.runpytest_subprocess("-p", "no:cacheprovider")
+    told.assert_outcomes(errors=1)
+    told.stdout.fnmatch_lines(["*RV001*"])
+
+
+@pytest.mark.process
+def test_without_settings_specifications_are_no_tests(folder):
+    """A project that has some is as it was; nothing is imported for it."""
+    folder.makepyfile(
+        "def test_light():\n    import sys\n    assert 'rvmon.loading' not in sys.modules"
+    )
+    folder.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)
