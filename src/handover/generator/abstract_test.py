@@ -33,6 +33,7 @@ Strategy = Literal[
     "model-based-shortest",
     "model-based-fastest",
     "directed",
+    "closed",
 ]
 
 SEND_DELAY_S = 2.0

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
 from functools import partial
 
+from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.outcome import Outcome, Played, Results
 from rvmon.cdv.plan import Job, Plan
 from rvmon.cdv.play import player
@@ -47,24 +48,12 @@ def execute(
     Raises:
         RvmonError: a system cannot be made, or no process be begun.
     """
-    campaign = plan.campaign
     played = [] if kept is None else [*kept.played]
     begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
-    control = campaign.control.make if campaign.control is not None and controls else None
-    begin = partial(player, campaign.robots, campaign.code, control)
     left = plan.jobs()[len(played) :]
     cut_short = ""
     try:
-        with closing(
-            parallel.execute(
-                left,
-                begin,
-                jobs=jobs or os.cpu_count() or 1,
-                what="test",
-                instead=partial(_without_result, _requirements(plan)),
-                timeout_s=campaign.timeout_s,
-            )
-        ) as results:
+        with closing(outcomes(plan.campaign, left, jobs=jobs, controls=controls)) as results:
             for job, (outcome, beside) in zip(left, results, strict=True):
                 played.append(Played(job, outcome, beside))
                 if kept is not None:
@@ -76,11 +65,36 @@ def execute(
     return Results(plan, tuple(played), time.perf_counter() - begun, cut_short)
 
 
-def _requirements(plan: Plan) -> dict[str, tuple[str, ...]]:
+def outcomes(
+    campaign: Campaign, tests: Iterable[Job], *, jobs: int | None = None, controls: bool = True
+) -> Generator[tuple[Outcome, Outcome | None], None, None]:
+    """Play tests, in this order; each outcome comes with that of its control.
+
+    Args:
+        campaign: whose tests they are.
+        tests: taken from as processes have time.
+        jobs: processes; default: one per core.
+        controls: also play the controls of tests.
+
+    Raises:
+        RvmonError: a system cannot be made, or no process be begun.
+    """
+    control = campaign.control.make if campaign.control is not None and controls else None
+    return parallel.execute(
+        tests,
+        partial(player, campaign.robots, campaign.code, control),
+        jobs=jobs or os.cpu_count() or 1,
+        what="test",
+        instead=partial(_without_result, _requirements(campaign)),
+        timeout_s=campaign.timeout_s,
+    )
+
+
+def _requirements(campaign: Campaign) -> dict[str, tuple[str, ...]]:
     """The ids of the requirements by robot."""
     return {
         name: () if robot.spec is None else tuple(load(robot.spec).requirements)
-        for name, robot in plan.campaign.robots.items()
+        for name, robot in campaign.robots.items()
     }
 
 
