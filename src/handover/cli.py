@@ -17,6 +17,7 @@ from rvmon.cli import guarded
 from rvmon.cli.campaign import (
     INTERRUPTED,
     add_campaign_options,
+    add_closing_options,
     add_judging_options,
     add_replay_options,
     judged_by,
@@ -43,6 +44,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_run(commands)
     _add_demo(commands)
+    _add_close(commands)
     _add_replay(commands)
     return parser
 
@@ -79,6 +81,23 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     )
     add_campaign_options(parser)
     parser.set_defaults(run=_demo, pages="all")
+
+
+def _add_close(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser(
+        "close",
+        help="make tests until coverage has no holes",
+        description="Make tests aimed at what is not covered, by runs of the model, by biased "
+        "choices and by changing the nearest test; play and judge them, until all is covered that "
+        "can be; keep the fewest that cover as much.",
+        epilog="example: handover close --out out/closed; handover run --suite out/closed/tests",
+    )
+    parser.add_argument(
+        "--strategy", metavar="NAMES", help="draw from (default: pseudorandom,constrained)"
+    )
+    add_closing_options(parser)
+    parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
+    parser.set_defaults(run=_close)
 
 
 def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -124,6 +143,17 @@ def _demo(arguments: argparse.Namespace) -> int:
     if arguments.out:
         print(f"Look at {Path(arguments.out) / REPORT}")
     return INTERRUPTED if conducted.summary.cut_short else 0
+
+
+def _close(arguments: argparse.Namespace) -> int:
+    from handover.campaign.campaign import handover_campaign
+    from rvmon.cli.campaign_close import conduct_closing
+
+    robot = "legacy" if arguments.legacy else "correct"
+    campaign = judged_by(handover_campaign((robot,)), arguments.spec)
+    words = ["close", *(["--legacy"] if arguments.legacy else [])]
+    words += ["--spec", arguments.spec] if arguments.spec else []
+    return conduct_closing(campaign, robot, arguments, words)
 
 
 def _replay(arguments: argparse.Namespace) -> int:

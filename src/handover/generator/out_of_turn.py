@@ -40,7 +40,9 @@ def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
         turns[turn].append(SetParam(posture, choose(posture, (1, 0))))
     before, activated, ready, after = (turns[turn] for turn in _TURNS)
     pauses = {
-        what: SetParam("time", rng.randint(*choose(f"pause {what}", ((1, 20), (60, 180), (200, 300)))))
+        what: SetParam(
+            "time", rng.randint(*choose(f"pause {what}", ((1, 20), (60, 180), (200, 300))))
+        )
         for what in ("before activating", "before being ready")
     }
     is_patient = choose("waits to be informed", (True, False))

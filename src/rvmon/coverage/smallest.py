@@ -55,8 +55,18 @@ def smallest(
         place: {item: min(count, needed[item]) for item, count in row.items() if item in needed}
         for place, row in enumerate(rows)
     }
-    some = {place: row for place, row in useful.items() if row}
-    search = _Search(_undominated(some, needed), most_nodes)
+    kept = {place: row for place, row in useful.items() if row}
+    while True:
+        kept = _undominated(kept, needed)
+        fewer = _scarce(kept, needed)
+        if len(fewer) == len(needed):
+            break
+        needed = fewer
+        kept = {
+            place: {item: count for item, count in row.items() if item in needed}
+            for place, row in kept.items()
+        }
+    search = _Search(kept, most_nodes)
     search.greedy(needed)
     at_least = search.bound(needed, 0)
     search.branch(needed, [], 0)
@@ -72,7 +82,8 @@ def _undominated(
     seen: set[frozenset[int]] = set()
     for place, row in rows.items():
         suffices = all(count == needed[item] for item, count in row.items())
-        if not suffices or (key := frozenset(row)) not in seen:
+        key = frozenset(row)
+        if row and not (suffices and key in seen):
             kept[place] = row
             if suffices:
                 seen.add(key)
@@ -89,17 +100,36 @@ def _undominated(
     }
 
 
+def _scarce(rows: Mapping[int, Mapping[int, int]], needed: Mapping[int, int]) -> dict[int, int]:
+    """Items without those that are hit whenever a scarcer one is."""
+    hitters = _hitters(rows)
+    kept: dict[int, int] = {}
+    for item in sorted(needed, key=lambda one: (hitters[one].bit_count(), one)):
+        own = hitters[item]
+        if needed[item] > 1 or not any(hitters[one] & own == hitters[one] for one in kept):
+            kept[item] = needed[item]
+    return kept
+
+
+def _hitters(rows: Mapping[int, Mapping[int, int]]) -> dict[int, int]:
+    """By item, the tests that hit it, as bits of a number."""
+    found: dict[int, int] = {}
+    for place, row in rows.items():
+        for item in row:
+            found[item] = found.get(item, 0) | 1 << place
+    return found
+
+
 class _Search:
     """Branch and bound; sets of tests are bits of a number."""
 
     def __init__(self, rows: Mapping[int, Mapping[int, int]], most_nodes: int) -> None:
         self._rows = rows
         self._left = most_nodes
-        self._hitters: dict[int, int] = {}
+        self._hitters = _hitters(rows)
         self._most: dict[int, int] = {}
-        for place, row in rows.items():
+        for row in rows.values():
             for item, count in row.items():
-                self._hitters[item] = self._hitters.get(item, 0) | 1 << place
                 self._most[item] = max(self._most.get(item, 0), count)
         self.best: list[int] = []
 
@@ -154,6 +184,4 @@ def _gain(row: Mapping[int, int], needed: Mapping[int, int]) -> int:
 
 def _without(needed: Mapping[int, int], row: Mapping[int, int]) -> dict[int, int]:
     """What is still needed behind a test."""
-    return {
-        item: left for item, count in needed.items() if (left := count - row.get(item, 0)) > 0
-    }
+    return {item: left for item, count in needed.items() if (left := count - row.get(item, 0)) > 0}

@@ -17,10 +17,9 @@ from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.execute import INTERRUPTED, outcomes
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import Job
-from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import model_of
 from rvmon.coverage.record import Ending
-from rvmon.coverage.smallest import smallest
+from rvmon.coverage.smallest import Smallest, smallest
 from rvmon.verdict.verdict import Verdict
 
 BATCH = 4
@@ -50,7 +49,7 @@ def close(
     *,
     seed: int = 1,
     strategies: Sequence[str] = (),
-    budget: Budget = Budget(),  # noqa: B008 - it is frozen
+    budget: Budget = Budget(),
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Closed:
@@ -89,7 +88,6 @@ def close(
     names = strategies or campaign.closing.strategies or tuple(campaign.strategies)
     proposer = Proposer(campaign, robot, goals, names, seed, witnesses)
     tests: list[Added] = []
-    hits: list[Hits] = []
     waiting = _Waiting()
     ended = ""
     try:
@@ -99,14 +97,13 @@ def close(
                 waiting.jobs.extend(Job(one.test, robot) for one in proposals)
                 for proposal in proposals:
                     outcome, _ = next(results)
-                    played = Played(Job(proposal.test, robot), outcome)
-                    shown = outcome.hits
                     if witnesses is not None and proposal.witness is not None:
-                        shown = {**shown, **witnesses.shown(proposal.witness, shown)}
-                    added = goals.add(proposal.test.name, shown)
+                        shown = witnesses.shown(proposal.witness, outcome.hits)
+                        outcome = replace(outcome, hits={**outcome.hits, **shown})
+                    played = Played(Job(proposal.test, robot), outcome)
+                    added = goals.add(proposal.test.name, outcome.hits)
                     proposer.tell(proposal, played, added=bool(added))
                     tests.append(Added(played, proposal.origin, added, goals.met))
-                    hits.append(shown)
                     if progress is not None:
                         progress(goals.met, goals.met + len(goals.open))
                 if not proposals and goals.open:
@@ -117,16 +114,19 @@ def close(
                     ended = f"after {budget.seconds:g} s"
     except KeyboardInterrupt:
         ended = INTERRUPTED
-    suite, fewest = _suite(tests, hits, goals)
+    found = _smallest(tests, goals)
+    kept = {*found.places, *_gone_wrong(tests)}
     return Closed(
         tests=tests,
-        suite=suite,
-        fewest=fewest,
+        suite=[one.played for place, one in enumerate(tests) if place in kept],
+        needed=len(found.places),
+        fewest=found.at_least,
         goals=goals.met + len(goals.open),
-        reasons={goal: goals.reason(goal) for goal in goals.wanted if goals.reason(goal)},
-        proved=len(goals.proved),
+        proved=goals.proved,
+        argued={goal: why for goal, why in goals.argued.items() if goal not in goals.proved},
         open=goals.open,
         wrong=goals.wrong,
+        groups=() if witnesses is None else (witnesses.edges,),
         seconds=time.monotonic() - begun,
         ended=ended if goals.open else "",
     )
@@ -154,23 +154,19 @@ def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals
     return Goals(model, argued_goals(unreachable, model, campaign.code))
 
 
-def _suite(
-    tests: Sequence[Added], hits: Sequence[Hits], goals: Goals
-) -> tuple[list[Played], int]:
-    """The fewest tests known that meet as much, and those that went wrong; the least number."""
+def _smallest(tests: Sequence[Added], goals: Goals) -> Smallest:
+    """The fewest tests known that meet as much."""
     places = {goal: place for place, goal in enumerate(goals.wanted)}
     rows = [
         {
             places[group, item]: hit.count
-            for group, items in one.items()
+            for group, items in one.played.outcome.hits.items()
             for item, hit in items.items()
             if (group, item) in places
         }
-        for one in hits
+        for one in tests
     ]
-    found = smallest(rows, {places[goal]: count for goal, count in goals.wanted.items()})
-    kept = {*found.places, *_gone_wrong(tests)}
-    return [one.played for place, one in enumerate(tests) if place in kept], found.at_least
+    return smallest(rows, {places[goal]: count for goal, count in goals.wanted.items()})
 
 
 def _gone_wrong(tests: Sequence[Added]) -> Iterator[int]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from rvmon.cdv.code import Code
-from rvmon.cdv.closing import Unreachable
 from rvmon.cdv.close.nearest import Goal
+from rvmon.cdv.closing import Unreachable
+from rvmon.cdv.code import Code
 from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import Model, Subject
 from rvmon.errors import UnknownNameError
@@ -49,7 +49,7 @@ class Goals:
     @property
     def open(self) -> list[Goal]:
         """What is to be hit, can be as far as anybody knows, and was not; in the model's order."""
-        return [goal for goal in self.wanted if not self.is_met(goal) and not self.reason(goal)]
+        return [goal for goal in self.wanted if not self.is_met(goal) and not self._is_out(goal)]
 
     @property
     def met(self) -> int:
@@ -60,11 +60,9 @@ class Goals:
         """Whether an item was hit as often as it is to be."""
         return self._counts.get(goal, 0) >= self.wanted[goal]
 
-    def reason(self, goal: Goal) -> str:
-        """Why an item cannot be hit; empty if nobody says so."""
-        if goal in self.proved:
-            return f"unreachable, proved: the model has no run for {self.proved[goal]}"
-        return self.argued.get(goal, "")
+    def _is_out(self, goal: Goal) -> bool:
+        """Whether an item cannot be hit, as it is proved or said."""
+        return goal in self.proved or goal in self.argued
 
     def add(self, test: str, hits: Hits) -> list[Goal]:
         """Count what a test hit, and return what was met with it for the first time."""
@@ -78,7 +76,7 @@ class Goals:
                 self._counts[goal] = self._counts.get(goal, 0) + hit.count
                 if self.is_met(goal) and not before:
                     added.append(goal)
-                if self.reason(goal):
+                if self._is_out(goal):
                     self.wrong.setdefault(goal, test)
         return added
 

@@ -167,9 +167,7 @@ class Mutator:
                 values.insert(rng.randrange(len(values)), values.pop(place))
             case _:
                 other = rng.choice(lent) if lent else values[place]
-                values[place] = self._changed(
-                    values[place], kind, other, f"{path}[]", rng, drawn
-                )
+                values[place] = self._changed(values[place], kind, other, f"{path}[]", rng, drawn)
         return values
 
     def _fresh(self, kind: inspect.Type, path: str, rng: random.Random, drawn: list[Draw]) -> Any:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.outcome import Played
+from rvmon.coverage.model import Group
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,26 +32,30 @@ class Closed:
     """A campaign whose holes were looked for.
 
     Attributes:
-        tests: all that were played, in order.
-        suite: of these the fewest known that meet as much, and all that did not go as they should.
-        fewest: at least so many are needed; that of `suite` if it is known to be the smallest.
+        tests: that were played, in order.
+        suite: of these the fewest known that meet as much, and one for all that went wrong.
+        needed: how many of them there are for what they meet.
+        fewest: no suite that meets as much has fewer; `needed` if it is known to be the smallest.
         goals: how many there are, without those that cannot be met.
-        reasons: why others cannot be met, by goal.
-        proved: how many of these the model proves.
+        proved: goals that cannot be met, each with the query that the model answers so.
+        argued: those of which the campaign says so, each with its reason.
         open: what no test met.
         wrong: goals that cannot be met, as it is said, and that a test met, with its name.
+        groups: what was measured beside what the campaign measures.
         seconds: that it took.
         ended: why it ended with open goals; empty if there is none.
     """
 
     tests: Sequence[Added]
     suite: Sequence[Played]
+    needed: int
     fewest: int
     goals: int
-    reasons: Mapping[Goal, str]
-    proved: int
+    proved: Mapping[Goal, str]
+    argued: Mapping[Goal, str]
     open: Sequence[Goal]
     wrong: Mapping[Goal, str]
+    groups: Sequence[Group]
     seconds: float
     ended: str
 
@@ -58,3 +63,9 @@ class Closed:
     def met(self) -> int:
         """How many goals were met."""
         return self.goals - len(self.open)
+
+    @property
+    def reasons(self) -> dict[Goal, str]:
+        """Why goals cannot be met, in words."""
+        proofs = {goal: f"unreachable: proved: {query}" for goal, query in self.proved.items()}
+        return {**proofs, **self.argued}

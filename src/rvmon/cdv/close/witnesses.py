@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.closing import ClosingModel
 from rvmon.cdv.close.nearest import Goal
+from rvmon.cdv.closing import ClosingModel
 from rvmon.cdv.measured import STATES
 from rvmon.cdv.template import Template
 from rvmon.cdv.witness_templates import project
