@@ -20,6 +20,7 @@ from rvmon.cli.campaign import (
     add_closing_options,
     add_judging_options,
     add_replay_options,
+    close_holes,
     judged_by,
     names_of,
 )
@@ -147,13 +148,12 @@ def _demo(arguments: argparse.Namespace) -> int:
 
 def _close(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
-    from rvmon.cli.campaign_close import conduct_closing
 
     robot = "legacy" if arguments.legacy else "correct"
     campaign = judged_by(handover_campaign((robot,)), arguments.spec)
-    words = ["close", *(["--legacy"] if arguments.legacy else [])]
+    words: list[object] = ["close", *(["--legacy"] if arguments.legacy else [])]
     words += ["--spec", arguments.spec] if arguments.spec else []
-    return conduct_closing(campaign, robot, arguments, words)
+    return close_holes(campaign, robot, arguments, words)
 
 
 def _replay(arguments: argparse.Namespace) -> int:

@@ -233,7 +233,6 @@ def _run(arguments: argparse.Namespace) -> int:
 
 def _close(arguments: argparse.Namespace) -> int:
     from rvmon.cdv.gate import refuse_unknown
-    from rvmon.cli.campaign_close import conduct_closing
 
     refuse_unknown(arguments.campaign)
     campaign = judged_by(arguments.campaign, arguments.spec)
@@ -244,7 +243,33 @@ def _close(arguments: argparse.Namespace) -> int:
     for option in ("robot", "spec", "timeout"):
         value = getattr(arguments, option)
         words += [] if value is None else [f"--{option}", value]
-    return conduct_closing(campaign, robot, arguments, words)
+    return close_holes(campaign, robot, arguments, words)
+
+
+def close_holes(
+    campaign: Campaign, robot: str, arguments: argparse.Namespace, words: Sequence[object]
+) -> int:
+    """Close the holes of a campaign and return an exit code.
+
+    Args:
+        campaign: what it is about.
+        robot: of its robots the one that is tested.
+        arguments: those of `add_closing_options`, and `strategy`.
+        words: the command that does it again, and its options but those and `--strategy`.
+    """
+    from rvmon.cdv.execute import INTERRUPTED as BY_HAND
+    from rvmon.cli.campaign_close import conduct_closing
+
+    strategies: Sequence[str] = ()
+    if arguments.strategy is not None:
+        strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+        words = [*words, "--strategy", arguments.strategy]
+    closed, wrong = conduct_closing(campaign, robot, strategies, arguments, words)
+    for what in wrong:
+        warn(f"not as expected: {what}")
+    if closed.ended == BY_HAND:
+        return INTERRUPTED
+    return int(bool(closed.open or closed.wrong or wrong))
 
 
 def _replay(arguments: argparse.Namespace) -> int:

@@ -16,11 +16,9 @@ from rvmon.cdv.close import Budget, Closed, close
 from rvmon.cdv.close.document import closed_document
 from rvmon.cdv.close.text import print_closed
 from rvmon.cdv.documents import to_json
-from rvmon.cdv.execute import INTERRUPTED as WORD
 from rvmon.cdv.outcome import Results
 from rvmon.cdv.plan import Plan
 from rvmon.cdv.program import typed
-from rvmon.cli.campaign import INTERRUPTED, names_of
 from rvmon.cli.campaign_run import specs_of, written
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say_json, warn
@@ -30,20 +28,24 @@ from rvmon.writing import write_whole
 
 
 def conduct_closing(
-    campaign: Campaign, robot: str, arguments: Namespace, words: Sequence[object]
-) -> int:
-    """Close holes, show what came of it, write the suite; return an exit code.
+    campaign: Campaign,
+    robot: str,
+    strategies: Sequence[str],
+    arguments: Namespace,
+    words: Sequence[object],
+) -> tuple[Closed, Sequence[str]]:
+    """Close holes, show what came of it, write the suite.
 
     Args:
         campaign: what it is about.
         robot: of its robots the one that is tested.
-        arguments: those of `add_closing_options`, and `strategy`.
+        strategies: that tests are drawn from; none: those of the campaign.
+        arguments: those of `add_closing_options`.
         words: the command that does it again, and its other options.
+
+    Returns:
+        What came of it, and what of the suite was not as expected.
     """
-    strategies: Sequence[str] = ()
-    if arguments.strategy is not None:
-        strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-        words = [*words, "--strategy", arguments.strategy]
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
@@ -76,12 +78,7 @@ def conduct_closing(
         if folder is not None:
             replayed = typed(campaign.program, ["run", *others, "--suite", folder / TESTS])
             print(f"Play the suite again: {replayed}")
-    wrong = conducted.judged(strict=False).wrong
-    for what in wrong:
-        warn(f"not as expected: {what}")
-    if closed.ended == WORD:
-        return INTERRUPTED
-    return int(bool(closed.open or closed.wrong or wrong))
+    return closed, conducted.judged(strict=False).wrong
 
 
 def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:

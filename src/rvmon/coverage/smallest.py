@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-MOST_NODES = 50_000
+MOST_NODES = 20_000
 """Partial choices that are looked at, about a second's worth."""
 
 MOST_COMPARED = 500
@@ -51,11 +51,10 @@ def smallest(
         for item, count in row.items():
             total[item] = min(total.get(item, 0) + count, goals.get(item, 0))
     needed = {item: count for item, count in total.items() if count}
-    useful = {
+    kept: dict[int, dict[int, int]] = {
         place: {item: min(count, needed[item]) for item, count in row.items() if item in needed}
         for place, row in enumerate(rows)
     }
-    kept = {place: row for place, row in useful.items() if row}
     while True:
         kept = _undominated(kept, needed)
         fewer = _scarce(kept, needed)
@@ -75,10 +74,10 @@ def smallest(
 
 
 def _undominated(
-    rows: Mapping[int, Mapping[int, int]], needed: Mapping[int, int]
-) -> dict[int, Mapping[int, int]]:
+    rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]
+) -> dict[int, dict[int, int]]:
     """Tests without those that are needless beside another one, which alone does as they do."""
-    kept: dict[int, Mapping[int, int]] = {}
+    kept: dict[int, dict[int, int]] = {}
     seen: set[frozenset[int]] = set()
     for place, row in rows.items():
         suffices = all(count == needed[item] for item, count in row.items())
@@ -100,7 +99,7 @@ def _undominated(
     }
 
 
-def _scarce(rows: Mapping[int, Mapping[int, int]], needed: Mapping[int, int]) -> dict[int, int]:
+def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> dict[int, int]:
     """Items without those that are hit whenever a scarcer one is."""
     hitters = _hitters(rows)
     kept: dict[int, int] = {}
@@ -111,7 +110,7 @@ def _scarce(rows: Mapping[int, Mapping[int, int]], needed: Mapping[int, int]) ->
     return kept
 
 
-def _hitters(rows: Mapping[int, Mapping[int, int]]) -> dict[int, int]:
+def _hitters(rows: Mapping[int, dict[int, int]]) -> dict[int, int]:
     """By item, the tests that hit it, as bits of a number."""
     found: dict[int, int] = {}
     for place, row in rows.items():
@@ -123,7 +122,7 @@ def _hitters(rows: Mapping[int, Mapping[int, int]]) -> dict[int, int]:
 class _Search:
     """Branch and bound; sets of tests are bits of a number."""
 
-    def __init__(self, rows: Mapping[int, Mapping[int, int]], most_nodes: int) -> None:
+    def __init__(self, rows: Mapping[int, dict[int, int]], most_nodes: int) -> None:
         self._rows = rows
         self._left = most_nodes
         self._hitters = _hitters(rows)

@@ -20,9 +20,9 @@ class Learned:
     success and one failure beforehand, so that none is ever given up.
 
     Source: Thompson, On the Likelihood that One Unknown Probability Exceeds Another, Biometrika 25,
-    1933: options are drawn by what is known of them (here by the mean of the posterior); Rubinstein,
-    The Cross-Entropy Method for Combinatorial and Continuous Optimization, 1999: and by what the
-    best tests drew.
+    1933 (options are drawn by what is known of them, here the mean of the posterior); Rubinstein,
+    The Cross-Entropy Method for Combinatorial and Continuous Optimization, 1999 (and by what the
+    best tests drew).
     """
 
     def __init__(self) -> None:

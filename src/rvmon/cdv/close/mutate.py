@@ -122,13 +122,13 @@ class Mutator:
                 name = self._learned.choose(rng, path, names, drawn)
                 of = next(field.type for field in fields if field.encode_name == name)
                 whole = _filled(value, kind)
-                other = _filled(lent, kind) if isinstance(lent, dict) else whole
-                inner = other.get(name, whole[name])
+                beside = _filled(lent, kind) if isinstance(lent, dict) else whole
+                inner = beside.get(name, whole[name])
                 new = self._changed(whole[name], of, inner, f"{path}.{name}", rng, drawn)
                 return {**whole, name: new}
             case inspect.VarTupleType() | inspect.ListType():
-                other = list(lent) if isinstance(lent, list | tuple) else []
-                return self._sequence(list(value), kind.item_type, other, path, rng, drawn)
+                others = list(lent) if isinstance(lent, list | tuple) else []
+                return self._sequence(list(value), kind.item_type, others, path, rng, drawn)
             case inspect.UnionType():
                 own = _member(value, kind)
                 if own is not None and _can_change(own) and rng.random() < 0.5:
@@ -282,7 +282,8 @@ def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> fl
 def _near(value: float, kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
     """A number near another one, within the bounds of its type."""
     low, high = _bounds(kind)
-    found = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
+    found: float = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
     if isinstance(kind, inspect.IntType):
         found = round(found) if round(found) != value else value + rng.choice((-1, 1))
-    return found if low is None else max(found, low) if high is None else min(max(found, low), high)
+    above = found if low is None else max(found, low)
+    return above if high is None else min(above, high)

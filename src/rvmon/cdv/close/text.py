@@ -51,18 +51,19 @@ def _suite_text(closed: Closed) -> str:
     fewest = "no fewer would do"
     if closed.fewest < closed.needed:
         fewest = f"no smaller choice was found; at least {closed.fewest} are needed"
-    text = f"{counted(closed.needed, 'test')} of them cover the same: {fewest}."
+    text = f"The suite: {closed.needed} of them cover the same, {fewest}"
     if kept := len(closed.suite) - closed.needed:
-        text += f" {counted(kept, 'more')} kept for what went wrong."
-    return text
+        text += f"; {kept} more are kept for what went wrong"
+    return f"{text}."
 
 
 def _table(useful: Sequence[Added], closed: Closed) -> Table:
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
-    for title, side in (("test", "left"), ("new", "right"), ("share", "right")):
-        table.add_column(title, justify=side, no_wrap=True)
+    table.add_column("test", no_wrap=True)
+    for title in ("new", "share"):
+        table.add_column(title, justify="right", no_wrap=True)
     table.add_column("made from, and what it added")
     for one in useful:
         shown = ", ".join(map(name_of, one.goals[:SHOWN]))
