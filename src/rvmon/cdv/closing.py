@@ -50,7 +50,8 @@ class ClosingModel:
         states: the states of the system by the locations of that automaton; those left out are
             passed over. A test shows the edges of a run of the model if the system enters the
             states of that run first, in their order.
-        robots: those of the campaign that the model describes; default: all.
+        robots: those of the campaign that the model describes; default: all. Of the others it
+            proves nothing, though its runs may be good tests of them.
     """
 
     network: Callable[[], Network]

@@ -263,7 +263,6 @@ def close_holes(
     strategies: Sequence[str] = ()
     if arguments.strategy is not None:
         strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-        words = [*words, "--strategy", arguments.strategy]
     closed, wrong = conduct_closing(campaign, robot, strategies, arguments, words)
     for what in wrong:
         warn(f"not as expected: {what}")

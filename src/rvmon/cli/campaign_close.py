@@ -60,7 +60,8 @@ def conduct_closing(
             jobs=arguments.jobs,
             progress=lambda met, goals: tell(met / goals),
         )
-    amount = ["--tests", arguments.tests, "--seed", arguments.seed]
+    amount: list[object] = ["--tests", arguments.tests, "--seed", arguments.seed]
+    amount += ["--strategy", ",".join(strategies)] if strategies else []
     if arguments.seconds is not None:
         amount += ["--seconds", arguments.seconds]
     command, *others = words

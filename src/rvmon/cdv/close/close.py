@@ -12,7 +12,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.close.goals import Goals, argued_goals
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
-from rvmon.cdv.close.witnesses import EDGES, Witnesses
+from rvmon.cdv.close.witnesses import Witnesses
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.execute import INTERRUPTED, outcomes
 from rvmon.cdv.outcome import Played
@@ -82,8 +82,8 @@ def close(
     begun = time.monotonic()
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     model = campaign.closing.model
-    is_modelled = model is not None and robot in (model.robots or campaign.robots)
-    witnesses = Witnesses(model) if model is not None and is_modelled else None
+    describes = model is not None and robot in (model.robots or campaign.robots)
+    witnesses = None if model is None else Witnesses(model, describes=describes)
     goals = _goals(campaign, robot, witnesses)
     names = strategies or campaign.closing.strategies or tuple(campaign.strategies)
     proposer = Proposer(campaign, robot, goals, names, seed, witnesses)
@@ -126,7 +126,7 @@ def close(
         argued={goal: why for goal, why in goals.argued.items() if goal not in goals.proved},
         open=goals.open,
         wrong=goals.wrong,
-        groups=() if witnesses is None else (witnesses.edges,),
+        groups=() if witnesses is None else witnesses.groups,
         seconds=time.monotonic() - begun,
         ended=ended if goals.open else "",
     )
@@ -147,10 +147,8 @@ class _Waiting(Iterator[Job]):
 def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals:
     model = coverage_model(campaign, robot)
     if witnesses is not None:
-        model = model_of([*model.groups.values(), witnesses.edges])
+        model = model_of([*model.groups.values(), *witnesses.groups])
     unreachable = [one for one in campaign.closing.unreachable if one.robot in ("", robot)]
-    if witnesses is None:
-        unreachable = [one for one in unreachable if one.group != EDGES]
     return Goals(model, argued_goals(unreachable, model, campaign.code))
 
 

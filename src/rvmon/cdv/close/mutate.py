@@ -19,6 +19,9 @@ MOST_CHANGES = 3
 _KEPT = frozenset({"name", "strategy", "text", "robot", "mutation", "expected"})
 """What a test says of itself."""
 
+DEEPEST = 5
+"""Structures within structures that are looked into."""
+
 _SPREAD = 100.0
 """Numbers without a bound are drawn up to here."""
 
@@ -44,7 +47,9 @@ class Mutator:
         self._fields = [
             field
             for field in described.fields
-            if field.name not in (*fixed, *_KEPT) and _can_change(field.type)
+            if field.name not in (*fixed, *_KEPT)
+            and _can_change(field.type)
+            and not described.array_like
         ]
 
     def mutated(
@@ -58,7 +63,7 @@ class Mutator:
             rng: draws.
             drawn: gets the choices that made it.
         """
-        for _ in range(ATTEMPTS):
+        for _ in range(ATTEMPTS if self._fields else 0):
             choices: list[Draw] = []
             value = _built(test, self._type)
             for _ in range(rng.randint(1, MOST_CHANGES)):
@@ -197,21 +202,27 @@ class Mutator:
                 options = [one for one in kind.types if _can_make(one)]
                 return self._fresh(rng.choice(options), path, rng, drawn)
             case inspect.VarTupleType() | inspect.ListType():
-                few = range(rng.randint(0, 2))
+                few = range(rng.randint(0, 1))
                 return [self._fresh(kind.item_type, f"{path}[]", rng, drawn) for _ in few]
             case _:
                 return ""
 
 
-def _can_make(kind: inspect.Type) -> bool:
+def _can_make(kind: inspect.Type, depth: int = 0) -> bool:
     """Whether values of a type can be drawn."""
     match kind:
         case inspect.UnionType():
-            return any(map(_can_make, kind.types))
+            return any(_can_make(one, depth) for one in kind.types)
         case inspect.StructType():
-            return all(_can_make(field.type) for field in kind.fields if field.required)
+            needed = [field.type for field in kind.fields if field.required]
+            # A structure may be part of itself.
+            return (
+                not kind.array_like
+                and depth < DEEPEST
+                and all(_can_make(one, depth + 1) for one in needed)
+            )
         case inspect.VarTupleType() | inspect.ListType():
-            return _can_make(kind.item_type)
+            return _can_make(kind.item_type, depth)
         case _:
             return isinstance(
                 kind,
@@ -224,11 +235,12 @@ def _can_make(kind: inspect.Type) -> bool:
             )
 
 
-def _can_change(kind: inspect.Type) -> bool:
+def _can_change(kind: inspect.Type, depth: int = 0) -> bool:
     """Whether values of a type can be changed: a text has no neighbours that mean anything."""
     if isinstance(kind, inspect.StructType):
-        return any(_can_change(field.type) for field in kind.fields)
-    return not isinstance(kind, inspect.NoneType) and _can_make(kind)
+        inner = (_can_change(field.type, depth + 1) for field in kind.fields)
+        return not kind.array_like and depth < DEEPEST and any(inner)
+    return not isinstance(kind, inspect.NoneType) and _can_make(kind, depth)
 
 
 def _built(test: Test, kind: inspect.StructType) -> dict[str, Any]:
@@ -249,13 +261,14 @@ def _filled(value: Mapping[str, Any], kind: inspect.StructType) -> dict[str, Any
 
 
 def _member(value: Any, kind: inspect.UnionType) -> inspect.Type | None:
-    """The member of a union that a value is of."""
+    """The member of a union that a structure or a sequence is of."""
     for one in kind.types:
-        if isinstance(one, inspect.StructType):
-            if isinstance(value, dict) and (not one.tag_field or value[one.tag_field] == one.tag):
+        match one:
+            case inspect.StructType() if isinstance(value, dict):
+                if not one.tag_field or value.get(one.tag_field) == one.tag:
+                    return one
+            case inspect.VarTupleType() | inspect.ListType() if isinstance(value, list | tuple):
                 return one
-        elif not isinstance(value, dict) and (value is None) == isinstance(one, inspect.NoneType):
-            return one
     return None
 
 
@@ -268,22 +281,24 @@ def _bounds(kind: inspect.IntType | inspect.FloatType) -> tuple[float | None, fl
 def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
     """A number within the bounds of its type: small ones as often as large ones."""
     low, high = _bounds(kind)
+    spread: float = _SPREAD ** rng.random()
     if low is None and high is None:
-        found = rng.uniform(-1, 1) * _SPREAD ** rng.random()
+        found = rng.uniform(-1, 1) * spread
     elif high is None or low is None:
         sign, start = (1, low) if high is None else (-1, high)
         assert start is not None  # noqa: S101 - one of both is
-        found = start + sign * rng.uniform(0, _SPREAD ** rng.random())
+        found = start + sign * rng.uniform(0, spread)
     else:
-        found = low + (high - low) * rng.random() ** rng.choice((1, 3))
+        found = low + (high - low) * rng.random() * rng.choice((1.0, rng.random()))
     return round(found) if isinstance(kind, inspect.IntType) else found
 
 
 def _near(value: float, kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
     """A number near another one, within the bounds of its type."""
     low, high = _bounds(kind)
-    found: float = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
+    found = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
     if isinstance(kind, inspect.IntType):
         found = round(found) if round(found) != value else value + rng.choice((-1, 1))
     above = found if low is None else max(found, low)
-    return above if high is None else min(above, high)
+    nearby: float = above if high is None else min(above, high)
+    return nearby

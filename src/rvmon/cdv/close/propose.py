@@ -5,7 +5,7 @@ from __future__ import annotations
 import heapq
 import random
 from collections import Counter
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count
 from typing import TypeVar
@@ -23,6 +23,7 @@ from rvmon.cdv.files import TestError, from_json, to_json
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import plan
 from rvmon.coverage.model import Subject
+from rvmon.errors import RvmonError
 
 _Option = TypeVar("_Option", bound=Hashable)
 
@@ -150,7 +151,8 @@ class Proposer:
         self._followed[answer.query] += 1
         name, seed = self._name(), self._rng.getrandbits(32)
         origin = f"a run of the model that shows {answer.query}"
-        made = self._witnesses.test(answer, name, seed)
+        witnesses = self._witnesses
+        made = self._by_campaign("closing.model.make", lambda: witnesses.test(answer, name, seed))
         return Proposal(self._named(made, name, origin), origin, (), answer)
 
     def _by_chance(self, goal: Goal) -> Proposal | None:
@@ -186,7 +188,8 @@ class Proposer:
         def choose(name: str, options: Sequence[_Option], /) -> _Option:
             return self._learned.choose(self._rng, name, options, drawn, near)
 
-        made = self._campaign.closing.biased(choose, self._rng.getrandbits(32))
+        biased, seed = self._campaign.closing.biased, self._rng.getrandbits(32)
+        made = self._by_campaign("closing.biased", lambda: biased(choose, seed))
         origin = f"choices biased towards {goal[0]}: {goal[1]}"
         return Proposal(self._named(made, self._name(), origin), origin, drawn)
 
@@ -207,6 +210,24 @@ class Proposer:
         return heapq.nlargest(
             NEAREST, self._tests, lambda one: nearness(goal, one.outcome.hits, model)
         )
+
+    def _by_campaign(self, what: str, make: Callable[[], Test]) -> Test:
+        """A test that a function of the campaign makes.
+
+        Raises:
+            TestError: it fails, or makes none.
+        """
+        try:
+            made: object = make()
+        except RvmonError:
+            raise
+        except Exception as error:
+            told = f"{type(error).__name__}: {error}"
+            raise TestError(f"`{what}` of the campaign cannot make a test: {told}") from error
+        kind = self._campaign.test
+        if not isinstance(made, kind):
+            raise TestError(f"`{what}` of the campaign makes {made!r}, which is no {kind.__name__}")
+        return made
 
     def _name(self) -> str:
         self._made += 1

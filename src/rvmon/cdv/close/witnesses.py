@@ -58,10 +58,13 @@ class Witnesses:
 
     Args:
         model: with its network.
+        describes: whether it describes the robot that is tested: else it proves nothing, and there
+            are no edges to be shown.
     """
 
-    def __init__(self, model: ClosingModel) -> None:
+    def __init__(self, model: ClosingModel, *, describes: bool) -> None:
         self._model = model
+        self._describes = describes
         self._answers: dict[str, Witness | Proof | None] = {}
 
     @cached_property
@@ -88,9 +91,11 @@ class Witnesses:
         return names
 
     @property
-    def edges(self) -> Group:
-        """The edges of the model."""
-        return group_of(EDGES, Subject.TRANSITIONS, [*map(Item, self._names.values())])
+    def groups(self) -> list[Group]:
+        """The edges of the model, as what there is to be covered."""
+        if not self._describes:
+            return []
+        return [group_of(EDGES, Subject.TRANSITIONS, [*map(Item, self._names.values())])]
 
     def knows(self, goal: Goal) -> bool:
         """Whether the model can be asked about an item."""
@@ -128,6 +133,8 @@ class Witnesses:
             witness: the run.
             hits: of the test.
         """
+        if not self._describes:
+            return {}
         visited = hits.get(STATES, {})
         went = sorted(visited, key=lambda state: visited[state].first or 0)
         planned = self._course(witness.run)
@@ -159,7 +166,7 @@ class Witnesses:
         outcome = verify(self._network, query, budget=Budget(states=MOST_STATES))
         if outcome.run is not None:
             return Witness(outcome.run, query)
-        return None if outcome.holds is None else Proof(query)
+        return Proof(query) if outcome.holds is not None and self._describes else None
 
 
 def _edges_of(run: Run) -> Iterator[tuple[int, Edge]]:
