@@ -2,7 +2,6 @@
 
 import os
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated, Literal
 
 import msgspec
@@ -174,7 +173,7 @@ def test_lines_go_by_their_text(dials, code):
     }
 
 
-def model(query=lambda group, item: "", **more):
+def model(query=lambda *_: "", **more):
     """The model of the dials, with tests made of its runs."""
 
     def make(template, seed):
@@ -230,7 +229,7 @@ def test_edges_are_shown_only_by_tests_that_go_their_way(dials):
 
 def test_a_model_proves_nothing_of_robots_that_it_does_not_describe(dials):
     """Its runs are tests all the same."""
-    impossible = model(lambda group, item: "E<> left == 3", robots=("another",))
+    impossible = model(lambda *_: "E<> left == 3", robots=("another",))
     closed = close(dials(model=impossible), "machine", jobs=1)
     assert (closed.proved, closed.open, closed.groups) == ({}, [], [])
 
