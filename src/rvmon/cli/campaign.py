@@ -127,7 +127,7 @@ def add_playing_options(parser: argparse.ArgumentParser) -> None:
 def add_closing_options(parser: argparse.ArgumentParser) -> None:
     """Declare when closing gives up, and where the suite goes."""
     parser.add_argument(
-        "--tests", metavar="N", type=positive, default=200, help="play at most so many (200)"
+        "--tests", metavar="N", type=positive, default=400, help="play at most so many (400)"
     )
     parser.add_argument(
         "--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)"

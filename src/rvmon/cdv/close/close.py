@@ -35,7 +35,7 @@ class Budget:
         seconds: after which no further ones are begun; `None`: any number.
     """
 
-    tests: int = 200
+    tests: int = 400
     seconds: float | None = None
 
 

@@ -14,9 +14,9 @@ Draw = tuple[str, Hashable]
 
 
 class Learned:
-    """Weights of options, by choice: they grow with what tests of theirs add.
+    """Weights of options, by choice: they grow with what tests of theirs brought.
 
-    An option is drawn in proportion to the share of its tests that added something, each with one
+    An option is drawn in proportion to the share of its tests that paid, each with one
     success and one failure beforehand, so that none is ever given up.
 
     Source: Thompson, On the Likelihood that One Unknown Probability Exceeds Another, Biometrika 25,
@@ -55,8 +55,8 @@ class Learned:
         share = (1 + self._gains[draw]) / (2 + self._tries[draw])
         return share + sum(draw in one for one in near) / max(1, len(near))
 
-    def tell(self, drawn: Iterable[Draw], *, added: bool) -> None:
-        """Learn whether a test that was made by these draws has added something."""
+    def tell(self, drawn: Iterable[Draw], *, paid: bool) -> None:
+        """Learn whether a test that was made by these draws has paid."""
         for draw in dict.fromkeys(drawn):
             self._tries[draw] += 1
-            self._gains[draw] += added
+            self._gains[draw] += paid

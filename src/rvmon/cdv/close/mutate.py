@@ -15,7 +15,9 @@ from rvmon.cdv.close.learned import Draw, Learned
 ATTEMPTS = 50
 """Changes that are tried until one gives a test: types say not all that tests demand."""
 
-MOST_CHANGES = 3
+CHANGES = (1, 1, 2, 3)
+"""How many there are at once."""
+
 _KEPT = frozenset({"name", "strategy", "text", "robot", "mutation", "expected"})
 """What a test says of itself."""
 
@@ -66,7 +68,7 @@ class Mutator:
         for _ in range(ATTEMPTS if self._fields else 0):
             choices: list[Draw] = []
             value = _built(test, self._type)
-            for _ in range(rng.randint(1, MOST_CHANGES)):
+            for _ in range(rng.choice(CHANGES)):
                 field = self._learned.choose(rng, "field", self._places(value), choices)
                 lent = _built(rng.choice(others), self._type) if others else value
                 found = self._type_of(field)
@@ -156,7 +158,7 @@ class Mutator:
     ) -> list[Any]:
         """A sequence with an element more, less, moved or changed, or with a tail of another."""
         ways = ["insert", *(["borrow", "tail"] if lent else [])]
-        ways += ["remove", "move", "change"] if values else []
+        ways += ["remove", "move", *["change"] * len(values)] if values else []
         way = self._learned.choose(rng, f"{path}[]", ways, drawn)
         place = rng.randrange(len(values) + (way in ("insert", "borrow", "tail")))
         match way:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import random
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count
@@ -52,12 +52,14 @@ class Proposal:
     Attributes:
         test: itself.
         origin: how it was made, in words.
+        goal: what it is aimed at.
         drawn: the choices that made it.
         witness: the run of the model that it follows.
     """
 
     test: Test
     origin: str
+    goal: Goal
     drawn: Sequence[Draw] = ()
     witness: Witness | None = None
 
@@ -96,6 +98,7 @@ class Proposer:
         self._tests: list[Played] = []
         self._draws: dict[str, Sequence[Draw]] = {}
         self._tries: Counter[Goal] = Counter()
+        self._nearness: defaultdict[Goal, float] = defaultdict(float)
         self._followed: Counter[str] = Counter()
 
     def batch(self, size: int) -> list[Proposal]:
@@ -122,16 +125,19 @@ class Proposer:
         return made
 
     def tell(self, proposal: Proposal, played: Played, *, added: bool) -> None:
-        """Learn what became of a test.
+        """Learn what became of a test: one that came nearer to its goal than all before paid, too.
 
         Args:
             proposal: of it.
             played: its outcome.
             added: whether it met something that was open.
         """
+        near = nearness(proposal.goal, played.outcome.hits, self._goals.model)
+        is_nearer = near > self._nearness[proposal.goal]
+        self._nearness[proposal.goal] = max(near, self._nearness[proposal.goal])
         self._tests.append(played)
         self._draws[played.job.test.name] = proposal.drawn
-        self._learned.tell(proposal.drawn, added=added)
+        self._learned.tell(proposal.drawn, paid=added or is_nearer)
 
     def _rank(self, goal: Goal) -> tuple[bool, int]:
         """What the model knows comes first, then what is specific: on the way much else is met."""
@@ -153,7 +159,7 @@ class Proposer:
         origin = f"a run of the model that shows {answer.query}"
         witnesses = self._witnesses
         made = self._by_campaign("closing.model.make", lambda: witnesses.test(answer, name, seed))
-        return Proposal(self._named(made, name, origin), origin, (), answer)
+        return Proposal(self._named(made, name, origin), origin, goal, (), answer)
 
     def _by_chance(self, goal: Goal) -> Proposal | None:
         """A changed test, a biased one, or another of a strategy; `None` if none can be made."""
@@ -166,7 +172,7 @@ class Proposer:
             made = self._changed(goal, drawn)
         elif way == "bias":
             made = self._biased(goal, drawn)
-        return made or self._drawn(drawn)
+        return made or self._drawn(goal, drawn)
 
     def _changed(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         """One of the tests that came nearest to a goal, changed."""
@@ -177,7 +183,7 @@ class Proposer:
             return None
         origin = f"{nearest.name}, changed towards {goal[0]}: {goal[1]}"
         made = structs.replace(made, expected={})
-        return Proposal(self._named(made, self._name(), origin), origin, drawn)
+        return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
 
     def _biased(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         """A test whose choices are those of the tests that came nearest to a goal, more often."""
@@ -191,24 +197,26 @@ class Proposer:
         biased, seed = self._campaign.closing.biased, self._rng.getrandbits(32)
         made = self._by_campaign("closing.biased", lambda: biased(choose, seed))
         origin = f"choices biased towards {goal[0]}: {goal[1]}"
-        return Proposal(self._named(made, self._name(), origin), origin, drawn)
+        return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
 
-    def _drawn(self, drawn: list[Draw]) -> Proposal | None:
+    def _drawn(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         """The next test of a strategy."""
         while self._streams:
             name = self._learned.choose(self._rng, "strategy", [*self._streams], drawn)
             new = next(self._streams[name], None)
             if new is not None:
                 origin = f"{new.name} of {name}"
-                return Proposal(self._named(new, self._name(), origin), origin, drawn)
+                return Proposal(self._named(new, self._name(), origin), origin, goal, drawn)
             del self._streams[name]
         return None
 
     def _nearest(self, goal: Goal) -> list[Played]:
-        """The tests that met most of what a goal needs."""
-        model = self._goals.model
+        """The tests that met most of what a goal needs; any of those that are equally near."""
+        model, rng = self._goals.model, self._rng
         return heapq.nlargest(
-            NEAREST, self._tests, lambda one: nearness(goal, one.outcome.hits, model)
+            NEAREST,
+            self._tests,
+            lambda one: (nearness(goal, one.outcome.hits, model), rng.random()),
         )
 
     def _by_campaign(self, what: str, make: Callable[[], Test]) -> Test:
