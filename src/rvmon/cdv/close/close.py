@@ -154,7 +154,8 @@ def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals
 
 def _smallest(tests: Sequence[Added], goals: Goals) -> Smallest:
     """The fewest tests known that meet as much."""
-    places = {goal: place for place, goal in enumerate(goals.wanted)}
+    sought = goals.sought
+    places = {goal: place for place, goal in enumerate(sought)}
     rows = [
         {
             places[group, item]: hit.count
@@ -164,7 +165,7 @@ def _smallest(tests: Sequence[Added], goals: Goals) -> Smallest:
         }
         for one in tests
     ]
-    return smallest(rows, {places[goal]: count for goal, count in goals.wanted.items()})
+    return smallest(rows, {places[goal]: count for goal, count in sought.items()})
 
 
 def _gone_wrong(tests: Sequence[Added]) -> Iterator[int]:

@@ -47,14 +47,19 @@ class Goals:
         self._counts: dict[Goal, int] = {}
 
     @property
+    def sought(self) -> dict[Goal, int]:
+        """How often each item is to be hit of those that can be, as far as anybody knows."""
+        return {goal: count for goal, count in self.wanted.items() if not self._is_out(goal)}
+
+    @property
     def open(self) -> list[Goal]:
-        """What is to be hit, can be as far as anybody knows, and was not; in the model's order."""
-        return [goal for goal in self.wanted if not self.is_met(goal) and not self._is_out(goal)]
+        """What is sought and was not hit as often as it is to be; in the model's order."""
+        return [goal for goal in self.sought if not self.is_met(goal)]
 
     @property
     def met(self) -> int:
-        """How many were hit as often as they are to be."""
-        return sum(map(self.is_met, self.wanted))
+        """How many of those that are sought were."""
+        return sum(map(self.is_met, self.sought))
 
     def is_met(self, goal: Goal) -> bool:
         """Whether an item was hit as often as it is to be."""
@@ -74,10 +79,10 @@ class Goals:
                     continue
                 before = self.is_met(goal)
                 self._counts[goal] = self._counts.get(goal, 0) + hit.count
-                if self.is_met(goal) and not before:
-                    added.append(goal)
                 if self._is_out(goal):
                     self.wrong.setdefault(goal, test)
+                elif self.is_met(goal) and not before:
+                    added.append(goal)
         return added
 
 
