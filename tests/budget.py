@@ -10,7 +10,7 @@ BUDGETS = {
     "src/rvmon": 20,
     "tests": 2,
     "tests/benchmarks": 10,
-    "tests/handover/campaign": 45,
+    "tests/handover/campaign": 50,
     "tests/handover/checker": 5,
     "tests/handover/collector": 2,
     "tests/handover/driver": 12,

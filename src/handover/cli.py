@@ -94,7 +94,9 @@ def _add_close(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         epilog="example: handover close --out out/closed; handover run --suite out/closed/tests",
     )
     parser.add_argument(
-        "--strategy", metavar="NAMES", help="draw from (default: pseudorandom,constrained)"
+        "--strategy",
+        metavar="NAMES",
+        help="draw from (default: pseudorandom,constrained,disturbed)",
     )
     add_closing_options(parser)
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
