@@ -17,9 +17,11 @@ from rvmon.cli import guarded
 from rvmon.cli.campaign import (
     INTERRUPTED,
     add_campaign_options,
+    add_closing_options,
     add_judging_options,
     add_replay_options,
     add_shrink_options,
+    close_holes,
     judged_by,
     names_of,
 )
@@ -45,6 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_run(commands)
     _add_demo(commands)
+    _add_close(commands)
     _add_replay(commands)
     _add_shrink(commands)
     return parser
@@ -95,6 +98,25 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     add_campaign_options(parser)
     _add_conform(parser, 3)
     parser.set_defaults(run=_demo, pages="all")
+
+
+def _add_close(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser(
+        "close",
+        help="make tests until coverage has no holes",
+        description="Make tests aimed at what is not covered, by runs of the model, by biased "
+        "choices and by changing the nearest test; play and judge them, until all is covered that "
+        "can be; keep the fewest that cover as much.",
+        epilog="example: handover close --out out/closed; handover run --suite out/closed/tests",
+    )
+    parser.add_argument(
+        "--strategy",
+        metavar="NAMES",
+        help="draw from (default: pseudorandom,constrained,disturbed)",
+    )
+    add_closing_options(parser)
+    parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
+    parser.set_defaults(run=_close)
 
 
 def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -156,6 +178,16 @@ def _demo(arguments: argparse.Namespace) -> int:
     if arguments.out:
         print(f"Look at {Path(arguments.out) / REPORT}")
     return INTERRUPTED if conducted.summary.cut_short else 0
+
+
+def _close(arguments: argparse.Namespace) -> int:
+    from handover.campaign.campaign import handover_campaign
+
+    robot = "legacy" if arguments.legacy else "correct"
+    campaign = judged_by(handover_campaign((robot,)), arguments.spec)
+    words: list[object] = ["close", *(["--legacy"] if arguments.legacy else [])]
+    words += ["--spec", arguments.spec] if arguments.spec else []
+    return close_holes(campaign, robot, arguments, words)
 
 
 def _replay(arguments: argparse.Namespace) -> int:

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import handover
+from handover.campaign.closing import closing
 from handover.campaign.documents import table_document
 from handover.campaign.flow_chart import flow_chart
 from handover.campaign.model_page import model_sections
@@ -79,6 +80,7 @@ def handover_campaign(
             robot_words=_robot_words,
             write_more=_write_templates,
         ),
+        closing=closing(),
     )
 
 

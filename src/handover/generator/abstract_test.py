@@ -36,6 +36,7 @@ Strategy = Literal[
     "model-based-fastest",
     "disturbed",
     "directed",
+    "closed",
 ]
 
 SEND_DELAY_S = 2.0

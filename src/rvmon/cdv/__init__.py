@@ -3,11 +3,12 @@
 An engineer with a simulator writes a `System`, a type of `Test`, a strategy that makes some, and
 requirements; `rvmon.cli.campaign.main(campaign)` is then the command line of the campaign. What is
 made of it, in order: `plan` (tests), `execute` (on all cores: `play` judges and measures),
-`summarise` (figures), tables, pages, and `gate`: is all as expected?
+`summarise` (figures), tables, pages, and `gate`: is all as expected? `close` makes its own tests.
 """
 
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign, Control, ExpectedFailure, Robot, Strategy
+from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
 from rvmon.cdv.code import Block, Code, blocks_of
 from rvmon.cdv.files import TestError
 from rvmon.cdv.system import Observer, Run, System
@@ -15,6 +16,8 @@ from rvmon.cdv.system import Observer, Run, System
 __all__ = [
     "Block",
     "Campaign",
+    "Closing",
+    "ClosingModel",
     "Code",
     "Control",
     "ExpectedFailure",
@@ -25,5 +28,6 @@ __all__ = [
     "System",
     "Test",
     "TestError",
+    "Unreachable",
     "blocks_of",
 ]

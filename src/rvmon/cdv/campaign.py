@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.cdv.abstract_test import Test
+from rvmon.cdv.closing import Closing
 from rvmon.cdv.code import Code
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.system import System
@@ -90,6 +91,7 @@ class Campaign:
         packages: whose versions runs depend on, likewise.
         program: the installed program that runs it; empty: the script that was started.
         presentation: how its figures are shown.
+        closing: how its holes are closed.
     """
 
     name: str
@@ -106,3 +108,4 @@ class Campaign:
     packages: Sequence[str] = ()
     program: str = ""
     presentation: Presentation = field(default_factory=Presentation)
+    closing: Closing = field(default_factory=Closing)

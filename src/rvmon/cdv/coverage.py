@@ -74,22 +74,27 @@ def coverage_model(campaign: Campaign, robot: str) -> Model:
         ) from None
 
 
-def write_database(path: Path, campaign: Campaign, robot: str, played: Sequence[Played]) -> None:
+def write_database(path: Path, robot: str, played: Sequence[Played], results: Results) -> None:
     """Write the database of a robot's tests; one that is there is replaced.
 
     Args:
         path: of the file, whose folder is made.
-        campaign: that was played.
         robot: its name in the campaign.
         played: of its tests those that count, in the order of the plan.
+        results: of the campaign.
 
     Raises:
         RvmonError: the file cannot be written, or see `coverage_model`.
     """
+    campaign = results.plan.campaign
+    model = coverage_model(campaign, robot)
+    model = model_of([*model.groups.values(), *results.groups])
     path.parent.mkdir(parents=True, exist_ok=True)
     path.unlink(missing_ok=True)
     with Database.open(path) as database:
-        database.declare(_with_the_rest(coverage_model(campaign, robot), played))
+        database.declare(_with_the_rest(model, played))
+        for (group, item), reason in results.reasons.items():
+            database.explain(group, item, reason)
         for number, one in enumerate(played):
             test, outcome = one.job.test, one.outcome
             record = TestRecord(
@@ -142,7 +147,7 @@ def write_coverage(
             for one in results.played
             if one.job.robot == robot and one.job.test.mutation is None
         ]
-        write_database(path, campaign, robot, played)
+        write_database(path, robot, played, results)
         up = "../" * len(path.parent.relative_to(folder).parts)
         own = {test: f"{up}{page}" for (of, test), page in pages.items() if of == robot}
         title = campaign.robots[robot].title or robot

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
@@ -49,24 +49,12 @@ def execute(
     Raises:
         RvmonError: a system cannot be made, or no process be begun.
     """
-    campaign = plan.campaign
     played = [] if kept is None else [*kept.played]
     begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
-    control = campaign.control.make if campaign.control is not None and controls else None
-    begin = partial(player, campaign.robots, campaign.code, control)
     left = plan.jobs()[len(played) :]
     cut_short = ""
     try:
-        with closing(
-            parallel.execute(
-                left,
-                begin,
-                jobs=jobs or os.cpu_count() or 1,
-                what="test",
-                instead=partial(_without_result, _requirements(campaign)),
-                timeout_s=campaign.timeout_s,
-            )
-        ) as results:
+        with closing(outcomes(plan.campaign, left, jobs=jobs, controls=controls)) as results:
             for job, (outcome, beside) in zip(left, results, strict=True):
                 played.append(Played(job, outcome, beside))
                 if kept is not None:
@@ -76,6 +64,31 @@ def execute(
     except KeyboardInterrupt:
         cut_short = INTERRUPTED
     return Results(plan, tuple(played), time.perf_counter() - begun, cut_short)
+
+
+def outcomes(
+    campaign: Campaign, tests: Iterable[Job], *, jobs: int | None = None, controls: bool = True
+) -> Generator[tuple[Outcome, Outcome | None], None, None]:
+    """Play tests, in this order; each outcome comes with that of its control.
+
+    Args:
+        campaign: whose tests they are.
+        tests: taken from as processes have time.
+        jobs: processes; default: one per core.
+        controls: also play the controls of tests.
+
+    Raises:
+        RvmonError: a system cannot be made, or no process be begun.
+    """
+    control = campaign.control.make if campaign.control is not None and controls else None
+    return parallel.execute(
+        tests,
+        partial(player, campaign.robots, campaign.code, control),
+        jobs=jobs or os.cpu_count() or 1,
+        what="test",
+        instead=partial(_without_result, _requirements(campaign)),
+        timeout_s=campaign.timeout_s,
+    )
 
 
 def play_apart(campaign: Campaign, job: Job) -> Outcome:
@@ -88,16 +101,8 @@ def play_apart(campaign: Campaign, job: Job) -> Outcome:
     Raises:
         RvmonError: the system cannot be made, or the process not be begun.
     """
-    alone = replace(campaign, robots={job.robot: campaign.robots[job.robot]})
-    results = parallel.execute(
-        [job],
-        partial(player, alone.robots, None, None),
-        jobs=1,
-        what="test",
-        instead=partial(_without_result, _requirements(alone)),
-        timeout_s=campaign.timeout_s,
-    )
-    with closing(results):
+    alone = replace(campaign, robots={job.robot: campaign.robots[job.robot]}, code=None)
+    with closing(outcomes(alone, [job], jobs=1, controls=False)) as results:
         return next(results)[0]
 
 

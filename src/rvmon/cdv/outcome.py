@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.plan import Job, Plan
 from rvmon.coverage.hits import Hits
+from rvmon.coverage.model import Group
 from rvmon.coverage.record import Ending
 from rvmon.verdict.verdict import Verdict
 
@@ -69,9 +70,13 @@ class Results:
         played: in the order of the plan, whichever process was first.
         seconds: wall time.
         cut_short: why not all tests were played; empty if they were.
+        groups: what was measured beside what the campaign measures.
+        reasons: why items of the coverage model cannot be hit, by group and item.
     """
 
     plan: Plan
     played: tuple[Played, ...]
     seconds: float
     cut_short: str = ""
+    groups: Sequence[Group] = ()
+    reasons: Mapping[tuple[str, str], str] = field(default_factory=dict)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.files import TestError, from_json, to_json
+from rvmon.cdv.files import TestError, from_json, load, to_json
 from rvmon.errors import RvmonError, UnknownNameError
 
 _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
@@ -73,15 +74,45 @@ def plan(
         if name not in campaign.strategies:
             raise UnknownNameError(f"no strategy `{name}`: there are {known}")
     made = {name: _made(campaign, name, tests, seed) for name in strategies or campaign.strategies}
+    _refuse_names(campaign, [test for several in made.values() for test in several])
+    return Plan(campaign, seed, made)
+
+
+def plan_of_folder(campaign: Campaign, folder: str | Path) -> Plan:
+    """The tests of a folder as those of a campaign, such as a suite that was closed before.
+
+    Args:
+        campaign: what it is about.
+        folder: with a `.json` file for each.
+
+    Raises:
+        TestError: there is no test in it, one is none of the campaign, or two have one name.
+    """
+    paths = sorted(Path(folder).glob("*.json"))
+    if not paths:
+        raise TestError(f"{folder}: no test (.json) in this folder: name one that `--out` wrote")
+    tests = [load(path, campaign.test) for path in paths]
+    _refuse_names(campaign, tests)
+    made: dict[str, list[Test]] = {}
+    for test in tests:
+        made.setdefault(test.strategy, []).append(test)
+    return Plan(campaign, 0, made)
+
+
+def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
+    """See that files can be called as tests and robots are.
+
+    Raises:
+        TestError: two tests have one name, or a name is none of a file.
+    """
     seen: set[str] = set()
-    for test in (test for several in made.values() for test in several):
+    for test in tests:
         if test.name.lower() in seen:  # some systems take names for one that differ in case only
             raise TestError(f"two tests are called `{test.name}`: give each a name of its own")
         seen.add(test.name.lower())
-    for name in (*campaign.robots, *(test.name for several in made.values() for test in several)):
+    for name in (*campaign.robots, *(test.name for test in tests)):
         if not _FILE_NAME.fullmatch(name):
             raise TestError(f"`{name}`: a file is called so: use letters, digits, - . + _ only")
-    return Plan(campaign, seed, made)
 
 
 def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:

@@ -1,8 +1,8 @@
-"""The command line of a campaign of tests: `run` plays all, `replay` one, `shrink` shrinks one.
+"""The command line of a campaign of tests: `run` plays all, `replay` one.
 
-Exit codes: 0 all went as expected (a replay: no requirement failed; a test that is shrunk fails),
-1 it did not, 2 wrong input,
-3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
+`shrink` makes one smaller, `close` makes its own. Exit codes: 0 all went as expected (a replay: no
+requirement failed; `close`: all is covered that can be, too; a test that is shrunk fails), 1 it did
+not, 2 wrong input, 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 """
 
 from __future__ import annotations
@@ -65,6 +65,25 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "--strict", action="store_true", help="what is inconclusive or never triggered is a failure"
     )
     run.set_defaults(run=_run)
+    close = commands.add_parser(
+        "close",
+        help="make tests until coverage has no holes",
+        description="Make tests aimed at what is not covered, play and judge them, until all is "
+        "that can be; keep the fewest that cover as much.",
+    )
+    close.add_argument(
+        "--strategy",
+        metavar="NAMES",
+        help=f"draw from, of {', '.join(campaign.strategies)} (default: those of the campaign)",
+    )
+    close.add_argument(
+        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
+    )
+    add_closing_options(close)
+    close.add_argument(
+        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
+    )
+    close.set_defaults(run=_close)
     replay = commands.add_parser(
         "replay",
         help="play one test again",
@@ -89,6 +108,14 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
     )
+    parser.add_argument(
+        "--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'"
+    )
+    add_playing_options(parser)
+
+
+def add_playing_options(parser: argparse.ArgumentParser) -> None:
+    """Declare how tests are played, and where their results go."""
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
     parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
     parser.add_argument(
@@ -122,6 +149,18 @@ def add_shrink_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", metavar="DIR", help="write it there, with a test of pytest that replays it"
     )
+
+
+def add_closing_options(parser: argparse.ArgumentParser) -> None:
+    """Declare when closing gives up, and where the suite goes."""
+    parser.add_argument(
+        "--tests", metavar="N", type=positive, default=400, help="play at most so many (400)"
+    )
+    parser.add_argument(
+        "--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)"
+    )
+    add_playing_options(parser)
+    add_judging_options(parser)
 
 
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
@@ -171,6 +210,17 @@ def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, 
     return names
 
 
+def one_of(named: str | None, known: Sequence[str], what: str) -> str:
+    """Read one name; `None`: the first that there is.
+
+    Raises:
+        UnknownNameError: it does not exist.
+    """
+    if named is not None and named not in known:
+        raise UnknownNameError(f"no {what} `{named}`: there are {', '.join(known)}")
+    return known[0] if named is None else named
+
+
 def judged_by(campaign: Campaign, spec: str | None) -> Campaign:
     """The campaign with other requirements for all of its robots; `None`: as it is."""
     if spec is None:
@@ -209,6 +259,46 @@ def _run(arguments: argparse.Namespace) -> int:
     for what in judgement.wrong:
         warn(f"not as expected: {what}")
     return INTERRUPTED if cut_short else int(bool(judgement.wrong))
+
+
+def _close(arguments: argparse.Namespace) -> int:
+    from rvmon.cdv.gate import refuse_unknown
+
+    refuse_unknown(arguments.campaign)
+    campaign = judged_by(arguments.campaign, arguments.spec)
+    robot = one_of(arguments.robot, tuple(campaign.robots), "robot")
+    if arguments.timeout is not None:
+        campaign = replace(campaign, timeout_s=arguments.timeout)
+    words: list[object] = ["close"]
+    for option in ("robot", "spec", "timeout"):
+        value = getattr(arguments, option)
+        words += [] if value is None else [f"--{option}", value]
+    return close_holes(campaign, robot, arguments, words)
+
+
+def close_holes(
+    campaign: Campaign, robot: str, arguments: argparse.Namespace, words: Sequence[object]
+) -> int:
+    """Close the holes of a campaign and return an exit code.
+
+    Args:
+        campaign: what it is about.
+        robot: of its robots the one that is tested.
+        arguments: those of `add_closing_options`, and `strategy`.
+        words: the command that does it again, and its options but those and `--strategy`.
+    """
+    from rvmon.cdv.execute import INTERRUPTED as BY_HAND
+    from rvmon.cli.campaign_close import conduct_closing
+
+    strategies: Sequence[str] = ()
+    if arguments.strategy is not None:
+        strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+    closed, wrong = conduct_closing(campaign, robot, strategies, arguments, words)
+    for what in wrong:
+        warn(f"not as expected: {what}")
+    if closed.ended == BY_HAND:
+        return INTERRUPTED
+    return int(bool(closed.open or closed.wrong or wrong))
 
 
 def _replay(arguments: argparse.Namespace) -> int:

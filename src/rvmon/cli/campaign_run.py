@@ -7,6 +7,7 @@ from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_files import dated_files, left_over, write_tables, write_tests
@@ -16,7 +17,7 @@ from rvmon.cdv.examples import choose_examples
 from rvmon.cdv.execute import execute
 from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign
 from rvmon.cdv.outcome import Results
-from rvmon.cdv.plan import plan
+from rvmon.cdv.plan import plan, plan_of_folder
 from rvmon.cdv.program import typed
 from rvmon.cdv.run_share import Decision
 from rvmon.cdv.summarise import summarise
@@ -30,6 +31,7 @@ from rvmon.cli.say import say_json, warn
 from rvmon.loading import load
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
+from rvmon.session import Spec
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,16 +81,19 @@ def conduct(
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
     with told("generating tests"):
-        chosen = plan(campaign, strategies, tests=arguments.tests, seed=arguments.seed)
+        if arguments.suite is not None:
+            chosen = plan_of_folder(campaign, arguments.suite)
+        else:
+            chosen = plan(campaign, strategies, tests=arguments.tests, seed=arguments.seed)
     # Wrong requirements, and coverage models, are told before anything is played.
-    specs = {
-        name: load(robot.spec) for name, robot in campaign.robots.items() if robot.spec is not None
-    }
+    specs = specs_of(campaign)
     for name in campaign.robots if folder is not None else ():
         coverage_model(campaign, name)
     planned = len(chosen.jobs())
     command, *others = words
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
+    if arguments.suite is not None:
+        amount = ["--suite", arguments.suite]
     amount += ["--shrink"] if arguments.shrink else []
     again = typed(campaign.program, [command, *amount, *others, "--out", arguments.out])
     kept = None
@@ -98,38 +103,71 @@ def conduct(
             warn(f"{len(kept.played)} of {planned} tests were played before")
     with bar("tests", planned) as tell:
         results = execute(chosen, jobs=arguments.jobs, kept=kept, progress=tell)
-    summary = summarise(results, specs)
-    tables = campaign.presentation.tables(summary)
-    if folder is not None:
-        with told("writing tables"):
-            write_tables(folder, summary, tables, campaign.presentation)
-            write_tests(folder, results)
-            played = frozenset(one.job.test.strategy for one in results.played)
-            campaign.presentation.write_more(folder, played)
-        examples = choose_examples(results.played, every=arguments.pages == "all")
-        with bar("pages", len(examples.jobs)) as tell:
-            otherwise = write_pages(
-                folder,
-                summary,
-                tables,
-                results,
-                again,
-                examples=examples,
-                jobs=arguments.jobs,
-                tell=tell,
-                shrinks=arguments.shrink,
-            )
-        if otherwise:
-            warn(
-                f"played again, these came out otherwise: {', '.join(otherwise)}: a run must "
-                "depend on its test alone, and its random numbers on the test's seed"
-            )
-        if remark := left_over(folder, before):
-            warn(remark)
+    conducted = written(results, specs, folder, arguments, again)
+    if folder is not None and (remark := left_over(folder, before)):
+        warn(remark)
     if kept is not None and results.cut_short:
         warn(f"{kept.path}: the same command plays what is left")
     elif kept is not None:
         kept.path.unlink(missing_ok=True)
+    return conducted
+
+
+def specs_of(campaign: Campaign) -> dict[str, Spec]:
+    """The requirements of its robots, of those that are judged.
+
+    Raises:
+        SpecError: one of the files is wrong.
+    """
+    return {
+        name: load(robot.spec) for name, robot in campaign.robots.items() if robot.spec is not None
+    }
+
+
+def written(
+    results: Results,
+    specs: Mapping[str, Spec],
+    folder: Path | None,
+    arguments: Namespace,
+    again: str,
+) -> Conducted:
+    """Count what came out, and write it to a folder.
+
+    Args:
+        results: of the tests.
+        specs: what judged them.
+        folder: for tables, tests and pages; `None` writes nothing.
+        arguments: those of `add_playing_options`.
+        again: the command that runs the tests again.
+    """
+    campaign = results.plan.campaign
+    summary = summarise(results, specs)
+    tables = campaign.presentation.tables(summary)
+    if folder is None:
+        return Conducted(results, summary, tables)
+    with told("writing tables"):
+        write_tables(folder, summary, tables, campaign.presentation)
+        write_tests(folder, results)
+        played = frozenset(one.job.test.strategy for one in results.played)
+        campaign.presentation.write_more(folder, played)
+    examples = choose_examples(results.played, every=arguments.pages == "all")
+    with bar("pages", len(examples.jobs)) as tell:
+        otherwise = write_pages(
+            folder,
+            summary,
+            tables,
+            results,
+            again,
+            examples=examples,
+            jobs=arguments.jobs,
+            tell=tell,
+            shrinks=arguments.shrink,
+        )
+    if otherwise:
+        warn(
+            f"played again, these came out otherwise: {', '.join(otherwise)}: a run must "
+            "depend on its test alone, and its random numbers on the test's seed"
+        )
     return Conducted(results, summary, tables)
 
 

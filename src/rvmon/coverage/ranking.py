@@ -3,21 +3,46 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Collection
 
 import numpy as np
 
 from rvmon.coverage.answers import Step
 from rvmon.coverage.questions import goals_of, growth, totals
 from rvmon.coverage.record import Coverage
+from rvmon.coverage.smallest import Smallest, smallest
+
+MOST_TESTS = 1000
+"""Tests among which the smallest choice is looked for."""
 
 
-def ranking(coverage: Coverage) -> list[Step]:
+def fewest(coverage: Coverage) -> Smallest:
+    """The fewest tests known that reach the coverage of all.
+
+    Of many tests those of the ranking are taken, and it is not said how many are needed at least.
+    """
+    if len(coverage.entries) > MOST_TESTS:
+        return Smallest(tuple(step.entry for step in ranking(coverage)), 0)
+    goals = goals_of(coverage)
+    rows = [
+        dict(zip(entry.row.items.tolist(), entry.row.counts.tolist(), strict=True))
+        for entry in coverage.entries
+    ]
+    reached = np.flatnonzero(goals.wanted & (totals(coverage).counts >= goals.goal))
+    return smallest(rows, {item: int(goals.goal[item]) for item in reached.tolist()})
+
+
+def ranking(coverage: Coverage, places: Collection[int] | None = None) -> list[Step]:
     """Tests that reach the coverage of all, the one that adds most first.
 
     At every step the test is taken that brings the items nearest to their goals, weighed as in the
-    total; what no number of the tests reaches counts for nothing. The order is the shortest known,
-    not always the shortest there is. A gain can only shrink as others are taken, so that most of
-    them need not be worked out again.
+    total; what no number of the tests reaches counts for nothing. A gain can only shrink as others
+    are taken, so that most of them need not be worked out again.
+
+    Args:
+        coverage: with the tests.
+        places: of those that may be taken, such as the fewest; default: all, of which those that
+            are taken are not always the fewest.
 
     Source: Nemhauser, Wolsey, Fisher, "An analysis of approximations for maximizing submodular set
     functions", 1978; Minoux, "Accelerated greedy algorithms", 1978.
@@ -34,7 +59,10 @@ def ranking(coverage: Coverage) -> list[Step]:
         row = coverage.entries[place].row
         return float(np.dot(np.minimum(row.counts, left[row.items]), worth[row.items]))
 
-    queue = [(-gain(place), place) for place in range(len(coverage.entries))]
+    queue = [
+        (-gain(place), place)
+        for place in (range(len(coverage.entries)) if places is None else places)
+    ]
     heapq.heapify(queue)
     order = []
     while queue:

@@ -220,13 +220,12 @@ def _growth(summary: Summary) -> ET.Element | None:
     for step in order[:OPEN]:
         names += [test_link(summary, step.entry), " "]
     more = f"… and {len(order) - OPEN:,} more" if len(order) > OPEN else None
-    of = f"{len(order):,} of {counted(len(summary.coverage.entries), 'test')}"
     return e(
         "section",
         None,
         e("h2", None, "Growth"),
         growth_chart(summary),
-        e("p", {"class": "order"}, f"{of} cover the same: ", *names, more),
+        e("p", {"class": "order"}, f"{summary.ranking_text()}: ", *names, more),
     )
 
 

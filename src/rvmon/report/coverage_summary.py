@@ -24,8 +24,9 @@ from rvmon.coverage.questions import (
     totals,
     unique,
 )
-from rvmon.coverage.ranking import ranking
+from rvmon.coverage.ranking import fewest, ranking
 from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
+from rvmon.coverage.smallest import Smallest
 from rvmon.report.percent import percent_text
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
@@ -101,9 +102,22 @@ class Summary:
         return unique(self.coverage, self.totals.counts)
 
     @cached_property
+    def fewest(self) -> Smallest:
+        """The fewest tests known that cover as much."""
+        return fewest(self.coverage)
+
+    @cached_property
     def ranking(self) -> Sequence[Step]:
         """A short order of tests that cover as much."""
-        return ranking(self.coverage)
+        return ranking(self.coverage, self.fewest.places)
+
+    def ranking_text(self) -> str:
+        """How many tests cover as much, and whether fewer might."""
+        count, least = len(self.ranking), self.fewest.at_least
+        text = f"{count:,} of {counted(len(self.coverage.entries), 'test')} cover the same"
+        if least >= count:
+            return f"{text}, no fewer do"
+        return f"{text}, at least {least:,} are needed" if least else text
 
     @cached_property
     def comparison(self) -> Comparison | None:

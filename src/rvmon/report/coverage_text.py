@@ -124,10 +124,8 @@ def print_tests(summary: Summary, console: Console) -> None:
         )
     console.print(table)
     console.print("alone: items that no other test covers", style="dim")
-    order = summary.ranking
-    names = [summary.record(step.entry).name for step in order]
-    of = counted(len(summary.coverage.entries), "test")
-    console.print(f"{len(order):,} of {of} cover the same: {_first_of(names, SHOWN)}")
+    names = [summary.record(step.entry).name for step in summary.ranking]
+    console.print(f"{summary.ranking_text()}: {_first_of(names, SHOWN)}")
 
 
 def _groups(summary: Summary, console: Console) -> Table:

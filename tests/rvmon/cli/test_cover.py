@@ -97,7 +97,7 @@ def test_tests_with_what_they_added(door, capsys, monkeypatch):
     """Each test's part, and a short order; a narrow terminal has the same in fewer columns."""
     _, lines = shown(capsys, door, "--tests")
     assert "calm-2 random completed 1 33 % near: touch," in lines
-    assert lines[-1] == "3 of 4 tests cover the same: calm-2, wild-2, wild-1"
+    assert lines[-1] == "3 of 4 tests cover the same, no fewer do: calm-2, wild-2, wild-1"
     monkeypatch.setenv("COLUMNS", "40")
     main(["cover", door, "--tests", "--bins", "--holes"])
     lines = capsys.readouterr().out.splitlines()

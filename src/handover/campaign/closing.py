@@ -1,0 +1,136 @@
+"""How the campaign of handovers closes its holes: by the model, and what no test can show."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from msgspec import structs
+
+from handover.generator.model_based import ACTIONS, PROJECTED, instantiate
+from handover.generator.out_of_turn import out_of_turn
+from handover.model import handover_network
+from rvmon.cdv.close.witnesses import EDGES
+from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
+
+if TYPE_CHECKING:
+    from handover.generator.abstract_test import AbstractTest
+    from rvmon.cdv.template import Template
+
+STATES = {
+    "reset": "reset",
+    "recv1": "receive_activation",
+    "move": "move",
+    "carry": "move",
+    "send": "send_signal",
+    "recv2": "receive_readiness",
+    "sense": "sense",
+    "decide": "decide",
+    "release": "release",
+    "done": "done",
+}
+"""The robot's states by the locations of the model's robot."""
+
+_READ = {"yes": "OK", "no": "BAD"}
+_OUTCOMES = {"given": "released", "kept": "withheld", "gave_up": "timedOut"}
+_ALL_OK = "gazeRead == OK and pressureRead == OK and locationRead == OK"
+_SENSED_IN_PART = ("robot: sense → done", "robot: reading → sense", "sensors: avail → idle")
+_CLAIMS = {
+    # Released within 2.65 s, so never in the last tenth of the 3 s.
+    "R1": f"robot.decide and {_ALL_OK} -->[<=53] released",
+    # Decided or given up within 26.95 s, so never in the last tenth of the 30 s.
+    "R3": "robot.recv2 -->[<=539] (robot.judged or timedOut)",
+}
+
+
+def closing() -> Closing:
+    """What the campaign knows of its own holes."""
+    return Closing(
+        strategies=("pseudorandom", "constrained", "disturbed"),
+        fixed=("horizon_s", "faults.noise_m"),
+        biased=out_of_turn,
+        model=ClosingModel(
+            network=handover_network,
+            automata=PROJECTED,
+            actions=ACTIONS,
+            make=_test,
+            query=query_of,
+            automaton="robot",
+            states=STATES,
+            robots=("correct",),
+        ),
+        unreachable=UNREACHABLE,
+    )
+
+
+def _test(template: Template[Any], seed: int) -> AbstractTest:
+    """A test of a run of the model, whose signals are not lost: it is to show that run."""
+    return structs.replace(instantiate(template, seed), startup_loss=False)
+
+
+def query_of(group: str, item: str) -> str:
+    """What the model is asked about an item of the coverage model; empty: it knows nothing of it.
+
+    >>> query_of("ending", "kept")
+    'E<> withheld'
+    """
+    if group == "situation":
+        gaze, pressure, location, outcome = item.split(" × ")
+        return (
+            f"E<> gazeRead == {_READ[gaze]} and pressureRead == {_READ[pressure]} "
+            f"and locationRead == {_READ[location]} and {_OUTCOMES[outcome]}"
+        )
+    if group == EDGES and item in _SENSED_IN_PART:
+        # The shortest run has a human of whom nothing is sensed; one who turns away is seen to.
+        return "E<> robot.done and timedOut and pressureRead == OK"
+    if group == "ending":
+        return f"E<> {_OUTCOMES[item]}"
+    if item in ("just before the deadline", "at the deadline"):
+        return _CLAIMS.get(group, "")
+    return ""
+
+
+_ONLY_LEGACY = "only the legacy robot does so"
+_IN_SIGHT = "the world's camera always sees the piece"
+_HELD = "a hand that holds the piece is near it: with pressure right, location is right"
+_NO_DELAY = "the robot takes time from what it is told to what it does about it"
+_POLLS = "the robot gives up after many polls, never at the first"
+
+UNREACHABLE = tuple(
+    Unreachable(group, item, reason, robot="correct")
+    for reason, places in {
+        _ONLY_LEGACY: [
+            ("", "if not self.behaviour.resubscribes: → self.gripper.open()"),
+            ("", 'if not self.behaviour.shared_polls: → return "move"'),
+            ("", 'limit = self.node.params["timeout_time"]'),
+            ("", "elapsed = self.node.now() - self.informed_at"),
+            ("statements of common", "self.node.subscribe(HUMAN_SIGNALS)"),
+            ("branches of common", "self.node.subscribe(HUMAN_SIGNALS)"),
+        ],
+        _IN_SIGHT: [("", 'return self.give_up("no piece in sight")')],
+        "there is no way to `decide` but with a reading": [
+            ("", 'self.outcome = "not released: nothing was sensed"')
+        ],
+        _HELD: [
+            ("situation", "yes × yes × no × kept"),
+            ("situation", "no × yes × no × kept"),
+            ("R1", "`location_ok` decides"),
+            ("R2", "`location_ok` decides"),
+        ],
+        "readings and `sensed` are of one instant": [("R1", "`sensed` decides")],
+        _NO_DELAY: [(f"`{name}` edges", "start → P") for name in ("R1", "R3", "R4")],
+        _POLLS: [
+            ("pairs of transitions", "reset → receive_activation → done"),
+            ("pairs of transitions", "send_signal → receive_readiness → done"),
+            ("pairs of transitions", "receive_readiness → sense → done"),
+        ],
+        "the robot is ready before the human can have sent a signal": [
+            ("pairs of transitions", "reset → receive_activation → move")
+        ],
+        "no test of the model's human disturbs planner or piece": [
+            (EDGES, "robot: move → done"),
+            (EDGES, "robot: carry → done"),
+        ],
+    }.items()
+    for group, item in places
+)
+"""What no test of the correct robot can show: a test that does is an error of this list."""

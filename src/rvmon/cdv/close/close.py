@@ -1,0 +1,181 @@
+"""Generate, play, look at what is missing, aim at it: until nothing is, or the budget is out."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.close.goals import Goals, argued_goals
+from rvmon.cdv.close.outcome import Added, Closed
+from rvmon.cdv.close.propose import Proposer
+from rvmon.cdv.close.witnesses import Witnesses
+from rvmon.cdv.coverage import coverage_model
+from rvmon.cdv.execute import INTERRUPTED, outcomes
+from rvmon.cdv.outcome import Played
+from rvmon.cdv.plan import Job
+from rvmon.coverage.model import model_of
+from rvmon.coverage.record import Ending
+from rvmon.coverage.smallest import Smallest, smallest
+from rvmon.verdict.verdict import Verdict
+
+BATCH = 4
+"""Tests that are played before anything is learned from them, whatever the number of processes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """When to give up.
+
+    Attributes:
+        tests: that are played at most.
+        seconds: after which no further ones are begun; `None`: any number.
+    """
+
+    tests: int = 400
+    seconds: float | None = None
+
+
+Progress = Callable[[int, int], None]
+"""Called with the number of goals that are met, and that of all."""
+
+
+def close(
+    campaign: Campaign,
+    robot: str,
+    *,
+    seed: int = 1,
+    strategies: Sequence[str] = (),
+    budget: Budget = Budget(),
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> Closed:
+    """Close the holes of a campaign's coverage, beginning with nothing.
+
+    Tests are played in small batches; each is aimed at something that is open: by a run of the
+    campaign's model, if it has one and the model says how to get there; else by a change of a test
+    that came near, or by a new one of a strategy, whichever has paid so far. The same seed gives
+    the same tests on any number of processes, if seconds do not end it.
+
+    Args:
+        campaign: what is tested.
+        robot: of its robots the one that is.
+        seed: everything follows from it.
+        strategies: tests are drawn from; default: those that the campaign closes with.
+        budget: when to give up.
+        jobs: processes; default: one per core.
+        progress: told how far it is.
+
+    Raises:
+        TestError: a test cannot be made, or played.
+        UnknownNameError: the campaign calls something unreachable that there is not.
+        RvmonError: a specification is wrong, or a system cannot be made.
+
+    Source: Fine and Ziv, Coverage Directed Test Generation for Functional Verification using
+    Bayesian Networks, DAC 2003 (closing the loop from coverage to generation); Zalewski, American
+    Fuzzy Lop, 2014 (changing what came nearest); Blom, Hessel, Jonsson, Pettersson, FATES 2004
+    (tests from runs of a timed model).
+    """
+    begun = time.monotonic()
+    campaign = replace(campaign, robots={robot: campaign.robots[robot]})
+    model = campaign.closing.model
+    describes = model is not None and robot in (model.robots or campaign.robots)
+    witnesses = None if model is None else Witnesses(model, describes=describes)
+    goals = _goals(campaign, robot, witnesses)
+    names = strategies or campaign.closing.strategies or tuple(campaign.strategies)
+    proposer = Proposer(campaign, robot, goals, names, seed, witnesses)
+    tests: list[Added] = []
+    waiting = _Waiting()
+    ended = ""
+    try:
+        with closing(outcomes(campaign, waiting, jobs=jobs, controls=False)) as results:
+            while goals.open and not ended:
+                proposals = proposer.batch(min(BATCH, budget.tests - len(tests)))
+                waiting.jobs.extend(Job(one.test, robot) for one in proposals)
+                for proposal in proposals:
+                    outcome, _ = next(results)
+                    if witnesses is not None and proposal.witness is not None:
+                        shown = witnesses.shown(proposal.witness, outcome.hits)
+                        outcome = replace(outcome, hits={**outcome.hits, **shown})
+                    played = Played(Job(proposal.test, robot), outcome)
+                    added = goals.add(proposal.test.name, outcome.hits)
+                    proposer.tell(proposal, played, added=bool(added))
+                    tests.append(Added(played, proposal.origin, added, goals.met))
+                    if progress is not None:
+                        progress(goals.met, goals.met + len(goals.open))
+                if not proposals and goals.open:
+                    ended = "no further test can be made"
+                elif len(tests) >= budget.tests:
+                    ended = f"after {budget.tests} tests"
+                elif budget.seconds is not None and time.monotonic() - begun > budget.seconds:
+                    ended = f"after {budget.seconds:g} s"
+    except KeyboardInterrupt:
+        ended = INTERRUPTED
+    found = _smallest(tests, goals)
+    kept = {*found.places, *_gone_wrong(tests)}
+    return Closed(
+        tests=tests,
+        suite=[one.played for place, one in enumerate(tests) if place in kept],
+        needed=len(found.places),
+        fewest=found.at_least,
+        goals=goals.met + len(goals.open),
+        proved=goals.proved,
+        argued={goal: why for goal, why in goals.argued.items() if goal not in goals.proved},
+        open=goals.open,
+        wrong=goals.wrong,
+        groups=() if witnesses is None else witnesses.groups,
+        seconds=time.monotonic() - begun,
+        ended=ended if goals.open else "",
+    )
+
+
+class _Waiting(Iterator[Job]):
+    """Tests to be played; there may be more after it was empty, as each batch follows the last."""
+
+    def __init__(self) -> None:
+        self.jobs: deque[Job] = deque()
+
+    def __next__(self) -> Job:
+        if not self.jobs:
+            raise StopIteration
+        return self.jobs.popleft()
+
+
+def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals:
+    model = coverage_model(campaign, robot)
+    if witnesses is not None:
+        model = model_of([*model.groups.values(), *witnesses.groups])
+    unreachable = [one for one in campaign.closing.unreachable if one.robot in ("", robot)]
+    return Goals(model, argued_goals(unreachable, model, campaign.code))
+
+
+def _smallest(tests: Sequence[Added], goals: Goals) -> Smallest:
+    """The fewest tests known that meet as much."""
+    sought = goals.sought
+    places = {goal: place for place, goal in enumerate(sought)}
+    rows = [
+        {
+            places[group, item]: hit.count
+            for group, items in one.played.outcome.hits.items()
+            for item, hit in items.items()
+            if (group, item) in places
+        }
+        for one in tests
+    ]
+    return smallest(rows, {places[goal]: count for goal, count in sought.items()})
+
+
+def _gone_wrong(tests: Sequence[Added]) -> Iterator[int]:
+    """The first test that went wrong in each way."""
+    seen: set[str] = set()
+    for place, one in enumerate(tests):
+        outcome = one.played.outcome
+        ways = {name for name, verdict in outcome.verdicts.items() if verdict is Verdict.FAIL}
+        ways |= {illegal.partition(" at ")[0] for illegal in outcome.illegal}
+        ways |= {outcome.ending} - {Ending.COMPLETED}
+        if ways - seen:
+            seen |= ways
+            yield place

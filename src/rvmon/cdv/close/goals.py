@@ -1,0 +1,146 @@
+"""What is to be shown, what of it was, and what cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from rvmon.cdv.close.nearest import Goal
+from rvmon.cdv.closing import Unreachable
+from rvmon.cdv.code import Code
+from rvmon.coverage.hits import Hits
+from rvmon.coverage.model import Model, Subject
+from rvmon.errors import UnknownNameError
+from rvmon.spec.checked.goals import BinKind
+
+_CODE = (Subject.STATEMENTS, Subject.BRANCHES)
+_ARROW = " → "
+
+
+class Goals:
+    """The items of a coverage model that are to be hit, and how often they were.
+
+    Args:
+        model: what there is to be covered.
+        argued: why some of it cannot be, by item.
+
+    Attributes:
+        model: as it was given.
+        wanted: how often each item is to be hit.
+        proved: the query that proves an item to be unreachable, by item.
+        argued: as it was given.
+        wrong: unreachable items that were hit all the same, with the test that hit them first.
+    """
+
+    def __init__(self, model: Model, argued: Mapping[Goal, str]) -> None:
+        self.model = model
+        self.wanted: dict[Goal, int] = {
+            (group.name, item.name): item.goal
+            for group in model.groups.values()
+            if group.weight
+            for item in group.items.values()
+            if item.kind is BinKind.GOAL
+        }
+        self.argued = {goal: why for goal, why in argued.items() if goal in self.wanted}
+        self.proved: dict[Goal, str] = {}
+        self.wrong: dict[Goal, str] = {}
+        self._counts: dict[Goal, int] = {}
+
+    @property
+    def sought(self) -> dict[Goal, int]:
+        """How often each item is to be hit of those that can be, as far as anybody knows."""
+        return {goal: count for goal, count in self.wanted.items() if not self._is_out(goal)}
+
+    @property
+    def open(self) -> list[Goal]:
+        """What is sought and was not hit as often as it is to be; in the model's order."""
+        return [goal for goal in self.sought if not self.is_met(goal)]
+
+    @property
+    def met(self) -> int:
+        """How many of those that are sought were."""
+        return sum(map(self.is_met, self.sought))
+
+    def is_met(self, goal: Goal) -> bool:
+        """Whether an item was hit as often as it is to be."""
+        return self._counts.get(goal, 0) >= self.wanted[goal]
+
+    def _is_out(self, goal: Goal) -> bool:
+        """Whether an item cannot be hit, as it is proved or said."""
+        return goal in self.proved or goal in self.argued
+
+    def add(self, test: str, hits: Hits) -> list[Goal]:
+        """Count what a test hit, and return what was met with it for the first time."""
+        added = []
+        for group, items in hits.items():
+            for item, hit in items.items():
+                goal = group, item
+                if goal not in self.wanted:
+                    continue
+                before = self.is_met(goal)
+                self._counts[goal] = self._counts.get(goal, 0) + hit.count
+                if self._is_out(goal):
+                    self.wrong.setdefault(goal, test)
+                elif self.is_met(goal) and not before:
+                    added.append(goal)
+        return added
+
+
+def argued_goals(
+    unreachable: Sequence[Unreachable], model: Model, code: Code | None
+) -> dict[Goal, str]:
+    """The items of a model that a campaign calls unreachable, each with the reason.
+
+    Args:
+        unreachable: what it says.
+        model: what there is to be covered.
+        code: that is measured.
+
+    Raises:
+        UnknownNameError: nothing in the model is called so.
+    """
+    texts = {} if code is None else _texts(code)
+    found: dict[Goal, str] = {}
+    for one in unreachable:
+        goals = [*_goals_of(one, model, texts)]
+        if not goals:
+            place = f"{one.group}: {one.item}" if one.group else f"code `{one.item}`"
+            raise UnknownNameError(
+                f"the campaign calls unreachable what there is not: {place}: nothing that is "
+                "measured is called so; take it out of `Closing.unreachable`"
+            )
+        found |= dict.fromkeys(goals, one.reason)
+    return found
+
+
+def _goals_of(
+    one: Unreachable, model: Model, texts: Mapping[str, Mapping[str, str]]
+) -> Iterable[Goal]:
+    if one.item in getattr(model.groups.get(one.group), "items", ()):
+        yield one.group, one.item
+        return
+    source, _, target = one.item.rpartition(_ARROW)
+    for group in model.groups.values():
+        if group.subject not in _CODE or one.group not in ("", group.name):
+            continue
+        lines = texts[group.name.partition(" of ")[2]]
+        for item in group.items:
+            first, _, last = item.rpartition(_ARROW)
+            if lines.get(last) == target and (not source or lines.get(first) == source):
+                yield group.name, item
+
+
+def _texts(code: Code) -> dict[str, dict[str, str]]:
+    """The text of each line of each block, by the name of the block and the line's number."""
+    files = {
+        path: Path(path).read_text(encoding="utf-8").splitlines()
+        for path in {block.path for block in code.blocks}
+    }
+    return {
+        block.name: {
+            str(number): files[block.path][number - 1].strip()
+            for number in block.lines
+            if number <= len(files[block.path])
+        }
+        for block in code.blocks
+    }

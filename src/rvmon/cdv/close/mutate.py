@@ -1,0 +1,306 @@
+"""A test changed a little, by the types of its fields: whatever is made is a test of that type."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import msgspec
+from msgspec import inspect
+
+from rvmon.cdv.abstract_test import Test
+from rvmon.cdv.close.learned import Draw, Learned
+
+ATTEMPTS = 50
+"""Changes that are tried until one gives a test: types say not all that tests demand."""
+
+CHANGES = (1, 1, 2, 3)
+"""How many there are at once."""
+
+_KEPT = frozenset({"name", "strategy", "text", "robot", "mutation", "expected"})
+"""What a test says of itself."""
+
+DEEPEST = 5
+"""Structures within structures that are looked into."""
+
+_SPREAD = 100.0
+"""Numbers without a bound are drawn up to here."""
+
+_SEEDS = 1 << 32
+
+
+class Mutator:
+    """Changes tests of one type.
+
+    Args:
+        kind: the type.
+        fixed: fields that stay as they are.
+        learned: which changes have paid.
+    """
+
+    def __init__(self, kind: type[Test], fixed: Collection[str], learned: Learned) -> None:
+        described = inspect.type_info(kind)
+        assert isinstance(described, inspect.StructType)  # noqa: S101 - as all tests
+        self._kind = kind
+        self._learned = learned
+        self._type = described
+        self._fixed = fixed
+        self._fields = [
+            field
+            for field in described.fields
+            if field.name not in (*fixed, *_KEPT)
+            and _can_change(field.type)
+            and not described.array_like
+        ]
+
+    def mutated(
+        self, test: Test, others: Sequence[Test], rng: random.Random, drawn: list[Draw]
+    ) -> Test | None:
+        """A test with up to three changes; `None` if none was found.
+
+        Args:
+            test: is changed.
+            others: lend values.
+            rng: draws.
+            drawn: gets the choices that made it.
+        """
+        for _ in range(ATTEMPTS if self._fields else 0):
+            choices: list[Draw] = []
+            value = _built(test, self._type)
+            for _ in range(rng.choice(CHANGES)):
+                field = self._learned.choose(rng, "field", self._places(value), choices)
+                lent = _built(rng.choice(others), self._type) if others else value
+                found = self._type_of(field)
+                value[field] = (
+                    rng.randrange(_SEEDS)
+                    if field == "seed"
+                    else self._changed(value[field], found, lent[field], field, rng, choices)
+                )
+            try:
+                made = msgspec.convert(value, self._kind)
+            except msgspec.ValidationError:
+                continue
+            if made != test:
+                drawn.extend(choices)
+                return made
+        return None
+
+    def _places(self, value: Mapping[str, Any]) -> list[str]:
+        """The fields that can be changed, sequences as often as they have elements."""
+        sizes = {
+            name: len(whole) if isinstance(whole := value[name], list | tuple) else 1
+            for name in (field.encode_name for field in self._fields)
+        }
+        return [name for name, size in sizes.items() for _ in range(max(1, size))]
+
+    def _type_of(self, name: str) -> inspect.Type:
+        return next(field.type for field in self._fields if field.encode_name == name)
+
+    def _changed(
+        self,
+        value: Any,
+        kind: inspect.Type,
+        lent: Any,
+        path: str,
+        rng: random.Random,
+        drawn: list[Draw],
+    ) -> Any:
+        """A value with one change.
+
+        Args:
+            value: as plain data.
+            kind: its type.
+            lent: the value at the same place of another test.
+            path: that place, the same for all elements of a sequence.
+            rng: draws.
+            drawn: gets the choices.
+        """
+        match kind:
+            case inspect.StructType():
+                fields = [
+                    field
+                    for field in kind.fields
+                    if f"{path}.{field.name}" not in self._fixed and _can_change(field.type)
+                ]
+                if not fields:
+                    return value
+                names = [field.encode_name for field in fields]
+                name = self._learned.choose(rng, path, names, drawn)
+                of = next(field.type for field in fields if field.encode_name == name)
+                whole = _filled(value, kind)
+                beside = _filled(lent, kind) if isinstance(lent, dict) else whole
+                inner = beside.get(name, whole[name])
+                new = self._changed(whole[name], of, inner, f"{path}.{name}", rng, drawn)
+                return {**whole, name: new}
+            case inspect.VarTupleType() | inspect.ListType():
+                others = list(lent) if isinstance(lent, list | tuple) else []
+                return self._sequence(list(value), kind.item_type, others, path, rng, drawn)
+            case inspect.UnionType():
+                own = _member(value, kind)
+                if own is not None and _can_change(own) and rng.random() < 0.5:
+                    return self._changed(value, own, lent, path, rng, drawn)
+                options = [one for one in kind.types if _can_make(one)]
+                return self._fresh(rng.choice(options), path, rng, drawn) if options else value
+            case inspect.IntType() | inspect.FloatType() if rng.random() < 0.5:
+                return _near(value, kind, rng)
+            case _:
+                return self._fresh(kind, path, rng, drawn)
+
+    def _sequence(
+        self,
+        values: list[Any],
+        kind: inspect.Type,
+        lent: list[Any],
+        path: str,
+        rng: random.Random,
+        drawn: list[Draw],
+    ) -> list[Any]:
+        """A sequence with an element more, less, moved or changed, or with a tail of another."""
+        ways = ["insert", *(["borrow", "tail"] if lent else [])]
+        ways += ["remove", "move", *["change"] * len(values)] if values else []
+        way = self._learned.choose(rng, f"{path}[]", ways, drawn)
+        place = rng.randrange(len(values) + (way in ("insert", "borrow", "tail")))
+        match way:
+            case "insert":
+                values.insert(place, self._fresh(kind, f"{path}[]", rng, drawn))
+            case "borrow":
+                values.insert(place, rng.choice(lent))
+            case "tail":
+                return values[:place] + lent[rng.randrange(len(lent)) :]
+            case "remove":
+                del values[place]
+            case "move":
+                values.insert(rng.randrange(len(values)), values.pop(place))
+            case _:
+                other = rng.choice(lent) if lent else values[place]
+                values[place] = self._changed(values[place], kind, other, f"{path}[]", rng, drawn)
+        return values
+
+    def _fresh(self, kind: inspect.Type, path: str, rng: random.Random, drawn: list[Draw]) -> Any:
+        """Any value of a type."""
+        match kind:
+            case inspect.NoneType():
+                return None
+            case inspect.BoolType():
+                return self._learned.choose(rng, path, [False, True], drawn)
+            case inspect.LiteralType():
+                return self._learned.choose(rng, path, list(kind.values), drawn)
+            case inspect.EnumType():
+                options = [one.value for one in kind.cls]
+                return self._learned.choose(rng, path, options, drawn)
+            case inspect.IntType() | inspect.FloatType():
+                return _number(kind, rng)
+            case inspect.StructType():
+                made = {
+                    field.encode_name: self._fresh(
+                        field.type, f"{path}.{field.encode_name}", rng, drawn
+                    )
+                    for field in kind.fields
+                    if _can_make(field.type)
+                }
+                return {kind.tag_field: kind.tag, **made} if kind.tag_field else made
+            case inspect.UnionType():
+                options = [one for one in kind.types if _can_make(one)]
+                return self._fresh(rng.choice(options), path, rng, drawn)
+            case inspect.VarTupleType() | inspect.ListType():
+                few = range(rng.randint(0, 1))
+                return [self._fresh(kind.item_type, f"{path}[]", rng, drawn) for _ in few]
+            case _:
+                return ""
+
+
+def _can_make(kind: inspect.Type, depth: int = 0) -> bool:
+    """Whether values of a type can be drawn."""
+    match kind:
+        case inspect.UnionType():
+            return any(_can_make(one, depth) for one in kind.types)
+        case inspect.StructType():
+            needed = [field.type for field in kind.fields if field.required]
+            # A structure may be part of itself.
+            return (
+                not kind.array_like
+                and depth < DEEPEST
+                and all(_can_make(one, depth + 1) for one in needed)
+            )
+        case inspect.VarTupleType() | inspect.ListType():
+            return _can_make(kind.item_type, depth)
+        case _:
+            return isinstance(
+                kind,
+                inspect.NoneType
+                | inspect.BoolType
+                | inspect.LiteralType
+                | inspect.EnumType
+                | inspect.IntType
+                | inspect.FloatType,
+            )
+
+
+def _can_change(kind: inspect.Type, depth: int = 0) -> bool:
+    """Whether values of a type can be changed: a text has no neighbours that mean anything."""
+    if isinstance(kind, inspect.StructType):
+        inner = (_can_change(field.type, depth + 1) for field in kind.fields)
+        return not kind.array_like and depth < DEEPEST and any(inner)
+    return not isinstance(kind, inspect.NoneType) and _can_make(kind, depth)
+
+
+def _built(test: Test, kind: inspect.StructType) -> dict[str, Any]:
+    """A test as plain data, with what has its default."""
+    return _filled(msgspec.to_builtins(test), kind)
+
+
+def _filled(value: Mapping[str, Any], kind: inspect.StructType) -> dict[str, Any]:
+    """A structure as plain data, with what has its default and was left out."""
+    whole = dict(value)
+    for field in kind.fields:
+        if field.encode_name not in whole and not field.required:
+            made = field.default
+            if made is msgspec.NODEFAULT:
+                made = field.default_factory() if callable(field.default_factory) else None
+            whole[field.encode_name] = msgspec.to_builtins(made)
+    return whole
+
+
+def _member(value: Any, kind: inspect.UnionType) -> inspect.Type | None:
+    """The member of a union that a structure or a sequence is of."""
+    for one in kind.types:
+        match one:
+            case inspect.StructType() if isinstance(value, dict):
+                if not one.tag_field or value.get(one.tag_field) == one.tag:
+                    return one
+            case inspect.VarTupleType() | inspect.ListType() if isinstance(value, list | tuple):
+                return one
+    return None
+
+
+def _bounds(kind: inspect.IntType | inspect.FloatType) -> tuple[float | None, float | None]:
+    low = kind.ge if kind.ge is not None else kind.gt
+    high = kind.le if kind.le is not None else kind.lt
+    return low, high
+
+
+def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
+    """A number within the bounds of its type: small ones as often as large ones."""
+    low, high = _bounds(kind)
+    spread: float = _SPREAD ** rng.random()
+    if low is None and high is None:
+        found = rng.uniform(-1, 1) * spread
+    elif high is None or low is None:
+        sign, start = (1, low) if high is None else (-1, high)
+        assert start is not None  # noqa: S101 - one of both is
+        found = start + sign * rng.uniform(0, spread)
+    else:
+        found = low + (high - low) * rng.random() * rng.choice((1.0, rng.random()))
+    return round(found) if isinstance(kind, inspect.IntType) else found
+
+
+def _near(value: float, kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
+    """A number near another one, within the bounds of its type."""
+    low, high = _bounds(kind)
+    found = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
+    if isinstance(kind, inspect.IntType):
+        found = round(found) if round(found) != value else value + rng.choice((-1, 1))
+    above = found if low is None else max(found, low)
+    nearby: float = above if high is None else min(above, high)
+    return nearby

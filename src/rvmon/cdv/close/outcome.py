@@ -1,0 +1,71 @@
+"""What came of closing a campaign: data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rvmon.cdv.close.nearest import Goal
+from rvmon.cdv.outcome import Played
+from rvmon.coverage.model import Group
+
+
+@dataclass(frozen=True, slots=True)
+class Added:
+    """A test and what it was good for.
+
+    Attributes:
+        played: the test with its outcome.
+        origin: how it was made, in words.
+        goals: what was met with it for the first time.
+        met: how many goals were met with it and those before.
+    """
+
+    played: Played
+    origin: str
+    goals: Sequence[Goal]
+    met: int
+
+
+@dataclass(frozen=True, slots=True)
+class Closed:
+    """A campaign whose holes were looked for.
+
+    Attributes:
+        tests: that were played, in order.
+        suite: of these the fewest known that meet as much, and one for all that went wrong.
+        needed: how many of them there are for what they meet.
+        fewest: no suite that meets as much has fewer; `needed` if it is known to be the smallest.
+        goals: how many there are, without those that cannot be met.
+        proved: goals that cannot be met, each with the query that the model answers so.
+        argued: those of which the campaign says so, each with its reason.
+        open: what no test met.
+        wrong: goals that cannot be met, as it is said, and that a test met, with its name.
+        groups: what was measured beside what the campaign measures.
+        seconds: that it took.
+        ended: why it ended with open goals; empty if there is none.
+    """
+
+    tests: Sequence[Added]
+    suite: Sequence[Played]
+    needed: int
+    fewest: int
+    goals: int
+    proved: Mapping[Goal, str]
+    argued: Mapping[Goal, str]
+    open: Sequence[Goal]
+    wrong: Mapping[Goal, str]
+    groups: Sequence[Group]
+    seconds: float
+    ended: str
+
+    @property
+    def met(self) -> int:
+        """How many goals were met."""
+        return self.goals - len(self.open)
+
+    @property
+    def reasons(self) -> dict[Goal, str]:
+        """Why goals cannot be met, in words."""
+        proofs = {goal: f"unreachable: proved: {query}" for goal, query in self.proved.items()}
+        return {**proofs, **self.argued}

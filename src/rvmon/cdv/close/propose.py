@@ -1,0 +1,263 @@
+"""Which test is played next: a witness of the model, a change of the nearest test, or a new one."""
+
+from __future__ import annotations
+
+import heapq
+import random
+from collections import Counter, defaultdict
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import count
+from typing import TypeVar
+
+from msgspec import structs
+
+from rvmon.cdv.abstract_test import Test
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.close.goals import Goals
+from rvmon.cdv.close.learned import Draw, Learned
+from rvmon.cdv.close.mutate import Mutator
+from rvmon.cdv.close.nearest import Goal, nearness
+from rvmon.cdv.close.witnesses import Proof, Witness, Witnesses
+from rvmon.cdv.files import TestError, from_json, to_json
+from rvmon.cdv.outcome import Played
+from rvmon.cdv.plan import plan
+from rvmon.coverage.model import Subject
+from rvmon.errors import RvmonError
+
+_Option = TypeVar("_Option", bound=Hashable)
+
+STRATEGY = "closed"
+"""That of all tests that are made to close holes."""
+
+WITNESSES = 2
+"""Tests of one run of the model, each with other times."""
+
+DRAWN = 32
+"""Tests that a strategy makes at a time."""
+
+ASKED = 8
+"""Goals that are tried for each test, while none can be made."""
+
+NEAREST = 3
+"""Tests of which one is changed."""
+
+_SPECIFIC_FIRST = (Subject.CROSS, Subject.COVERPOINT, Subject.GOAL, Subject.REQUIREMENT)
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """A test to be played.
+
+    Attributes:
+        test: itself.
+        origin: how it was made, in words.
+        goal: what it is aimed at.
+        drawn: the choices that made it.
+        witness: the run of the model that it follows.
+    """
+
+    test: Test
+    origin: str
+    goal: Goal
+    drawn: Sequence[Draw] = ()
+    witness: Witness | None = None
+
+
+class Proposer:
+    """Proposes tests, each aimed at what is open.
+
+    Args:
+        campaign: with its strategies.
+        robot: that is tested.
+        goals: what is open.
+        strategies: those that tests are drawn from.
+        seed: all follows from it, and from what was told.
+        witnesses: of the campaign's model.
+    """
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        robot: str,
+        goals: Goals,
+        strategies: Sequence[str],
+        seed: int,
+        witnesses: Witnesses | None,
+    ) -> None:
+        self._goals = goals
+        self._witnesses = witnesses
+        self._rng = random.Random(f"close/{seed}")  # noqa: S311 - repeatable, not secret
+        self._learned = Learned()
+        self._mutator = Mutator(campaign.test, campaign.closing.fixed, self._learned)
+        self._streams = {
+            name: _stream(campaign, name, robot, self._rng.getrandbits(32)) for name in strategies
+        }
+        self._campaign = campaign
+        self._made = 0
+        self._tests: list[Played] = []
+        self._draws: dict[str, Sequence[Draw]] = {}
+        self._tries: Counter[Goal] = Counter()
+        self._nearness: defaultdict[Goal, float] = defaultdict(float)
+        self._followed: Counter[str] = Counter()
+
+    def batch(self, size: int) -> list[Proposal]:
+        """So many tests, or fewer if nothing is open; each is aimed at something else if it can be.
+
+        Raises:
+            TestError: a test cannot be made, or not be written to a file.
+            ModelError: what the campaign asks its model about an item is no query.
+        """
+        made: list[Proposal] = []
+        aimed: set[Goal] = set()
+        for _ in range(ASKED * size):
+            goals = self._goals.open
+            if len(made) == size or not goals:
+                break
+            goal = min(goals, key=lambda one: (one in aimed, self._tries[one], self._rank(one)))
+            self._tries[goal] += 1
+            aimed.add(goal)
+            proposal = self._following(goal)
+            if proposal is None and goal not in self._goals.proved:
+                proposal = self._by_chance(goal)
+            if proposal is not None:
+                made.append(proposal)
+        return made
+
+    def tell(self, proposal: Proposal, played: Played, *, added: bool) -> None:
+        """Learn what became of a test: one that came nearer to its goal than all before paid, too.
+
+        Args:
+            proposal: of it.
+            played: its outcome.
+            added: whether it met something that was open.
+        """
+        near = nearness(proposal.goal, played.outcome.hits, self._goals.model)
+        is_nearer = near > self._nearness[proposal.goal]
+        self._nearness[proposal.goal] = max(near, self._nearness[proposal.goal])
+        self._tests.append(played)
+        self._draws[played.job.test.name] = proposal.drawn
+        self._learned.tell(proposal.drawn, paid=added or is_nearer)
+
+    def _rank(self, goal: Goal) -> tuple[bool, int]:
+        """What the model knows comes first, then what is specific: on the way much else is met."""
+        is_known = self._witnesses is not None and self._witnesses.knows(goal)
+        subject = self._goals.model.groups[goal[0]].subject
+        found = [place for place, one in enumerate(_SPECIFIC_FIRST) if one is subject]
+        return not is_known, found[0] if found else len(_SPECIFIC_FIRST)
+
+    def _following(self, goal: Goal) -> Proposal | None:
+        """A test that follows a run of the model to a goal; notes a proof that there is none."""
+        answer = None if self._witnesses is None else self._witnesses.answer(goal)
+        if isinstance(answer, Proof):
+            self._goals.proved[goal] = answer.query
+        if not isinstance(answer, Witness) or self._followed[answer.query] >= WITNESSES:
+            return None
+        assert self._witnesses is not None  # noqa: S101 - it has answered
+        self._followed[answer.query] += 1
+        name, seed = self._name(), self._rng.getrandbits(32)
+        origin = f"a run of the model that shows {answer.query}"
+        witnesses = self._witnesses
+        made = self._by_campaign("closing.model.make", lambda: witnesses.test(answer, name, seed))
+        return Proposal(self._named(made, name, origin), origin, goal, (), answer)
+
+    def _by_chance(self, goal: Goal) -> Proposal | None:
+        """A changed test, a biased one, or another of a strategy; `None` if none can be made."""
+        drawn: list[Draw] = []
+        ways = [*(["draw"] if self._streams else []), *(["change"] if self._tests else [])]
+        ways += ["bias"] if self._campaign.closing.biased is not None else []
+        way = self._learned.choose(self._rng, "way", ways, drawn) if ways else ""
+        made = None
+        if way == "change":
+            made = self._changed(goal, drawn)
+        elif way == "bias":
+            made = self._biased(goal, drawn)
+        return made or self._drawn(goal, drawn)
+
+    def _changed(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
+        """One of the tests that came nearest to a goal, changed."""
+        nearest = self._rng.choice(self._nearest(goal)).job.test
+        others = [one.job.test for one in self._tests]
+        made = self._mutator.mutated(nearest, others, self._rng, drawn)
+        if made is None:
+            return None
+        origin = f"{nearest.name}, changed towards {goal[0]}: {goal[1]}"
+        made = structs.replace(made, expected={})
+        return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
+
+    def _biased(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
+        """A test whose choices are those of the tests that came nearest to a goal, more often."""
+        if self._campaign.closing.biased is None:
+            return None
+        near = [self._draws.get(one.job.test.name, ()) for one in self._nearest(goal)]
+
+        def choose(name: str, options: Sequence[_Option], /) -> _Option:
+            return self._learned.choose(self._rng, name, options, drawn, near)
+
+        biased, seed = self._campaign.closing.biased, self._rng.getrandbits(32)
+        made = self._by_campaign("closing.biased", lambda: biased(choose, seed))
+        origin = f"choices biased towards {goal[0]}: {goal[1]}"
+        return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
+
+    def _drawn(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
+        """The next test of a strategy."""
+        while self._streams:
+            name = self._learned.choose(self._rng, "strategy", [*self._streams], drawn)
+            new = next(self._streams[name], None)
+            if new is not None:
+                origin = f"{new.name} of {name}"
+                return Proposal(self._named(new, self._name(), origin), origin, goal, drawn)
+            del self._streams[name]
+        return None
+
+    def _nearest(self, goal: Goal) -> list[Played]:
+        """The tests that met most of what a goal needs; any of those that are equally near."""
+        model, rng = self._goals.model, self._rng
+        return heapq.nlargest(
+            NEAREST,
+            self._tests,
+            lambda one: (nearness(goal, one.outcome.hits, model), rng.random()),
+        )
+
+    def _by_campaign(self, what: str, make: Callable[[], Test]) -> Test:
+        """A test that a function of the campaign makes.
+
+        Raises:
+            TestError: it fails, or makes none.
+        """
+        try:
+            made: object = make()
+        except RvmonError:
+            raise
+        except Exception as error:
+            told = f"{type(error).__name__}: {error}"
+            raise TestError(f"`{what}` of the campaign cannot make a test: {told}") from error
+        kind = self._campaign.test
+        if not isinstance(made, kind):
+            raise TestError(f"`{what}` of the campaign makes {made!r}, which is no {kind.__name__}")
+        return made
+
+    def _name(self) -> str:
+        self._made += 1
+        return f"{STRATEGY}-{self._made:03}"
+
+    def _named(self, test: Test, name: str, origin: str) -> Test:
+        named = structs.replace(test, name=name, strategy=STRATEGY, text=origin)
+        kind = self._campaign.test
+        try:
+            return from_json(to_json(named), kind, source=f"test `{name}`, {origin}")
+        except TestError as error:
+            mend = f"; does `{kind.__name__}` take the strategy `{STRATEGY}`?"
+            raise TestError(f"{error}{mend}") from None
+
+
+def _stream(campaign: Campaign, strategy: str, robot: str, seed: int) -> Iterator[Test]:
+    """The tests of a strategy, as long as it makes others than before."""
+    before: Sequence[Test] = ()
+    for number in count(seed):
+        made = plan(campaign, [strategy], tests=DRAWN, seed=number).tests[strategy]
+        usable = [one for one in made if one.mutation is None and one.robot in (None, robot)]
+        if not usable or usable == before:
+            return
+        yield from usable
+        before = usable

@@ -1,0 +1,96 @@
+"""Close the holes of a campaign: make, play, show, keep the smallest suite."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from collections.abc import Sequence
+from dataclasses import replace
+from io import StringIO
+
+import msgspec
+
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign_files import TESTS, TEXT_COLUMNS, dated_files, left_over
+from rvmon.cdv.close import Budget, Closed, close
+from rvmon.cdv.close.document import closed_document
+from rvmon.cdv.close.text import print_closed
+from rvmon.cdv.documents import to_json
+from rvmon.cdv.outcome import Results
+from rvmon.cdv.plan import Plan
+from rvmon.cdv.program import typed
+from rvmon.cli.campaign_run import specs_of, written
+from rvmon.cli.progress import bar
+from rvmon.cli.say import say_json, warn
+from rvmon.report.folder import made
+from rvmon.report.terminal import Terminal
+from rvmon.writing import write_whole
+
+
+def conduct_closing(
+    campaign: Campaign,
+    robot: str,
+    strategies: Sequence[str],
+    arguments: Namespace,
+    words: Sequence[object],
+) -> tuple[Closed, Sequence[str]]:
+    """Close holes, show what came of it, write the suite.
+
+    Args:
+        campaign: what it is about.
+        robot: of its robots the one that is tested.
+        strategies: that tests are drawn from; none: those of the campaign.
+        arguments: those of `add_closing_options`.
+        words: the command that does it again, and its other options.
+
+    Returns:
+        What came of it, and what of the suite was not as expected.
+    """
+    campaign = replace(campaign, robots={robot: campaign.robots[robot]})
+    folder = made(arguments.out) if arguments.out else None
+    before = dated_files(folder) if folder is not None else {}
+    specs = specs_of(campaign)
+    with bar("goals", 1.0) as tell:
+        closed = close(
+            campaign,
+            robot,
+            seed=arguments.seed,
+            strategies=strategies,
+            budget=Budget(arguments.tests, arguments.seconds),
+            jobs=arguments.jobs,
+            progress=lambda met, goals: tell(met / goals),
+        )
+    amount: list[object] = ["--tests", arguments.tests, "--seed", arguments.seed]
+    amount += ["--strategy", ",".join(strategies)] if strategies else []
+    if arguments.seconds is not None:
+        amount += ["--seconds", arguments.seconds]
+    command, *others = words
+    again = typed(campaign.program, [command, *amount, *others, "--out", arguments.out])
+    conducted = written(_suite(campaign, arguments.seed, closed), specs, folder, arguments, again)
+    if folder is not None:
+        write_whole(folder / "closing.txt", _text(closed))
+        write_whole(folder / "closing.json", to_json(closed_document(closed)))
+        if remark := left_over(folder, before):
+            warn(remark)
+    if arguments.format == "json":
+        say_json(msgspec.json.encode(closed_document(closed)).decode())
+    else:
+        print_closed(closed, Terminal() if sys.stdout.isatty() else Terminal(width=TEXT_COLUMNS))
+        if folder is not None:
+            replayed = typed(campaign.program, ["run", *others, "--suite", folder / TESTS])
+            print(f"Play the suite again: {replayed}")
+    return closed, conducted.judged(strict=False).wrong
+
+
+def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:
+    """What was kept, as the results of a campaign."""
+    tests = [one.job.test for one in closed.suite]
+    plan = Plan(campaign, seed, {test.strategy: tests for test in tests})
+    seconds = sum(one.outcome.seconds for one in closed.suite)
+    return Results(plan, tuple(closed.suite), seconds, "", closed.groups, closed.reasons)
+
+
+def _text(closed: Closed) -> str:
+    text = StringIO()
+    print_closed(closed, Terminal(file=text, width=TEXT_COLUMNS, color_system=None))
+    return text.getvalue()

@@ -1,0 +1,91 @@
+"""The command `handover close` as a person uses it."""
+
+import contextlib
+import io
+import json
+
+import pytest
+
+from handover.campaign.closing import UNREACHABLE, query_of
+from handover.cli import main
+from handover.model import handover_network
+from rvmon.timed.language.queries import chosen_queries
+
+pytestmark = pytest.mark.campaign
+
+
+@pytest.fixture(scope="module")
+def closed(tmp_path_factory):
+    """A folder with a suite of a few tests, the exit code and what was printed."""
+    folder = tmp_path_factory.mktemp("closed")
+    told = io.StringIO()
+    with contextlib.redirect_stdout(told):
+        code = main(["close", "--tests", "8", "--jobs", "1", "--out", str(folder)])
+    return folder, code, told.getvalue()
+
+
+def test_the_model_leads_to_all_outcomes_at_once(closed):
+    """Eight tests show all that random ones do not: a release, and the readings that withhold."""
+    folder, code, told = closed
+    document = json.loads((folder / "closing.json").read_text())
+    met = {tuple(goal) for test in document["tests"] for goal in test["added"]}
+    assert {("R1", "passed"), ("situation", "no × no × no × kept"), ("ending", "gave_up")} <= met
+    assert code == 1
+    assert "8 tests" in told
+    assert document["ended"] == "after 8 tests"
+    assert len(document["open"]) == document["goals"] - document["met"]
+
+
+def test_what_the_model_excludes_is_proved_with_the_query(closed):
+    """The deadlines of R1 and R3 are never nearly missed, by the model's bounds."""
+    folder, _, told = closed
+    proved = json.loads((folder / "closing.json").read_text())["proved"]
+    assert {tuple(one["goal"]) for one in proved} == {
+        (name, item)
+        for name in ("R1", "R3")
+        for item in ("just before the deadline", "at the deadline")
+    }
+    assert "-->[<=539] (robot.judged or timedOut)" in " ".join(told.split())
+
+
+def test_nothing_that_is_called_unreachable_was_met(closed):
+    """Neither here nor, so far, in any campaign; each entry names something."""
+    folder, _, _ = closed
+    document = json.loads((folder / "closing.json").read_text())
+    assert document["wrong"] == []
+    assert {one["text"] for one in document["argued"]} == {one.reason for one in UNREACHABLE}
+
+
+def test_the_suite_is_played_again_from_its_folder(closed, capsys):
+    """The same tests reach the same, and the page shows the edges of the model and the reasons."""
+    folder, _, _ = closed
+    suite = json.loads((folder / "closing.json").read_text())["suite"]
+    assert {path.stem for path in (folder / "tests").iterdir()} == set(suite)
+    capsys.readouterr()
+    assert main(["run", "--suite", str(folder / "tests"), "--jobs", "1", "--format", "json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["robots"] == json.loads((folder / "table.json").read_text())["robots"]
+    page = (folder / "coverage.html").read_text()
+    assert "edges of the model" in page
+    assert "only the legacy robot does so" in page
+
+
+def test_nonsense_is_refused(tmp_path, capsys):
+    """A folder without tests, an unknown strategy: place, cause, mend, and exit code 2."""
+    assert main(["run", "--suite", str(tmp_path)]) == 2
+    assert "no test (.json) in this folder" in capsys.readouterr().err
+    assert main(["close", "--strategy", "guessing"]) == 2
+    assert "no strategy `guessing`: there are pseudorandom" in capsys.readouterr().err
+
+
+def test_all_that_the_model_is_asked_is_a_query_of_it():
+    """By whatever item of the situations and requirements."""
+    items = [
+        *(("situation", f"{g} × {p} × {at} × {o}") for g in ("yes", "no") for p in ("yes", "no")
+          for at in ("yes", "no") for o in ("given", "kept")),
+        *(("ending", ending) for ending in ("given", "kept", "gave_up")),
+        *((name, "at the deadline") for name in ("R1", "R3")),
+        ("edges of the model", "robot: sense → done"),
+    ]  # fmt: skip
+    assert chosen_queries(handover_network(), [query_of(*item) for item in items])
+    assert query_of("R2", "triggered") == ""

@@ -1,0 +1,281 @@
+"""Closing the holes of small campaigns."""
+
+import os
+from dataclasses import replace
+from typing import Annotated, Literal
+
+import msgspec
+import pytest
+
+from rvmon import cdv
+from rvmon.cdv.close import Budget, close
+from rvmon.cdv.close.witnesses import EDGES
+from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
+from rvmon.cdv.files import TestError
+from rvmon.coverage.record import Ending
+from rvmon.errors import ModelError, UnknownNameError
+from rvmon.timed.language.load import loads_network
+
+SPEC = """
+spec dials "Two dials"
+signal left, right : int
+coverpoint of_left = left {zero: 0, one: 1, two: 2}
+coverpoint of_right = right {zero: 0, one: 1, two: 2}
+cross both = of_left, of_right
+"""
+
+MODEL = """
+network dials
+unit 1 s
+int[0,3] left, right
+automaton person {
+  location choosing
+  location left_is_up
+  location done
+  start choosing
+  edge choosing -> left_is_up do left = 2
+  edge left_is_up -> done do right = 2
+  edge choosing -> done
+}
+automaton machine {
+  location off
+  location on
+  start off
+  edge off -> on when left == 2
+}
+"""
+
+Turn = Annotated[int, msgspec.Meta(ge=0, le=2)]
+
+
+class Dials(cdv.Test):
+    """Both dials are turned."""
+
+    left: Turn = 0
+    right: Turn = 0
+    does: Literal["", "kill", "crash"] = ""
+
+
+class Machine:
+    """Shows what its dials say."""
+
+    def play(self, test, observer):
+        if test.does == "kill":
+            os.kill(os.getpid(), 9)
+        if test.does == "crash":
+            raise ZeroDivisionError
+        observer(0, {"left": test.left, "right": test.right})
+        states = [(0, "off"), (1, "on")] if test.left == 2 else [(0, "off")]
+        return cdv.Run(1, states=states)
+
+
+def still(count, seed):
+    """A strategy that never turns a dial."""
+    return [Dials(name="still", strategy="still", seed=1)]
+
+
+@pytest.fixture
+def dials(tmp_path):
+    """Makes a campaign that closes its holes in some way."""
+    path = tmp_path / "dials.rv"
+    path.write_text(SPEC)
+
+    def made(**closing):
+        closing = {"fixed": ("does",), **closing}
+        return cdv.Campaign(
+            name="dials",
+            test=Dials,
+            strategies={"still": still},
+            robots={"machine": cdv.Robot(Machine, path)},
+            closing=Closing(**closing),
+        )
+
+    return made
+
+
+def names(closed):
+    """What the tests of a closed campaign do."""
+    return [(one.played.job.test, one.goals) for one in closed.tests]
+
+
+def test_tests_are_changed_until_all_is_covered(dials):
+    """From one test that does nothing to all nine combinations, and no fewer tests would do."""
+    closed = close(dials(), "machine", jobs=1)
+    assert (closed.open, closed.ended, closed.met) == ([], "", 15)
+    assert len(closed.suite) == closed.needed == closed.fewest == 9
+    assert sum(len(one.goals) for one in closed.tests) == closed.met == closed.tests[-1].met
+
+
+def test_the_seed_decides_whatever_the_number_of_processes(dials):
+    """One process and two play the same tests; another seed plays others."""
+    one, two = (close(dials(), "machine", jobs=jobs, seed=3) for jobs in (1, 2))
+    assert names(one) == names(two)
+    assert names(one) != names(close(dials(), "machine", jobs=1, seed=4))
+
+
+def test_a_budget_ends_it_and_the_rest_is_open(dials):
+    """After so many tests what is missing is told."""
+    closed = close(dials(), "machine", jobs=1, budget=Budget(tests=3))
+    assert len(closed.tests) == 3
+    assert closed.ended == "after 3 tests"
+    assert len(closed.open) == closed.goals - closed.met > 0
+    closed = close(dials(), "machine", jobs=1, budget=Budget(seconds=0.0))
+    assert closed.ended == "after 0 s"
+
+
+def test_tests_that_end_their_process_do_not_end_the_search(dials):
+    """A crash and a kill are found, kept once each, and all is covered nevertheless."""
+    closed = close(dials(fixed=()), "machine", jobs=1, budget=Budget(tests=400))
+    assert closed.open == []
+    endings = [one.outcome.ending for one in closed.suite]
+    assert {ending: endings.count(ending) for ending in endings} == {
+        Ending.COMPLETED: 9,
+        Ending.CRASHED: 1,
+        Ending.LOST: 1,
+    }
+    assert closed.needed == 9
+
+
+def test_what_is_called_unreachable_is_not_sought_and_must_not_be_met(dials):
+    """It is no goal; a test that meets it all the same is an error, told with its name."""
+    out = Unreachable("both", "two × two", "the dials touch each other")
+    closed = close(dials(unreachable=[out]), "machine", jobs=1)
+    assert closed.goals == 14
+    assert closed.argued == {("both", "two × two"): "the dials touch each other"}
+    assert ("both", "two × two") not in [goal for one in closed.tests for goal in one.goals]
+    out = Unreachable("of_left", "zero", "it never is")
+    closed = close(dials(unreachable=[out]), "machine", jobs=1)
+    assert closed.wrong == {("of_left", "zero"): "closed-001"}
+
+
+def test_unknown_items_are_refused(dials):
+    """What is called unreachable has to be there."""
+    for place in (("both", "two × seven"), ("nothing", "two"), ("", "return 1")):
+        with pytest.raises(UnknownNameError, match="calls unreachable what there is not"):
+            close(dials(unreachable=[Unreachable(*place, "so")]), "machine", jobs=1)
+
+
+def test_lines_go_by_their_text(dials, code):
+    """The statement of a line and the branches to it; a block or one branch can be named."""
+    campaign = replace(dials(), code=cdv.Code(cdv.blocks_of(code)))
+    unreachable = [
+        Unreachable("", "return self.high()", "too high"),
+        Unreachable("statements of Toy.high", "return 6", "too high"),
+        Unreachable("", "if to > 4: → return to", "all do"),
+    ]
+    campaign = replace(campaign, closing=Closing(unreachable=unreachable))
+    closed = close(campaign, "machine", jobs=1, budget=Budget(tests=1))
+    assert set(closed.argued) == {
+        ("statements of Toy.climb", "5"),
+        ("branches of Toy.climb", "4 → 5"),
+        ("statements of Toy.high", "9"),
+        ("branches of Toy.climb", "4 → 6"),
+    }
+
+
+def model(query=lambda *_: "", **more):
+    """The model of the dials, with tests made of its runs."""
+
+    def make(template, seed):
+        did = {step.action for step in template.steps}
+        turned = {"left": 2} if "left" in did else {}
+        turned |= {"right": 2} if "right" in did else {}
+        return Dials(name="x", strategy="x", seed=seed, **turned)
+
+    return ClosingModel(
+        **{
+            "network": lambda: loads_network(MODEL),
+            "automata": ("person",),
+            "actions": {
+                ("person", "choosing", "left_is_up"): "left",
+                ("person", "left_is_up", "done"): "right",
+            },
+            "make": make,
+            "query": query,
+            "automaton": "machine",
+            "states": {"off": "off", "on": "on"},
+            **more,
+        }
+    )
+
+
+def test_runs_of_the_model_become_tests_and_its_answers_proofs(dials):
+    """What the model can reach is aimed at, what it cannot is closed by that proof."""
+
+    def query(group, item):
+        if group == "both":
+            left, right = map(("zero", "one", "two").index, item.split(" × "))
+            return f"E<> left == {left} and right == {right} and person.done"
+        return ""
+
+    closed = close(dials(model=model(query)), "machine", jobs=1, budget=Budget(tests=8))
+    first = closed.tests[0]
+    assert (
+        first.origin == "a run of the model that shows E<> left == 0 and right == 0 and person.done"
+    )
+    assert ("both", "two × two") not in [*closed.open, *closed.proved]
+    assert closed.proved["both", "one × two"] == "E<> left == 1 and right == 2 and person.done"
+    edges = {name for group, name in closed.tests[1].goals if group == EDGES}
+    assert edges == {"person: choosing → left_is_up", "person: left_is_up → done"}
+    assert ("edges of the model", "machine: off → on") not in closed.open
+
+
+def test_edges_are_shown_only_by_tests_that_go_their_way(dials):
+    """A machine that never switches on shows none of the edges of a run that does."""
+    campaign = dials(model=model(states={"off": "on", "on": "off"}))
+    closed = close(campaign, "machine", jobs=1, budget=Budget(tests=12))
+    assert {name for group, name in closed.open if group == EDGES} >= {"machine: off → on"}
+
+
+def test_a_model_proves_nothing_of_robots_that_it_does_not_describe(dials):
+    """Its runs are tests all the same."""
+    impossible = model(lambda *_: "E<> left == 3", robots=("another",))
+    closed = close(dials(model=impossible), "machine", jobs=1)
+    assert (closed.proved, closed.open, closed.groups) == ({}, [], [])
+
+
+def test_choices_are_biased_towards_what_is_open(dials):
+    """A test whose choices are drawn covers all without being changed."""
+
+    def biased(choose, seed):
+        left, right = choose("left", (0, 1, 2)), choose("right", (0, 1, 2))
+        return Dials(name="x", strategy="x", seed=seed, left=left, right=right)
+
+    campaign = dials(biased=biased, fixed=("left", "right", "does"))
+    closed = close(campaign, "machine", jobs=1)
+    assert closed.open == []
+    assert any(one.origin.startswith("choices biased towards") for one in closed.tests)
+
+
+def test_nonsense_of_a_campaign_is_told(dials):
+    """A function that fails, one that makes no test, a query that is none."""
+
+    def failing(choose, seed):
+        raise KeyError("x")
+
+    for biased, told in ((failing, "cannot make a test: KeyError"), (lambda *_: 3, "makes 3")):
+        with pytest.raises(TestError, match=told):
+            close(replace(dials(biased=biased), strategies={}), "machine", jobs=1)
+    with pytest.raises(ModelError, match="no name `nothing`"):
+        close(dials(model=model(lambda *_: "E<> nothing")), "machine", jobs=1)
+
+
+def test_a_type_that_takes_no_closed_test_is_told(dials):
+    """Tests say that they were made to close holes: their type has to let them."""
+
+    class Strict(cdv.Test):
+        strategy: Literal["still"]
+
+    def strict(count, seed):
+        return [Strict(name="still", strategy="still", seed=1)]
+
+    campaign = replace(dials(), test=Strict, strategies={"still": strict})
+    with pytest.raises(TestError, match="does `Strict` take the strategy `closed`"):
+        close(campaign, "machine", jobs=1)
+
+
+def test_a_campaign_that_can_make_no_test_ends(dials):
+    """Without strategies nothing can be made."""
+    closed = close(replace(dials(), strategies={}), "machine", jobs=1)
+    assert closed.ended == "no further test can be made"
+    assert closed.tests == []

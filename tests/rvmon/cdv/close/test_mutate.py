@@ -1,0 +1,123 @@
+"""Tests that are changed by the types of their fields."""
+
+import enum
+import random
+from typing import Annotated, Literal
+
+import msgspec
+
+from rvmon import cdv
+from rvmon.cdv.close.learned import Learned
+from rvmon.cdv.close.mutate import Mutator
+
+
+class Colour(enum.Enum):
+    RED = "red"
+    BLUE = "blue"
+
+
+class Step(msgspec.Struct, tag="step", frozen=True):
+    """A step."""
+
+    length: Annotated[float, msgspec.Meta(gt=0, le=1)]
+    times: int = 1
+
+
+class Turn(msgspec.Struct, tag="turn", frozen=True):
+    """A turn, which takes no other angle."""
+
+    angle: Literal[90, 180]
+
+
+class Tree(msgspec.Struct, frozen=True):
+    """Part of itself."""
+
+    size: int = 0
+    parts: tuple["Tree", ...] = ()
+
+
+class Row(msgspec.Struct, frozen=True, array_like=True):
+    """Written as an array."""
+
+    first: int = 1
+
+
+class Odd(cdv.Test):
+    """All kinds of fields."""
+
+    way: tuple[Step | Turn, ...] = ()
+    mixed: int | str = "text"
+    tree: Tree = Tree()
+    row: Row = Row()
+    colour: Colour = Colour.RED
+    maybe: int | None = None
+    lists: list[list[int]] = msgspec.field(default_factory=list)
+    by_name: dict[str, int] = msgspec.field(default_factory=dict)
+    some: set[int] = msgspec.field(default_factory=set)
+    thirds: Annotated[int, msgspec.Meta(multiple_of=3, ge=0, le=9)] = 3
+    sure: bool = False
+
+
+def changed(tests, count, *, fixed=()):
+    """So many tests, each changed from one of the last."""
+    rng, learned = random.Random(1), Learned()
+    mutator = Mutator(Odd, fixed, learned)
+    for _ in range(count):
+        made = mutator.mutated(rng.choice(tests[-20:]), tests[-20:], rng, [])
+        tests.append(made)
+    return tests
+
+
+def test_whatever_is_changed_is_a_test_of_its_type():
+    """Unions, sequences, bounds, enumerations, structures within themselves: all read back."""
+    tests = changed([Odd(name="a", strategy="s", seed=1)], 2000)
+    for one in tests:
+        assert msgspec.json.decode(msgspec.json.encode(one), type=Odd) == one
+    assert {type(step) for one in tests for step in one.way} == {Step, Turn}
+    assert {one.thirds for one in tests} == {0, 3, 6, 9}
+    assert {one.sure for one in tests} == {True, False}
+    assert {one.colour for one in tests} == set(Colour)
+    assert len({one.seed for one in tests}) > 100
+    assert any(one.tree.parts for one in tests)
+
+
+def test_what_a_test_says_of_itself_stays():
+    """Name, purpose, robot, fault, known answers, and what has no neighbours, such as texts."""
+    first = Odd(name="a", strategy="s", seed=1, text="t", mutation="m", expected={"R": "F"})
+    for one in changed([first], 300):
+        assert (one.name, one.strategy, one.text, one.robot) == ("a", "s", "t", None)
+        assert (one.mutation, one.expected) == ("m", {"R": "F"})
+        assert (one.by_name, one.some, one.row) == ({}, set(), Row())
+
+
+def test_fixed_fields_stay():
+    """Also those within others."""
+    first = Odd(name="a", strategy="s", seed=1)
+    tests = changed([first], 300, fixed=("seed", "tree.size"))
+    assert {one.seed for one in tests} == {1}
+    assert {one.tree.size for one in tests} == {0}
+    assert any(one.tree.parts for one in tests)
+
+
+def test_a_type_without_fields_that_can_change_gives_none():
+    """Nothing is tried for ever."""
+    first = Odd(name="a", strategy="s", seed=1)
+    names = [field.name for field in msgspec.structs.fields(Odd)]
+    mutator = Mutator(Odd, names, Learned())
+    assert mutator.mutated(first, [first], random.Random(1), []) is None
+
+
+def test_options_that_paid_are_drawn_more_often():
+    """And so are those of the nearest tests."""
+    rng, learned = random.Random(1), Learned()
+
+    def share(near=()):
+        drawn = [learned.choose(rng, "way", ["a", "b"], [], near) for _ in range(1000)]
+        return drawn.count("a") / 1000
+
+    assert 0.4 < share() < 0.6
+    assert share(near=[[("way", "a")]]) > 0.65
+    for _ in range(50):
+        learned.tell([("way", "a")], paid=True)
+        learned.tell([("way", "b")], paid=False)
+    assert 0.9 < share() < 1
