@@ -38,7 +38,13 @@ TESTS = st.builds(
     text=st.text(max_size=20),
     robot=st.sampled_from([None, "correct", "legacy"]),
     horizon_s=st.floats(0.1, 3600),
-    faults=st.builds(SensorFaults, st.floats(0, 1), st.floats(0, 10), st.just(("gaze",))),
+    faults=st.builds(
+        SensorFaults,
+        noise_m=st.floats(0, 1),
+        delay_s=st.floats(0, 10),
+        loss=st.floats(0, 1),
+        dropout=st.just(("gaze",)),
+    ),
 )
 
 
