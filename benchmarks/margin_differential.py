@@ -1,0 +1,97 @@
+r"""Robustness, by every way that measures it, against its oracle on random specs and traces.
+
+    python -m benchmarks.margin_differential --pairs 10000 --seed 1
+
+`samples` is the monitor that is stepped, `arrays` what measures a recording in columns. Prints how
+much was compared and every disagreement, shrunk; exits 1 if there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping
+
+from benchmarks.differential import MODELS
+from tests.tools.differential import cases_of
+from tests.tools.judgement import Judgement
+from tests.tools.margins import margins
+from tests.tools.margin_ways import WAYS, Figures
+from tests.tools.shrink import shrink
+
+from rvmon.errors import RvmonError
+from rvmon.testing.case import Case
+from rvmon.testing.compare import Key
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.show import show_case
+
+Way = Callable[[Case], Mapping[Key, Figures] | None]
+
+
+def differences(case: Case, way: Way) -> list[str] | None:
+    """How the figures of a way depart from the oracle's; `None` if it does not measure the case."""
+    try:
+        found = way(case)
+    except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
+        return [f"raised {type(error).__name__}: {error}"]
+    if found is None:
+        return None
+    expected = margins(Judgement(case))
+    return [
+        f"{key}: {found.get(key)}, expected {expected.get(key)}"
+        for key in sorted({*expected, *found})
+        if found.get(key) != expected.get(key)
+    ]
+
+
+def shrunk(case: Case, way: Way) -> str:
+    """A small case that shows a difference, as text."""
+
+    def disagree(smaller: Case) -> bool:
+        try:
+            return bool(differences(smaller, way))
+        except RvmonError:  # the smaller case is none that the law speaks of
+            return False
+
+    small = shrink(case, disagree)
+    return "\n".join([*(differences(small, way) or ()), show_case(small)])
+
+
+def main(argv: list[str]) -> int:
+    """Run the campaign and print its figures."""
+    parser = argparse.ArgumentParser(description="Our robustness against its oracle.")
+    parser.add_argument("--pairs", type=int, default=1_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--way", nargs="+", choices=WAYS, default=[*WAYS])
+    parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
+    parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
+    parser.add_argument("--show", type=int, default=3, help="disagreements printed at most")
+    options = parser.parse_args(argv)
+    profile = Profile(time=MODELS.get(options.time or ""))
+    traces = TraceProfile(unknowns=not options.known)
+    measured: Counter[str] = Counter()
+    wrong: Counter[str] = Counter()
+    texts: list[str] = []
+    began = time.perf_counter()
+    for number in range(options.pairs):
+        [case] = cases_of(f"margins {options.seed}/{number}", profile, traces)
+        for name in options.way:
+            found = differences(case, WAYS[name])
+            measured[name] += found is not None
+            if found:
+                wrong[name] += 1
+                if len(texts) < options.show:
+                    texts.append(f"{name}, pair {number}\n{shrunk(case, WAYS[name])}")
+    print(f"seed {options.seed}, pairs {options.pairs}, {time.perf_counter() - began:.0f} s")
+    for name in options.way:
+        refused = options.pairs - measured[name]
+        print(f"{name:8} measured {measured[name]}, refused {refused}, wrong {wrong[name]}")
+    print("".join(f"\n{'=' * 72}\n{text}\n" for text in texts), end="")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
