@@ -2,7 +2,8 @@ r"""Robustness, by every way that measures it, against its oracle on random spec
 
     python -m benchmarks.margin_differential --pairs 10000 --seed 1
 
-`samples` is the monitor that is stepped, `arrays` what measures a recording in columns. Prints how
+`samples` is the monitor that is stepped, `c` the same in C, `arrays` what measures a recording in
+columns. Prints how
 much was compared and every disagreement, shrunk; exits 1 if there is one.
 """
 
@@ -12,29 +13,26 @@ import argparse
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
 
 from benchmarks.differential import MODELS
 from tests.tools.differential import cases_of
 from tests.tools.judgement import Judgement
+from tests.tools.margin_ways import WAYS, Way
 from tests.tools.margins import margins
-from tests.tools.margin_ways import WAYS, Figures
 from tests.tools.shrink import shrink
 
 from rvmon.errors import RvmonError
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key
+from rvmon.testing.forms import Compiler
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.show import show_case
 
-Way = Callable[[Case], Mapping[Key, Figures] | None]
 
-
-def differences(case: Case, way: Way) -> list[str] | None:
+def differences(case: Case, way: Way, compiler: Compiler) -> list[str] | None:
     """How the figures of a way depart from the oracle's; `None` if it does not measure the case."""
     try:
-        found = way(case)
+        found = way(compiler(case.spec), case)
     except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
     if found is None:
@@ -49,21 +47,23 @@ def differences(case: Case, way: Way) -> list[str] | None:
 
 def shrunk(case: Case, way: Way) -> str:
     """A small case that shows a difference, as text."""
+    compiler = Compiler()
 
     def disagree(smaller: Case) -> bool:
         try:
-            return bool(differences(smaller, way))
+            return bool(differences(smaller, way, compiler))
         except RvmonError:  # the smaller case is none that the law speaks of
             return False
 
     small = shrink(case, disagree)
-    return "\n".join([*(differences(small, way) or ()), show_case(small)])
+    return "\n".join([*(differences(small, way, compiler) or ()), show_case(small)])
 
 
 def main(argv: list[str]) -> int:
     """Run the campaign and print its figures."""
     parser = argparse.ArgumentParser(description="Our robustness against its oracle.")
     parser.add_argument("--pairs", type=int, default=1_000)
+    parser.add_argument("--traces", type=int, default=8, help="of the pairs with one spec")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--way", nargs="+", choices=WAYS, default=[*WAYS])
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
@@ -76,10 +76,12 @@ def main(argv: list[str]) -> int:
     wrong: Counter[str] = Counter()
     texts: list[str] = []
     began = time.perf_counter()
-    for number in range(options.pairs):
-        [case] = cases_of(f"margins {options.seed}/{number}", profile, traces)
+    compiler = Compiler()
+    seeds = (f"margins {options.seed}/{n}" for n in range(options.pairs // options.traces))
+    cases = (one for seed in seeds for one in cases_of(seed, profile, traces, options.traces))
+    for number, case in enumerate(cases):
         for name in options.way:
-            found = differences(case, WAYS[name])
+            found = differences(case, WAYS[name], compiler)
             measured[name] += found is not None
             if found:
                 wrong[name] += 1

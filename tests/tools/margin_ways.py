@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
+from rvmon.errors import RvmonError
+from rvmon.monitor import CompiledSpec
+from rvmon.monitor.robustness.compiled import expect_measurable, measuring_library
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured
-from rvmon.session import Spec
 from rvmon.testing.case import Case
 from rvmon.testing.compare import Key, key_of
 from rvmon.testing.drive import feed
@@ -14,18 +16,34 @@ from rvmon.testing.drive import feed
 Figures = tuple[float, float, float]
 """The least that robustness can be, the greatest, and what is kept up to the end."""
 
+Way = Callable[[CompiledSpec, Case], Mapping[Key, Figures] | None]
+"""Gives each attempt its figures; `None` if it does not measure such cases."""
 
-def by_samples(case: Case) -> Mapping[Key, Figures]:
-    """Each attempt's figures, by a monitor that is stepped."""
-    monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
+
+def by_samples(compiled: CompiledSpec, case: Case) -> Mapping[Key, Figures]:
+    """By a monitor that is stepped."""
+    return _stepped(RobustnessMonitor(compiled, sources=case.names), case)
+
+
+def by_compiled(compiled: CompiledSpec, case: Case) -> Mapping[Key, Figures] | None:
+    """The same in C."""
+    requirements = [*compiled.requirements.values()]
+    try:
+        expect_measurable(requirements)
+    except RvmonError:
+        return None
+    measuring_library(compiled, requirements, optimised=False)
+    return _stepped(RobustnessMonitor(compiled, sources=case.names, engine="c"), case)
+
+
+def _stepped(monitor: RobustnessMonitor, case: Case) -> Mapping[Key, Figures]:
     found = [one for action in case.actions for one in feed(monitor, action)]
     return _figures([*found, *monitor.finish_ns(case.end)])
 
 
 def _figures(found: Iterable[Measured]) -> Mapping[Key, Figures]:
-    return {key_of(one): (one.robustness.low, one.robustness.high, one.robustness.kept) for one in found}
+    bounds = ((key_of(one), one.robustness) for one in found)
+    return {key: (one.low, one.high, one.kept) for key, one in bounds}
 
 
-WAYS: Mapping[str, Callable[[Case], Mapping[Key, Figures] | None]] = {
-    "samples": by_samples,
-}
+WAYS: Mapping[str, Way] = {"samples": by_samples, "c": by_compiled}

@@ -49,7 +49,7 @@ def measuring_forms(
     """
     key = (MarginJudge, tuple(one.requirement.id for one in requirements), sources)
     if key not in compiled.forms:
-        by_unit = [one for one in requirements if _is_for_unit(one)]
+        by_unit = [one for one in requirements if is_for_unit(one)]
         # What is owed at the end is told of whenever one of the others is asked.
         waits = any(one.obligation.trigger is None for one in requirements)
         if waits or len(requirements) > MOST_GENERATED:
@@ -62,7 +62,7 @@ def measuring_forms(
     return found
 
 
-def _is_for_unit(compiled: CompiledRequirement) -> bool:
+def is_for_unit(compiled: CompiledRequirement) -> bool:
     """Whether all that is measured can be read when a sample was taken or a position visited."""
     return compiled.is_fed and compiled.gap in (None, 1) and not _reads_payloads(compiled)
 

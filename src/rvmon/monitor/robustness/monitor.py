@@ -14,6 +14,7 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.generated import GeneratedMonitor
+from rvmon.monitor.robustness.compiled import CompiledRun, measuring_library
 from rvmon.monitor.robustness.evaluators import MeasuringEvaluators, measuring_forms
 from rvmon.monitor.robustness.gauged import Gauged, measured
 from rvmon.monitor.robustness.values import Measured
@@ -32,9 +33,11 @@ class RobustnessMonitor:
         settle: `now` or `next`, as for a monitor.
         sources: the names that can arrive; `None`: all.
         streams: whether to measure each position, and not the attempts alone.
+        engine: `auto` or `c`, compiled C.
 
     Raises:
-        UnknownNameError: there is no such way to settle.
+        UnknownNameError: there is no such way to settle, or no such engine.
+        RvmonError: compiled C does not measure a requirement, or there is no compiler.
     """
 
     def __init__(
@@ -45,23 +48,30 @@ class RobustnessMonitor:
         sources: frozenset[str] | None = None,
         *,
         streams: bool = False,
+        engine: str = "auto",
     ) -> None:
         if settle not in WAYS_TO_SETTLE:
             ways = ", ".join(WAYS_TO_SETTLE)
             raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
         requirements = compiled.requirements.items()
         chosen = [one for name, one in requirements if only is None or name in only]
-        self._run = _Run(compiled, chosen, settle, sources, streams=streams)
+        self._run: _Run | CompiledRun
+        if engine == "auto":
+            self._run = _Run(compiled, chosen, settle, sources, streams=streams)
+            return
+        if engine != "c":
+            raise UnknownNameError(f"no engine `{engine}` measures: there are auto, c")
+        library = measuring_library(compiled, chosen)
+        self._run = CompiledRun(library, compiled, chosen, settle, sources, streams=streams)
+        vars(self).update(step=self._run.step, step_ns=self._run.step_ns)  # nothing in between
 
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Measured]:
         """Take one sample (seconds); see `step_ns`."""
-        self._run.step(t, values)
-        return self._run.followed()
+        return self._run.followed(self._run.step(t, values))
 
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Measured]:
         """Take one sample and return the figures that nothing can change any more."""
-        self._run.step_ns(t_ns, values)
-        return self._run.followed()
+        return self._run.followed(self._run.step_ns(t_ns, values))
 
     def advance(self, t: float) -> Sequence[Measured]:
         """Say that no sample before `t` (seconds) will come; see `advance_ns`."""
@@ -69,8 +79,7 @@ class RobustnessMonitor:
 
     def advance_ns(self, t_ns: int) -> Sequence[Measured]:
         """Say that no sample before `t_ns` will come; returns the figures that this settled."""
-        self._run.advance_ns(t_ns)
-        return self._run.taken()
+        return self._run.advanced(t_ns)
 
     @property
     def open(self) -> Sequence[Measured]:
@@ -83,8 +92,7 @@ class RobustnessMonitor:
 
     def finish_ns(self, t_ns: int | None = None) -> Sequence[Measured]:
         """End the run, at `t_ns` if that is later than all so far, and return the other figures."""
-        self._run.finish_ns(t_ns)
-        return self._run.taken()
+        return self._run.finished(t_ns)
 
 
 class _Run(GeneratedMonitor):
@@ -119,7 +127,17 @@ class _Run(GeneratedMonitor):
         self._unit_evaluators = self._measured
         return self._measured
 
-    def followed(self) -> Sequence[Measured]:
+    def advanced(self, t_ns: int) -> Sequence[Measured]:
+        """See `RobustnessMonitor.advance_ns`."""
+        self.advance_ns(t_ns)
+        return self.taken()
+
+    def finished(self, t_ns: int | None) -> Sequence[Measured]:
+        """See `RobustnessMonitor.finish_ns`."""
+        self.finish_ns(t_ns)
+        return self.taken()
+
+    def followed(self, _: object) -> Sequence[Measured]:
         """The figures that are settled now that a sample was taken; see `taken`."""
         if not self._by_unit:
             return self.taken()
