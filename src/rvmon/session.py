@@ -263,7 +263,7 @@ class Spec:
         if robustness:
             from rvmon.monitor.measure import measuring
 
-            judge = measuring(judge)
+            judge = measuring(judge, engine)
         return judge(self._compiled, source, asked)
 
     def _reading(
@@ -326,6 +326,7 @@ class Spec:
         only: Iterable[str] | None = None,
         until: float | None = None,
         streams: bool = True,
+        engine: str = "auto",
         **reading: Unpack[ReadingArguments],
     ) -> Margins:
         """By how much a finished trace meets each requirement, or fails to, in base units.
@@ -339,6 +340,7 @@ class Spec:
             only: ids of the requirements; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             streams: whether to give a figure per sample, too; they are kept in memory.
+            engine: `auto`, or `c`: compiled C.
             **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
 
         Returns:
@@ -355,6 +357,7 @@ class Spec:
             only=requirements_asked(self.checked, only),
             until=None if until is None else ticks_of_seconds(until),
             streams=streams,
+            engine=engine,
         )
 
     def robustness_monitor(
@@ -364,6 +367,7 @@ class Spec:
         settle: str = "now",
         sources: Iterable[str] | None = None,
         streams: bool = False,
+        engine: str = "auto",
     ) -> RobustnessMonitor:
         """Make an online monitor that gives figures of robustness; see `robustness`.
 
@@ -372,6 +376,7 @@ class Spec:
             settle: see there.
             sources: see there.
             streams: whether to give a figure per sample as well as per attempt.
+            engine: `auto`, or `c`: compiled C, which does not measure every requirement.
 
         Raises:
             UnknownNameError: `only`, `settle` or `sources` names what does not exist.
@@ -379,7 +384,9 @@ class Spec:
         from rvmon.monitor.robustness.monitor import RobustnessMonitor
 
         only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
-        return RobustnessMonitor(self._compiled, only, settle, names, streams=streams)
+        return RobustnessMonitor(
+            self._compiled, only, settle, names, streams=streams, engine=engine
+        )
 
     @cached_property
     def coverage_model(self) -> SpecCoverage:

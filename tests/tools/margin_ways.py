@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from rvmon.errors import RvmonError
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.robustness.compiled import expect_measurable, measuring_library
+from rvmon.monitor.compiled.refusal import of_measured_c
+from rvmon.monitor.robustness.compiled import measuring_library
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured
 from rvmon.testing.case import Case
@@ -28,9 +28,7 @@ def by_samples(compiled: CompiledSpec, case: Case) -> Mapping[Key, Figures]:
 def by_compiled(compiled: CompiledSpec, case: Case) -> Mapping[Key, Figures] | None:
     """The same in C."""
     requirements = [*compiled.requirements.values()]
-    try:
-        expect_measurable(requirements)
-    except RvmonError:
+    if any(map(of_measured_c, requirements)):
         return None
     measuring_library(compiled, requirements, optimised=False)
     return _stepped(RobustnessMonitor(compiled, sources=case.names, engine="c"), case)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any, Protocol
 
+from rvmon.monitor.compiled.refusal import of_measured_c
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.monitor.engines.rows import columns_of
@@ -42,6 +43,7 @@ def margins_of(
     only: Sequence[str] | None = None,
     until: int | None = None,
     streams: bool = True,
+    engine: str = "auto",
 ) -> Margins:
     """The robustness of all attempts on a trace.
 
@@ -52,19 +54,35 @@ def margins_of(
         only: ids of the requirements; default all.
         until: the end of the trace in ticks, if after its last sample.
         streams: whether to measure each position, too.
+        engine: `auto` or `c`, compiled C.
+
+    Raises:
+        RvmonError: compiled C does not measure a requirement, or there is no compiler.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     named = "" if reading.sources is None else "its sources are named"
     source = Source(recording, until, row_by_row=named)
     asked = Asked(None if only is None else tuple(only))
+    if engine == "c":
+        return _by_compiled(compiled, source, asked, streams=streams)
     found = _by_columns(compiled, source, asked, engine_named("auto").judge, streams=streams)
     return _by_samples(compiled, source, asked, streams=streams) if found is None else found[1]
 
 
-def measuring(judge: Judge) -> Judge:
-    """What judges a recording as `judge` does, and gives each attempt its robustness."""
+def measuring(judge: Judge, engine: str) -> Judge:
+    """What judges a recording as `judge` does, and gives each attempt its robustness.
+
+    Args:
+        judge: of the engine.
+        engine: its name: compiled C measures what it judges, if it can.
+    """
 
     def measured(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+        chosen = compiled.chosen(asked.only)
+        if engine == "c" and chosen and not any(map(of_measured_c, chosen)):
+            report = judge(compiled, source, asked)
+            margins = _by_compiled(compiled, source, asked, streams=False)
+            return replace(report, attempts=tuple(map(margins.of, report.attempts)))
         found = _by_columns(compiled, source, asked, judge, streams=False)
         report, margins = _beside(compiled, source, asked, judge) if found is None else found
         return replace(report, attempts=tuple(map(margins.of, report.attempts)))
@@ -90,10 +108,30 @@ def _beside(
     return report, margins_from([*found, *monitor.finish_ns(source.end)])
 
 
-def _by_samples(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins:
+def _by_compiled(
+    compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool
+) -> Margins:
+    """The figures by compiled C, of columns or of samples."""
+    from rvmon.monitor.robustness.compiled import compiled_run
+
+    chosen = compiled.chosen(asked.only)
+    try:
+        columns = columns_of(compiled, source, asked)
+        return compiled_run(compiled, chosen, frozenset(columns.names), streams=streams).fed(
+            columns, source.end
+        )
+    except NotPlainError:
+        return _by_samples(compiled, source, asked, streams=streams, engine="c")
+
+
+def _by_samples(
+    compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool, engine: str = "auto"
+) -> Margins:
     """The figures by a monitor."""
-    monitor = RobustnessMonitor(compiled, asked.only, sources=source.names, streams=streams)
-    found = [one for sample in source.recording for one in monitor.step_ns(sample.t, sample.values)]
+    names = source.names
+    monitor = RobustnessMonitor(compiled, asked.only, "now", names, streams=streams, engine=engine)
+    samples = source.samples(ordered=compiled.checked.max_delay is None)
+    found = [one for sample in samples for one in monitor.step_ns(sample.t, sample.values)]
     return margins_from([*found, *monitor.finish_ns(source.end)])
 
 

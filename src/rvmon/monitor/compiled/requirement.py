@@ -21,6 +21,7 @@ from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.soonest_news import delay_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
+from rvmon.formula.core import Literal
 from rvmon.formula.expand import expanded
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
@@ -209,6 +210,17 @@ class CompiledRequirement:
     def measured_plan(self) -> NetworkPlan:
         """The same of what it owes as far as that is measured, past operators included."""
         return plan_of(expanded(self.obligation.owed), self.gap)
+
+    @property
+    def measures_payloads(self) -> bool:
+        """Whether payloads are compared in what is measured of it."""
+        leaves = [
+            core.proposition.leaf
+            for one in self.judges.values()
+            for _, core in one.measured_plan.leaves
+            if isinstance(core, Literal)
+        ]
+        return any(isinstance(leaf, Compare) and events_of(leaf.left, leaf.right) for leaf in leaves)
 
     def network_delay(self, letter: Sequence[bool]) -> int:
         """Ticks that pass in its delay network until an attempt that begins can be decided."""

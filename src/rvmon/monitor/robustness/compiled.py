@@ -6,32 +6,20 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rvmon.codegen.c_online import OnlineLibrary, online_library
-from rvmon.errors import RvmonError
+from rvmon.dataflow.margins import INFINITE
 from rvmon.monitor.c.monitor import CompiledMonitor
 from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.monitor.compiled.refusal import of_measured_c, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.robustness.evaluators import is_for_unit
-from rvmon.monitor.robustness.values import Measured, Robustness
+from rvmon.monitor.robustness.values import Key, Margins, Measured, Robustness, Stream
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.readers.source import Columns
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
-
-
-def expect_measurable(requirements: Sequence[CompiledRequirement]) -> None:
-    """See that compiled C can measure requirements.
-
-    Raises:
-        RvmonError: it cannot; which one, and why, is said.
-    """
-    for one in requirements:
-        if not is_for_unit(one) or one.obligation.trigger is None:
-            raise RvmonError(
-                f"the engine `c` does not measure {one.requirement.id}: it has `let`, `for each`, "
-                "`upon end`, payloads in what it owes, or a clock of several ticks: use the "
-                "engine `auto`, or leave it out (`only`, --only)"
-            )
 
 
 def measuring_library(
@@ -51,7 +39,7 @@ def measuring_library(
     key = ("margins in c", ids)
     found = compiled.forms.get(key)
     if not isinstance(found, OnlineLibrary):
-        expect_measurable(requirements)
+        refuse(requirements, of_measured_c, "the engine `c`, which measures,")
         plan = plan_alone(compiled, ids, measured=True)
         found = compiled.forms[key] = online_library(plan, optimised=optimised, measured=True)
     return found
@@ -103,14 +91,88 @@ class CompiledRun(CompiledMonitor):
         """What is known of the open attempts."""
         return _figures(self.open)
 
+    def fed(self, columns: Columns, end: int | None) -> Margins:
+        """Measure a recording by its columns, and end the run.
+
+        Args:
+            columns: of the recording.
+            end: of the trace in ticks; `None`: its last row.
+
+        Raises:
+            TraceError: a whole number is larger than C computes with exactly.
+        """
+        import numpy as np
+
+        from rvmon.codegen.c_batch import exact_columns
+
+        plan = self._library.plan
+        names = (*plan.signals, *plan.events)
+        for block in columns.read():
+            laid = exact_columns(plan, self._library.limits, block.times, block.columns)
+            self._core.feed(
+                np.ascontiguousarray(block.times), tuple(laid.get(name) for name in names)
+            )
+        self._core.close(end)
+        found = np.frombuffer(self._core.figures(), np.dtype(_FIGURE, align=True))
+        return _margins(found, [owner for owner, _ in plan.judges], self._ids)
+
     def finished(self, t_ns: int | None) -> Sequence[Measured]:
         """End the run; gives the figures that are left."""
         self.finish_ns(t_ns)
         return self._rest
 
 
+def compiled_run(
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    sources: frozenset[str] | None,
+    *,
+    settle: str = "now",
+    streams: bool,
+) -> CompiledRun:
+    """Begin a run of what measures some requirements; see `measuring_library`, `CompiledRun`."""
+    library = measuring_library(compiled, requirements)
+    return CompiledRun(library, compiled, requirements, settle, sources, streams=streams)
+
+
 def _figures(returned: Sequence[Any]) -> Sequence[Measured]:
     return returned
+
+
+_FIGURE = [
+    *(("t", "i8"), ("position", "i8"), ("low", "f8"), ("high", "f8"), ("kept", "f8")),
+    *(("judge", "i4"), ("number", "u4"), ("sure", "u1"), ("vanished", "u1")),
+]
+"""A figure as `margin_judge.c.in` lays it out."""
+
+
+def _margins(found: NDArray[Any], owners: Sequence[int], ids: Sequence[str]) -> Margins:
+    """The figures of a run that is over.
+
+    Args:
+        found: array of `_FIGURE`.
+        owners: by judge, the number of its requirement.
+        ids: of the requirements.
+    """
+    import numpy as np
+
+    attempts: tuple[dict[Key, Robustness], dict[Key, Robustness]] = ({}, {})
+    streams: dict[str, Stream] = {}
+    for judge in range(len(owners)):
+        own = found[(found["judge"] == judge) & (found["vanished"] == 0)]
+        name = ids[owners[judge]]
+        every = own["number"] == 0
+        if every.any():
+            own_every = own[every]
+            bounds = (np.ascontiguousarray(own_every[bound]) for bound in ("t", "low", "high", "kept"))
+            streams[name] = Stream(*bounds)
+        for sure in (True, False):
+            some = own[~every & (own["sure"] == sure)]
+            high = some["high"] if sure else np.full(len(some), INFINITE)
+            figures = map(Robustness, some["low"].tolist(), high.tolist(), some["kept"].tolist())
+            keys = ((name, number) for number in some["number"].tolist())
+            attempts[not sure].update(zip(keys, figures, strict=True))
+    return Margins(*attempts, streams)
 
 
 def _slots(type_: type) -> tuple[Any, ...]:

@@ -14,7 +14,7 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.generated import GeneratedMonitor
-from rvmon.monitor.robustness.compiled import CompiledRun, measuring_library
+from rvmon.monitor.robustness.compiled import CompiledRun, compiled_run
 from rvmon.monitor.robustness.evaluators import MeasuringEvaluators, measuring_forms
 from rvmon.monitor.robustness.gauged import Gauged, measured
 from rvmon.monitor.robustness.values import Measured
@@ -61,8 +61,7 @@ class RobustnessMonitor:
             return
         if engine != "c":
             raise UnknownNameError(f"no engine `{engine}` measures: there are auto, c")
-        library = measuring_library(compiled, chosen)
-        self._run = CompiledRun(library, compiled, chosen, settle, sources, streams=streams)
+        self._run = compiled_run(compiled, chosen, sources, settle=settle, streams=streams)
         vars(self).update(step=self._run.step, step_ns=self._run.step_ns)  # nothing in between
 
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Measured]:
