@@ -14,7 +14,7 @@ import sys
 import time
 from collections import Counter
 
-from benchmarks.differential import MODELS
+from benchmarks.differential import FEATURES, MODELS, profile_of
 from tests.tools.differential import cases_of
 from tests.tools.judgement import Judgement
 from tests.tools.margin_ways import WAYS, Way
@@ -24,7 +24,6 @@ from tests.tools.shrink import shrink
 from rvmon.errors import RvmonError
 from rvmon.testing.case import Case
 from rvmon.testing.forms import Compiler
-from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.show import show_case
 
@@ -67,10 +66,13 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--way", nargs="+", choices=WAYS, default=[*WAYS])
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
+    parser.add_argument("--depth", type=int, default=4)
+    parser.add_argument("--many", type=int, default=8, metavar="PERCENT")
+    parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
     parser.add_argument("--show", type=int, default=3, help="disagreements printed at most")
     options = parser.parse_args(argv)
-    profile = Profile(time=MODELS.get(options.time or ""))
+    profile = profile_of(options)
     traces = TraceProfile(unknowns=not options.known)
     measured: Counter[str] = Counter()
     wrong: Counter[str] = Counter()

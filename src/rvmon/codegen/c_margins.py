@@ -81,18 +81,29 @@ class Measures:
 
     def _margins(self) -> Iterator[str]:
         """A function that reads the leaves of a judge; see `rvmon.dataflow.margins`."""
+        read = [*self._readings()]
+        if any("apart(" in line for line in read):
+            yield "/* How far one side of a comparison is above the other, in base units. */"
+            yield "static double apart(double left, double right, double factor)"
+            yield "{"
+            yield "    return (left == right) ? 0.0 : (left - right) * factor;"
+            yield "}"
+            yield ""
         yield "static void read_margins(const monitor *m, int32_t index, double *low, double *high)"
         yield "{"
         yield "    switch (index) {"
+        yield from read
+        yield "    default: break;"
+        yield "    }"
+        yield "}"
+
+    def _readings(self) -> Iterator[str]:
         for index, plan in enumerate(self.plans):
             yield f"    case {index}:"
             for number, (_, core) in enumerate(plan.leaves):
                 value, truth = self._margin(core)
-                yield f"        put(&low[{number}], &high[{number}], {value}, {truth});"
+                yield f"        put_margin(&low[{number}], &high[{number}], {value}, {truth});"
             yield "        break;"
-        yield "    default: break;"
-        yield "    }"
-        yield "}"
 
     def _margin(self, core: Literal | Constant) -> tuple[str, str]:
         """How far a leaf is from the other truth, NaN where only its truth counts; and that."""

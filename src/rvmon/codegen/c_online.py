@@ -160,7 +160,10 @@ class Core(Protocol):
         """
 
     def figures(self) -> bytes:
-        """What is settled and was not given out, each as `FIGURE` has it."""
+        """What was settled of attempts and not given out, as `margin_judge.c.in` lays it out."""
+
+    def series(self, requirement: int, /) -> tuple[bytes, bytes, bytes, bytes]:
+        """What a requirement owes at the rows: int64[n] ticks, three times float64[n]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,8 +15,6 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.robustness.values import Key, Margins, Measured, Robustness, Stream
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from rvmon.readers.source import Columns
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
@@ -68,6 +66,7 @@ class CompiledRun(CompiledMonitor):
         streams: bool,
     ) -> None:
         self._rest: Sequence[Measured] = ()
+        self._streams = streams
         types = (Measured, Robustness)
         measured = [part for one in types for part in (one, _slots(one))]
         super().__init__(
@@ -114,7 +113,24 @@ class CompiledRun(CompiledMonitor):
             )
         self._core.close(end)
         found = np.frombuffer(self._core.figures(), np.dtype(_FIGURE, align=True))
-        return _margins(found, [owner for owner, _ in plan.judges], self._ids)
+        attempts: tuple[dict[Key, Robustness], dict[Key, Robustness]] = ({}, {})
+        for judge, (owner, _) in enumerate(plan.judges):
+            for sure in (True, False):
+                some = found[(found["judge"] == judge) & (found["sure"] == sure)]
+                some = some[some["vanished"] == 0]
+                # What nothing triggered owes nothing.
+                high = some["high"] if sure else np.full(len(some), INFINITE)
+                figures = map(Robustness, some["low"].tolist(), high.tolist(), some["kept"].tolist())
+                keys = ((self._ids[owner], number) for number in some["number"].tolist())
+                attempts[not sure].update(zip(keys, figures, strict=True))
+        streams = {name: self._stream(n) for n, name in enumerate(self._ids) if self._streams}
+        return Margins(*attempts, streams)
+
+    def _stream(self, requirement: int) -> Stream:
+        import numpy as np
+
+        times, *bounds = self._core.series(requirement)
+        return Stream(np.frombuffer(times, np.int64), *map(np.frombuffer, bounds))
 
     def finished(self, t_ns: int | None) -> Sequence[Measured]:
         """End the run; gives the figures that are left."""
@@ -140,39 +156,10 @@ def _figures(returned: Sequence[Any]) -> Sequence[Measured]:
 
 
 _FIGURE = [
-    *(("t", "i8"), ("position", "i8"), ("low", "f8"), ("high", "f8"), ("kept", "f8")),
+    *(("t", "i8"), ("low", "f8"), ("high", "f8"), ("kept", "f8")),
     *(("judge", "i4"), ("number", "u4"), ("sure", "u1"), ("vanished", "u1")),
 ]
 """A figure as `margin_judge.c.in` lays it out."""
-
-
-def _margins(found: NDArray[Any], owners: Sequence[int], ids: Sequence[str]) -> Margins:
-    """The figures of a run that is over.
-
-    Args:
-        found: array of `_FIGURE`.
-        owners: by judge, the number of its requirement.
-        ids: of the requirements.
-    """
-    import numpy as np
-
-    attempts: tuple[dict[Key, Robustness], dict[Key, Robustness]] = ({}, {})
-    streams: dict[str, Stream] = {}
-    for judge in range(len(owners)):
-        own = found[(found["judge"] == judge) & (found["vanished"] == 0)]
-        name = ids[owners[judge]]
-        every = own["number"] == 0
-        if every.any():
-            own_every = own[every]
-            bounds = (np.ascontiguousarray(own_every[bound]) for bound in ("t", "low", "high", "kept"))
-            streams[name] = Stream(*bounds)
-        for sure in (True, False):
-            some = own[~every & (own["sure"] == sure)]
-            high = some["high"] if sure else np.full(len(some), INFINITE)
-            figures = map(Robustness, some["low"].tolist(), high.tolist(), some["kept"].tolist())
-            keys = ((name, number) for number in some["number"].tolist())
-            attempts[not sure].update(zip(keys, figures, strict=True))
-    return Margins(*attempts, streams)
 
 
 def _slots(type_: type) -> tuple[Any, ...]:
