@@ -49,8 +49,8 @@ class Measures:
     @cached_property
     def plans(self) -> Sequence[NetworkPlan]:
         """The nodes of what is owed, by number of the judge."""
-        gap = self._plan.gap
-        return [plan_of(expanded(rule.owed), gap) for _, rule in self._plan.judges]
+        owed = [rule.measured for _, rule in self._plan.judges]
+        return [plan_of(expanded(one), self._plan.gap) for one in owed if one is not None]
 
     def source(self) -> str:
         """The templates, filled; they stand behind the monitor."""

@@ -69,6 +69,7 @@ def _rule(
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
+        measured=one.measured.owed if measured else None,
     )
 
 

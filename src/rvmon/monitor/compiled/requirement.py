@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -86,6 +86,7 @@ class CompiledRequirement:
         alphabet: of what it owes.
         gap: ticks between two positions; `None` if only samples are positions.
         is_beside: whether this judges the attempts in doubt of a requirement.
+        measured: its formulas as they are measured: their truth is that of `obligation`.
     """
 
     def __init__(
@@ -97,9 +98,11 @@ class CompiledRequirement:
         factory: Factory,
         *,
         is_beside: bool = False,
+        measured: Callable[[], Obligation] | None = None,
     ) -> None:
         self._factory = factory
         self.is_beside = is_beside
+        self._measured = measured
         self.rank = rank
         self.spec = spec
         self.gap = spec.gap
@@ -173,12 +176,12 @@ class CompiledRequirement:
     @cached_property
     def hidden(self) -> CompiledRequirement | None:
         """What judges its attempts in doubt; `None` if there are none."""
-        return self._beside(self.obligation.hidden)
+        return self._beside(self.obligation.hidden, lambda: self.measured.hidden)
 
     @cached_property
     def doubted(self) -> CompiledRequirement | None:
         """The same where no trigger is sure."""
-        return self._beside(self.obligation.doubted)
+        return self._beside(self.obligation.doubted, lambda: self.measured.doubted)
 
     @property
     def judges(self) -> Mapping[str, CompiledRequirement]:
@@ -186,11 +189,19 @@ class CompiledRequirement:
         beside = {"": self, "?": self.hidden, "??": self.doubted}
         return {kind: one for kind, one in beside.items() if one is not None}
 
-    def _beside(self, obligation: Obligation | None) -> CompiledRequirement | None:
+    def _beside(
+        self, obligation: Obligation | None, measured: Callable[[], Obligation | None]
+    ) -> CompiledRequirement | None:
         if obligation is None:
             return None
         return CompiledRequirement(
-            self.rank, self.spec, self.requirement, obligation, self._factory, is_beside=True
+            self.rank,
+            self.spec,
+            self.requirement,
+            obligation,
+            self._factory,
+            is_beside=True,
+            measured=lambda: measured() or obligation,
         )
 
     @cached_property
@@ -209,7 +220,14 @@ class CompiledRequirement:
     @cached_property
     def measured_plan(self) -> NetworkPlan:
         """The same of what it owes as far as that is measured, past operators included."""
-        return plan_of(expanded(self.obligation.owed), self.gap)
+        return plan_of(expanded(self.measured.owed), self.gap)
+
+    @cached_property
+    def measured(self) -> Obligation:
+        """See `CompiledRequirement`."""
+        if self._measured is not None:
+            return self._measured()
+        return lower(self.requirement, self._factory, self.spec.period, measured=True)
 
     @property
     def measures_payloads(self) -> bool:
