@@ -2,8 +2,8 @@ r"""Robustness, by every way that measures it, against its oracle on random spec
 
     python -m benchmarks.margin_differential --pairs 10000 --seed 1
 
-`samples` is the monitor that is stepped, `c` the same in C, `arrays` what measures a recording in
-columns. Prints how
+`samples` is the monitor that is stepped, `arrays` what measures a recording in columns; `c` and
+`c-arrays` are the same in C. Prints how
 much was compared and every disagreement, shrunk; exits 1 if there is one.
 """
 
@@ -22,16 +22,33 @@ from tests.tools.margins import margins
 from tests.tools.shrink import shrink
 
 from rvmon.errors import RvmonError
+from rvmon.session import Spec
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.forms import Compiler
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.show import show_case
 
 
-def differences(case: Case, way: Way, compiler: Compiler) -> list[str] | None:
+class Specs:
+    """Specifications that are compiled once for all cases and ways in a row."""
+
+    def __init__(self) -> None:
+        self._last: Spec | None = None
+
+    def __call__(self, checked: CheckedSpec) -> Spec:
+        """The specification."""
+        if self._last is None or self._last.checked is not checked:
+            self._last = Spec(checked)
+        return self._last
+
+
+def differences(case: Case, way: Way, specs: Specs) -> list[str] | None:
     """How the figures of a way depart from the oracle's; `None` if it does not measure the case."""
     try:
-        found = way(compiler(case.spec), case)
+        case = way.adapted(case)
+        if not case.samples:
+            return None
+        found = way.measure(specs(case.spec), case)
     except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
     if found is None:
@@ -46,16 +63,17 @@ def differences(case: Case, way: Way, compiler: Compiler) -> list[str] | None:
 
 def shrunk(case: Case, way: Way) -> str:
     """A small case that shows a difference, as text."""
-    compiler = Compiler()
+    specs = Specs()
 
     def disagree(smaller: Case) -> bool:
         try:
-            return bool(differences(smaller, way, compiler))
+            return bool(differences(smaller, way, specs))
         except RvmonError:  # the smaller case is none that the law speaks of
             return False
 
     small = shrink(case, disagree)
-    return "\n".join([*(differences(small, way, compiler) or ()), show_case(small)])
+    found = differences(small, way, specs) or ()
+    return "\n".join([*found, show_case(way.adapted(small))])
 
 
 def main(argv: list[str]) -> int:
@@ -78,12 +96,12 @@ def main(argv: list[str]) -> int:
     wrong: Counter[str] = Counter()
     texts: list[str] = []
     began = time.perf_counter()
-    compiler = Compiler()
+    specs = Specs()
     seeds = (f"margins {options.seed}/{n}" for n in range(options.pairs // options.traces))
     cases = (one for seed in seeds for one in cases_of(seed, profile, traces, options.traces))
     for number, case in enumerate(cases):
         for name in options.way:
-            found = differences(case, WAYS[name], compiler)
+            found = differences(case, WAYS[name], specs)
             measured[name] += found is not None
             if found:
                 wrong[name] += 1

@@ -87,6 +87,7 @@ class CompiledRequirement:
         gap: ticks between two positions; `None` if only samples are positions.
         is_beside: whether this judges the attempts in doubt of a requirement.
         measured: its formulas as they are measured: their truth is that of `obligation`.
+        measures: whether evaluators work out what is measured, too.
     """
 
     def __init__(
@@ -99,10 +100,12 @@ class CompiledRequirement:
         *,
         is_beside: bool = False,
         measured: Callable[[], Obligation] | None = None,
+        measures: bool = False,
     ) -> None:
         self._factory = factory
         self.is_beside = is_beside
         self._measured = measured
+        self.measures = measures
         self.rank = rank
         self.spec = spec
         self.gap = spec.gap
@@ -202,6 +205,7 @@ class CompiledRequirement:
             self._factory,
             is_beside=True,
             measured=lambda: measured() or obligation,
+            measures=self.measures,
         )
 
     @cached_property
@@ -239,6 +243,12 @@ class CompiledRequirement:
             if isinstance(core, Literal)
         ]
         return any(isinstance(leaf, Compare) and events_of(leaf.left, leaf.right) for leaf in leaves)
+
+    @cached_property
+    def measuring(self) -> CompiledRequirement:
+        """The same for runs in which evaluators work out what is measured."""
+        given = (self.rank, self.spec, self.requirement, self.obligation, self._factory)
+        return CompiledRequirement(*given, measures=True)
 
     def network_delay(self, letter: Sequence[bool]) -> int:
         """Ticks that pass in its delay network until an attempt that begins can be decided."""
@@ -307,6 +317,9 @@ class CompiledRequirement:
         if self.requirement.mode is Mode.WHENEVER:
             states = (obligation.trigger, obligation.running)
             yield from (one for one in states if one is not None)
+        if self.measures:
+            read = (core for _, core in self.measured_plan.leaves)
+            yield from (core.proposition for core in read if isinstance(core, Literal))
 
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:

@@ -54,7 +54,7 @@ def measuring_forms(
         if waits or len(requirements) > MOST_GENERATED:
             by_unit = []
         forms = forms_of(compiled, by_unit, sources, measured=True)
-        others = [one for one in requirements if one not in by_unit]
+        others = [one.measuring for one in requirements if one not in by_unit]
         compiled.forms[key] = replace(forms, others=others, unit=_watched(forms.unit))
     found = compiled.forms[key]
     assert isinstance(found, Forms)  # noqa: S101 - it is what was put there
