@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,8 +15,7 @@ from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.session import Spec
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key, key_of
-from rvmon.testing.drive import feed
+from rvmon.testing.compare import Key
 from rvmon.trace.sample import Sample
 from tests.tools.doors import content_of, whole
 
@@ -83,12 +82,16 @@ def _is_compiled(spec: Spec) -> bool:
 
 
 def _stepped(monitor: RobustnessMonitor, case: Case) -> Mapping[Key, Figures]:
-    found = [one for action in case.actions for one in feed(monitor, action)]
-    return _figures([*found, *monitor.finish_ns(case.end)])
-
-
-def _figures(found: Iterable[Measured]) -> Mapping[Key, Figures]:
-    return _bounds({key_of(one): one.robustness for one in found})
+    found: list[Measured] = []
+    for action in case.actions:
+        if isinstance(action, Sample):
+            found += monitor.step_ns(action.t, action.values)
+        else:
+            found += monitor.advance_ns(action)
+    found += monitor.finish_ns(case.end)
+    return _bounds(
+        {(one.requirement, one.in_doubt, one.number or 0): one.robustness for one in found}
+    )
 
 
 def _bounds(found: Mapping[Key, Robustness]) -> Mapping[Key, Figures]:

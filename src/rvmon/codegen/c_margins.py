@@ -69,10 +69,12 @@ class Measures:
         yield from Forms(self._plan, self.plans).tables("measured_")
         yield "/* Per node, whether its value matters only where that of the formula is wanted. */"
         alone = [
-            int(place in asked_alone(plan)) for plan in self.plans for place in range(len(plan.nodes))
+            int(place in asked_alone(plan))
+            for plan in self.plans
+            for place in range(len(plan.nodes))
         ]
         yield array("uint8_t", "asked_alone", alone)
-        yield "/* Per leaf its proposition, and the truth of it behind a position of which it speaks. */"
+        yield "/* Per leaf its proposition, and its truth behind a position of which it speaks. */"
         index = self._plan.graph.index
         places = [-1 if isinstance(one, Constant) else index[one.proposition] for one in leaves]
         behind = [isinstance(one, Literal) and one.sense is not Sense.TRUE for one in leaves]

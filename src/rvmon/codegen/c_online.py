@@ -249,7 +249,11 @@ def online_build(
     named = replace(plan, spec=replace(plan.spec, name="rvmon"))
     made = c_files(named)
     name = f"{made.prefix}_online.c"
-    texts = {**made.texts, name: online_source(named, beside=beside, measured=measured), "python.txt": sys.version}
+    texts = {
+        **made.texts,
+        name: online_source(named, beside=beside, measured=measured),
+        "python.txt": sys.version,
+    }
     flags = [*(FAST if optimised else ("-O0",)), *_SHARED]
     return Build(
         texts, [name, *made.units], EXTENSION_SUFFIXES[0], flags, sysconfig.get_path("include")

@@ -108,9 +108,7 @@ def _beside(
     return report, margins_from([*found, *monitor.finish_ns(source.end)])
 
 
-def _by_compiled(
-    compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool
-) -> Margins:
+def _by_compiled(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins:
     """The figures by compiled C, of columns or of samples."""
     from rvmon.monitor.robustness.compiled import compiled_run
 

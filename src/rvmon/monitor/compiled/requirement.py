@@ -242,7 +242,9 @@ class CompiledRequirement:
             for _, core in one.measured_plan.leaves
             if isinstance(core, Literal)
         ]
-        return any(isinstance(leaf, Compare) and events_of(leaf.left, leaf.right) for leaf in leaves)
+        return any(
+            isinstance(leaf, Compare) and events_of(leaf.left, leaf.right) for leaf in leaves
+        )
 
     @cached_property
     def measuring(self) -> CompiledRequirement:

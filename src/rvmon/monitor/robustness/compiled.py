@@ -120,7 +120,9 @@ class CompiledRun(CompiledMonitor):
                 some = some[some["vanished"] == 0]
                 # What nothing triggered owes nothing.
                 high = some["high"] if sure else np.full(len(some), INFINITE)
-                figures = map(Robustness, some["low"].tolist(), high.tolist(), some["kept"].tolist())
+                figures = map(
+                    Robustness, some["low"].tolist(), high.tolist(), some["kept"].tolist()
+                )
                 keys = ((self._ids[owner], number) for number in some["number"].tolist())
                 attempts[not sure].update(zip(keys, figures, strict=True))
         streams = {name: self._stream(n) for n, name in enumerate(self._ids) if self._streams}
