@@ -338,26 +338,19 @@ class Spec:
         Args:
             trace: as `evaluate` takes it.
             only: ids of the requirements; default all.
-            until: the end of the trace in seconds, if it ended after its last sample.
+            until: as for `evaluate`; so are `reading` and the errors.
             streams: whether to give a figure per sample, too; they are kept in memory.
-            engine: `auto`, or `c`: compiled C.
-            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
-
-        Returns:
-            The figures of the attempts by requirement and number, and as streams.
+            engine: `auto`, or `c`: compiled C, which does not measure every requirement.
+            **reading: `time`, `columns` and so on.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
         from rvmon.monitor.measure import margins_of
 
+        given, asked = self._reading(**reading), requirements_asked(self.checked, only)
+        end = None if until is None else ticks_of_seconds(until)
         return margins_of(
-            self._compiled,
-            trace,
-            self._reading(**reading),
-            only=requirements_asked(self.checked, only),
-            until=None if until is None else ticks_of_seconds(until),
-            streams=streams,
-            engine=engine,
+            self._compiled, trace, given, only=asked, until=end, streams=streams, engine=engine
         )
 
     def robustness_monitor(
@@ -376,17 +369,15 @@ class Spec:
             settle: see there.
             sources: see there.
             streams: whether to give a figure per sample as well as per attempt.
-            engine: `auto`, or `c`: compiled C, which does not measure every requirement.
+            engine: see `robustness`.
 
         Raises:
-            UnknownNameError: `only`, `settle` or `sources` names what does not exist.
+            UnknownNameError: `only`, `settle`, `sources` or `engine` names what does not exist.
         """
-        from rvmon.monitor.robustness.monitor import RobustnessMonitor
+        from rvmon.monitor.measure import robustness_monitor
 
         only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
-        return RobustnessMonitor(
-            self._compiled, only, settle, names, streams=streams, engine=engine
-        )
+        return robustness_monitor(self._compiled, only, settle, names, engine, streams=streams)
 
     @cached_property
     def coverage_model(self) -> SpecCoverage:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.monitor.compiled.refusal import of_measured_c
-from rvmon.monitor.robustness.compiled import measuring_library
+from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor, measuring_library
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.session import Spec
@@ -45,7 +45,7 @@ def by_compiled(spec: Spec, case: Case) -> Mapping[Key, Figures] | None:
     """The same in C."""
     if not _is_compiled(spec):
         return None
-    return _stepped(RobustnessMonitor(spec._compiled, sources=case.names, engine="c"), case)
+    return _stepped(CompiledRobustnessMonitor(spec._compiled, sources=case.names), case)
 
 
 def by_arrays(spec: Spec, case: Case, engine: str = "auto") -> Mapping[Key, Figures]:

@@ -202,8 +202,8 @@ class BatchRun:
             RvmonError: memory ran out, or a static capacity.
         """
         plan = self._library.plan
-        given = {name: one.values for name, one in columns.items()}
-        laid = exact_columns(plan, self._library.limits, times, given)
+        bare = {name: one.values for name, one in columns.items()}
+        laid = exact_columns(plan, self._library.limits, times, bare)
         keep: list[Any] = [times := np.ascontiguousarray(times, np.int64), kinds]
         none = Column()
         values = [laid.get(name) for name in plan.signals]

@@ -6,7 +6,7 @@ What comes behind a decision counts as long as the window is open.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -14,11 +14,29 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.generated import GeneratedMonitor
-from rvmon.monitor.robustness.compiled import CompiledRun, compiled_run
 from rvmon.monitor.robustness.evaluators import MeasuringEvaluators, measuring_forms
 from rvmon.monitor.robustness.gauged import Gauged, measured
 from rvmon.monitor.robustness.values import Measured
 from rvmon.trace.time import ticks_of_seconds
+
+
+class Run(Protocol):
+    """Takes samples as every monitor does and gives margins in the place of verdicts."""
+
+    step: Any
+    step_ns: Any
+
+    def followed(self, returned: Any) -> Sequence[Measured]:
+        """The figures that are settled now that a step was taken, which returned something."""
+
+    def advanced(self, t_ns: int) -> Sequence[Measured]:
+        """See `RobustnessMonitor.advance_ns`."""
+
+    def finished(self, t_ns: int | None) -> Sequence[Measured]:
+        """See `RobustnessMonitor.finish_ns`."""
+
+    def open_figures(self) -> Sequence[Measured]:
+        """See `RobustnessMonitor.open`."""
 
 
 class RobustnessMonitor:
@@ -33,11 +51,9 @@ class RobustnessMonitor:
         settle: `now` or `next`, as for a monitor.
         sources: the names that can arrive; `None`: all.
         streams: whether to measure each position, and not the attempts alone.
-        engine: `auto` or `c`, compiled C.
 
     Raises:
-        UnknownNameError: there is no such way to settle, or no such engine.
-        RvmonError: compiled C does not measure a requirement, or there is no compiler.
+        UnknownNameError: there is no such way to settle.
     """
 
     def __init__(
@@ -48,21 +64,25 @@ class RobustnessMonitor:
         sources: frozenset[str] | None = None,
         *,
         streams: bool = False,
-        engine: str = "auto",
     ) -> None:
         if settle not in WAYS_TO_SETTLE:
             ways = ", ".join(WAYS_TO_SETTLE)
             raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
         requirements = compiled.requirements.items()
         chosen = [one for name, one in requirements if only is None or name in only]
-        self._run: _Run | CompiledRun
-        if engine == "auto":
-            self._run = _Run(compiled, chosen, settle, sources, streams=streams)
-            return
-        if engine != "c":
-            raise UnknownNameError(f"no engine `{engine}` measures: there are auto, c")
-        self._run = compiled_run(compiled, chosen, sources, settle=settle, streams=streams)
-        vars(self).update(step=self._run.step, step_ns=self._run.step_ns)  # nothing in between
+        self._run = self._begun(compiled, chosen, settle, sources, streams=streams)
+
+    def _begun(
+        self,
+        compiled: CompiledSpec,
+        chosen: Sequence[CompiledRequirement],
+        settle: str,
+        sources: frozenset[str] | None,
+        *,
+        streams: bool,
+    ) -> Run:
+        """What takes the samples."""
+        return _Run(compiled, chosen, settle, sources, streams=streams)
 
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Measured]:
         """Take one sample (seconds); see `step_ns`."""
@@ -95,7 +115,7 @@ class RobustnessMonitor:
 
 
 class _Run(GeneratedMonitor):
-    """Takes samples as every monitor does and gives margins in the place of verdicts."""
+    """See `Run`."""
 
     def __init__(
         self,
@@ -127,12 +147,12 @@ class _Run(GeneratedMonitor):
         return self._measured
 
     def advanced(self, t_ns: int) -> Sequence[Measured]:
-        """See `RobustnessMonitor.advance_ns`."""
+        """See `Run`; so are the next."""
         self.advance_ns(t_ns)
         return self.taken()
 
     def finished(self, t_ns: int | None) -> Sequence[Measured]:
-        """See `RobustnessMonitor.finish_ns`."""
+        """See `Run`."""
         self.finish_ns(t_ns)
         return self.taken()
 

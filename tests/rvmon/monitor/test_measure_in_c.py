@@ -122,7 +122,7 @@ def test_rows_with_what_is_not_known_are_measured_alike(spec):
 
 def test_judged_records_have_the_robustness(spec):
     """`engine="c"` with robustness gives each record the figure that `auto` gives it."""
-    trace = [(t, {name: value for name, value in row.items()}) for t, row in rows(40, seed=5)]
+    trace = [*rows(40, seed=5)]
 
     def figures(engine):
         recording = spec.recording(trace)
@@ -138,7 +138,7 @@ def test_what_c_does_not_measure_is_refused_by_name():
         "spec s\nsignal x : real\nevent e\nrequirement R1\n"
         "  upon e then within 2 s x > v\n  let v = x\n"
     )
-    with pytest.raises(RvmonError, match="R1 uses `let`.*engine `auto`"):
+    with pytest.raises(RvmonError, match=r"R1 uses `let`.*engine `auto`"):
         spec.robustness_monitor(engine="c")
 
 

@@ -12,6 +12,7 @@ from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.refusal import of_measured_c, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Key, Margins, Measured, Robustness, Stream
 
 if TYPE_CHECKING:
@@ -140,17 +141,33 @@ class CompiledRun(CompiledMonitor):
         return self._rest
 
 
-def compiled_run(
-    compiled: CompiledSpec,
-    requirements: Sequence[CompiledRequirement],
-    sources: frozenset[str] | None,
-    *,
-    settle: str = "now",
-    streams: bool,
-) -> CompiledRun:
-    """Begin a run of what measures some requirements; see `measuring_library`, `CompiledRun`."""
-    library = measuring_library(compiled, requirements)
-    return CompiledRun(library, compiled, requirements, settle, sources, streams=streams)
+class CompiledRobustnessMonitor(RobustnessMonitor):
+    """Measures by compiled C; arguments and errors are those of `RobustnessMonitor`.
+
+    Raises:
+        RvmonError: there is no C compiler, or a requirement cannot be measured by compiled C.
+    """
+
+    _run: CompiledRun
+
+    def _begun(
+        self,
+        compiled: CompiledSpec,
+        chosen: Sequence[CompiledRequirement],
+        settle: str,
+        sources: frozenset[str] | None,
+        *,
+        streams: bool,
+    ) -> CompiledRun:
+        """See `RobustnessMonitor`."""
+        library = measuring_library(compiled, chosen)
+        run = CompiledRun(library, compiled, chosen, settle, sources, streams=streams)
+        vars(self).update(step=run.step, step_ns=run.step_ns)  # with nothing in between
+        return run
+
+    def fed(self, columns: Columns, end: int | None) -> Margins:
+        """See `CompiledRun`."""
+        return self._run.fed(columns, end)
 
 
 def _figures(returned: Sequence[Any]) -> Sequence[Measured]:
