@@ -39,21 +39,21 @@ class Judge(Protocol):
 def robustness_monitor(
     compiled: CompiledSpec,
     only: Sequence[str] | None,
-    *,
-    settle: str = "now",
+    settle: str,
     sources: frozenset[str] | None,
-    streams: bool = False,
     engine: str,
+    *,
+    streams: bool = False,
 ) -> RobustnessMonitor:
     """A monitor of an engine that measures; see `RobustnessMonitor`.
 
     Args:
         compiled: the specification.
         only: ids of the requirements; `None`: all.
-        settle: see there; so are the next two.
+        settle: see there.
         sources: see there.
-        streams: see there.
         engine: `auto` or `c`, compiled C.
+        streams: see there.
 
     Raises:
         UnknownNameError: no such engine measures, or there is no such way to settle.
@@ -134,7 +134,7 @@ def _beside(
     compiled: CompiledSpec, source: Source, asked: Asked, judge: Judge, engine: str
 ) -> tuple[Report, Margins]:
     """A report, and the figures by a monitor that sees each sample once it was judged."""
-    monitor = robustness_monitor(compiled, asked.only, sources=source.names, engine=engine)
+    monitor = robustness_monitor(compiled, asked.only, "now", source.names, engine)
     found: list[Measured] = []
 
     def read(recording: Any) -> Iterable[Sample]:
@@ -153,9 +153,7 @@ def _by_samples(
 ) -> Margins:
     """The figures by a monitor."""
     names = source.names
-    monitor = robustness_monitor(
-        compiled, asked.only, sources=names, streams=streams, engine=engine
-    )
+    monitor = robustness_monitor(compiled, asked.only, "now", names, engine, streams=streams)
     found = [one for sample in source.recording for one in monitor.step_ns(sample.t, sample.values)]
     return margins_from([*found, *monitor.finish_ns(source.end)])
 
