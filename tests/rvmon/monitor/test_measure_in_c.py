@@ -85,8 +85,8 @@ def test_random_cases_are_measured_alike(time):
     """C gives each attempt the bounds that Python gives it, by samples and by columns."""
     profile = Profile(time=time, captures=False, for_each=False)
     measured = 0
-    for number in range(6):
-        for case in cases_of(f"measured by c {number}", profile, TraceProfile(), 12):
+    for number in range(4):
+        for case in cases_of(f"measured by c {number}", profile, TraceProfile(), 8):
             spec = Spec(case.spec)
             found = WAYS["c"].measure(spec, case)
             assert found is None or found == WAYS["samples"].measure(spec, case), show_case(case)
