@@ -100,18 +100,23 @@ class CompiledRun(CompiledMonitor):
 
         Raises:
             TraceError: a whole number is larger than C computes with exactly.
+            TimeOrderError: an instant is not after the one before.
         """
         import numpy as np
 
         from rvmon.codegen.c_batch import exact_columns
+        from rvmon.monitor.c.batch import out_of_order
 
         plan = self._library.plan
         names = (*plan.signals, *plan.events)
+        rows = 0
         for block in columns.read():
             laid = exact_columns(plan, self._library.limits, block.times, block.columns)
-            self._core.feed(
-                np.ascontiguousarray(block.times), tuple(laid.get(name) for name in names)
-            )
+            times = np.ascontiguousarray(block.times)
+            taken = self._core.feed(times, tuple(laid.get(name) for name in names))
+            rows += taken
+            if taken < len(times):
+                raise out_of_order(rows, int(times[taken]))
         self._core.close(end)
         found = np.frombuffer(self._core.figures(), np.dtype(_FIGURE, align=True))
         attempts: tuple[dict[Key, Robustness], dict[Key, Robustness]] = ({}, {})
