@@ -263,7 +263,7 @@ class Spec:
         if robustness:
             from rvmon.monitor.measure import measuring
 
-            judge = measuring(judge)
+            judge = measuring(judge, engine)
         return judge(self._compiled, source, asked)
 
     def _reading(
@@ -326,6 +326,7 @@ class Spec:
         only: Iterable[str] | None = None,
         until: float | None = None,
         streams: bool = True,
+        engine: str = "auto",
         **reading: Unpack[ReadingArguments],
     ) -> Margins:
         """By how much a finished trace meets each requirement, or fails to, in base units.
@@ -337,24 +338,19 @@ class Spec:
         Args:
             trace: as `evaluate` takes it.
             only: ids of the requirements; default all.
-            until: the end of the trace in seconds, if it ended after its last sample.
+            until: as for `evaluate`; so are `reading` and the errors.
             streams: whether to give a figure per sample, too; they are kept in memory.
-            **reading: `time`, `columns` and so on, as for `evaluate`; so are the errors.
-
-        Returns:
-            The figures of the attempts by requirement and number, and as streams.
+            engine: `auto`, or `c`: compiled C, which does not measure every requirement.
+            **reading: `time`, `columns` and so on.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
         from rvmon.monitor.measure import margins_of
 
+        given, asked = self._reading(**reading), requirements_asked(self.checked, only)
+        end = None if until is None else ticks_of_seconds(until)
         return margins_of(
-            self._compiled,
-            trace,
-            self._reading(**reading),
-            only=requirements_asked(self.checked, only),
-            until=None if until is None else ticks_of_seconds(until),
-            streams=streams,
+            self._compiled, trace, given, only=asked, until=end, streams=streams, engine=engine
         )
 
     def robustness_monitor(
@@ -364,6 +360,7 @@ class Spec:
         settle: str = "now",
         sources: Iterable[str] | None = None,
         streams: bool = False,
+        engine: str = "auto",
     ) -> RobustnessMonitor:
         """Make an online monitor that gives figures of robustness; see `robustness`.
 
@@ -372,14 +369,15 @@ class Spec:
             settle: see there.
             sources: see there.
             streams: whether to give a figure per sample as well as per attempt.
+            engine: see `robustness`.
 
         Raises:
-            UnknownNameError: `only`, `settle` or `sources` names what does not exist.
+            UnknownNameError: `only`, `settle`, `sources` or `engine` names what does not exist.
         """
-        from rvmon.monitor.robustness.monitor import RobustnessMonitor
+        from rvmon.monitor.measure import robustness_monitor
 
         only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
-        return RobustnessMonitor(self._compiled, only, settle, names, streams=streams)
+        return robustness_monitor(self._compiled, only, settle, names, engine, streams=streams)
 
     @cached_property
     def coverage_model(self) -> SpecCoverage:

@@ -153,10 +153,6 @@ class BatchLibrary:
         sizes = function("sizes", number, address)
         if (sizes(ctypes.byref(rows)), rows.value) != (self.record.itemsize, ctypes.sizeof(_In)):
             raise RvmonError("the C compiler lays out records otherwise than Python does")
-        self.value_types = [
-            np.dtype(bool if value_type(plan, name) == "uint8_t" else np.float64)
-            for name in plan.signals
-        ]
 
 
 class BatchRun:
@@ -206,14 +202,11 @@ class BatchRun:
             RvmonError: memory ran out, or a static capacity.
         """
         plan = self._library.plan
-        for name, limit in self._library.limits.items():
-            _expect_exact(name, columns.get(name, Column()).values, limit, times)
+        bare = {name: one.values for name, one in columns.items()}
+        laid = exact_columns(plan, self._library.limits, times, bare)
         keep: list[Any] = [times := np.ascontiguousarray(times, np.int64), kinds]
         none = Column()
-        values = [
-            _laid(columns.get(name, none).values, kind)
-            for name, kind in zip(plan.signals, self._library.value_types, strict=True)
-        ]
+        values = [laid.get(name) for name in plan.signals]
         given = _In(
             n=len(times),
             t=times.ctypes.data,
@@ -269,8 +262,32 @@ def _expect_exact(
     raise too_large(name, int(values[row]), limit, int(times[row]))
 
 
-def _laid(values: NDArray[Any] | None, kind: np.dtype[Any]) -> NDArray[Any] | None:
-    return None if values is None else np.ascontiguousarray(values, kind)
+def exact_columns(
+    plan: Plan,
+    limits: Mapping[str, int],
+    times: NDArray[np.int64],
+    columns: Mapping[str, NDArray[Any] | None],
+) -> dict[str, NDArray[Any]]:
+    """The columns as C reads them: of truth values bool[n], else float64[n].
+
+    Args:
+        plan: of the monitor.
+        limits: of whole numbers, by name.
+        times: int64[n] ticks, of the rows.
+        columns: by name, be it a field's; `None` never comes.
+
+    Raises:
+        TraceError: a whole number is larger than C computes with exactly.
+    """
+    for name, limit in limits.items():
+        _expect_exact(name, columns.get(name), limit, times)
+    types = {name: bool if value_type(plan, name) == "uint8_t" else float for name in plan.signals}
+    types |= dict.fromkeys(plan.events, bool)
+    return {
+        name: np.ascontiguousarray(values, types[name])
+        for name, values in columns.items()
+        if values is not None and name in types
+    }
 
 
 def _pointers(arrays: Sequence[NDArray[Any] | None], keep: list[Any]) -> int:

@@ -8,7 +8,7 @@ from functools import cached_property
 from rvmon.codegen.c_tables import array
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
-from rvmon.formula.core import Constant, Sense
+from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.plan.plan import Plan
 
@@ -19,6 +19,81 @@ _PAST = -1
 """In the place of what tells when a window is over."""
 
 _WORSE, _BETTER = 1, 2
+
+
+class Forms:
+    """Formulas as C tables of nodes.
+
+    Args:
+        plan: of the whole, which has the numbers of propositions.
+        plans: of the formulas.
+    """
+
+    def __init__(self, plan: Plan, plans: Sequence[NetworkPlan]) -> None:
+        self.plans = plans
+        self._index = plan.graph.index
+
+    def tables(self, what: str = "") -> Iterator[str]:
+        """The nodes, the operands of junctions, and where each formula begins.
+
+        Args:
+            what: how their names begin.
+        """
+        nodes: list[str] = []
+        forms: list[str] = []
+        self._operands: list[int] = []
+        self._leaves = 0
+        for plan in self.plans:
+            leaf, first, self._inputs = self._leaves, len(nodes), 0
+            nodes += [f"    {{{self._node(plan, node)}}}," for node in plan.nodes]
+            sizes = first, len(plan.nodes), self._inputs, leaf, len(plan.leaves)
+            looks_back = str(plan.looks_back).lower()
+            forms.append(f"    {{{', '.join(map(str, sizes))}, {looks_back}}},")
+        yield f"static const node {what}nodes[] = {{"
+        yield from nodes
+        yield "};"
+        yield f"static const form {what}forms[] = {{"
+        yield from forms
+        yield "};"
+        yield array("int32_t", f"{what}operands", self._operands)
+
+    def _node(self, plan: NetworkPlan, node: Node) -> str:
+        """The fields of a node."""
+        match node:
+            case Leaf(core=core):
+                self._leaves += 1
+                place = -1 if isinstance(core, Constant) else self._index[core.proposition]
+                return self._fields("LEAF", False, False, self._leaves - 1, place)
+            case Junction(operands=operands, every=every):
+                start = len(self._operands)
+                self._operands += operands
+                ends = start, start + len(operands)
+                return self._fields("JUNCTION", every, False, *ends, joined=len(operands))
+            case Window(operand=operand, low=low, high=high, every=every, over=over):
+                past = _PAST if over is None else over
+                return self._fields("WINDOW", every, False, operand, 0, low, high, past)
+            case Sweep(left=left, right=right, future=future, dual=dual, kept=kept):
+                kind = "UNTIL" if future else "SINCE"
+                return self._fields(kind, dual, kept, left, right, joined=2)
+            case Shift(operand=operand, offset=offset, opens=opens):
+                kept = plan.sweep_of(node).kept
+                return self._fields("SHIFT", False, kept, operand, 0, offset, offset, opens)
+
+    def _fields(
+        self,
+        kind: str,
+        turned: bool,
+        kept: bool,
+        left: int,
+        right: int,
+        *distances: int,
+        joined: int = 0,
+    ) -> str:
+        """Of a node, as its type in C has them."""
+        ticks = (max(-_FARTHEST, min(one, _FARTHEST)) for one in distances or (0, 0, 0))
+        numbers = [int(turned), str(kept).lower(), left, right, self._inputs]
+        self._inputs += joined
+        return ", ".join([kind, *map(str, numbers), *(f"INT64_C({one})" for one in ticks)])
 
 
 class Networks:
@@ -53,60 +128,20 @@ class Networks:
 
     def tables(self) -> Iterator[str]:
         """What the templates read."""
-        nodes: list[str] = []
-        forms: list[str] = []
-        self._operands: list[int] = []
-        self._values: list[int] = []
-        for plan in self.plans:
-            looks_back = str(plan.looks_back).lower()
-            forms.append(f"    {{{len(nodes)}, {len(plan.nodes)}, {looks_back}}},")
-            nodes += [f"    {{{self._node(plan, node)}}}," for node in plan.nodes]
-        yield "static const node nodes[] = {"
-        yield from nodes
-        yield "};"
-        yield "static const form forms[] = {"
-        yield from forms
-        yield "};"
-        yield array("int32_t", "operands", self._operands)
+        yield from Forms(self._plan, self.plans).tables()
         yield "/* Per leaf, by the truth of what it reads: 1 if it is true for the worse, and 2 for"
         yield " * the better. */"
-        yield array("uint8_t", "leaf_values", self._values)
-
-    def _node(self, plan: NetworkPlan, node: Node) -> str:
-        """The fields of a node."""
-        match node:
-            case Leaf():
-                return self._leaf(node)
-            case Junction(operands=operands, every=every):
-                start = len(self._operands)
-                self._operands += operands
-                return _fields("JUNCTION", every, False, start, start + len(operands))
-            case Window(operand=operand, low=low, high=high, every=every, over=over):
-                past = _PAST if over is None else over
-                return _fields("WINDOW", every, False, operand, 0, low, high, past)
-            case Sweep(left=left, right=right, future=future, dual=dual, kept=kept):
-                return _fields("UNTIL" if future else "SINCE", dual, kept, left, right)
-            case Shift(operand=operand, offset=offset, opens=opens):
-                swept = plan.nodes[operand]
-                kept = isinstance(swept, Sweep) and swept.kept
-                return _fields("SHIFT", False, kept, operand, 0, offset, offset, opens)
-
-    def _leaf(self, leaf: Leaf) -> str:
-        number = len(self._values) // 3
-        core = leaf.core
-        if isinstance(core, Constant):
-            self._values += [(_WORSE + _BETTER) * core.value] * 3
-            return _fields("LEAF", False, False, number, -1)
-        wanted = TRUE if core.sense is Sense.TRUE else FALSE
-        unknown = 0 if core.sense is Sense.KNOWN_FALSE else _BETTER
-        for value in (FALSE, UNKNOWN, TRUE):
-            known = (_WORSE + _BETTER) * (value == wanted)
-            self._values.append(unknown if value == UNKNOWN else known)
-        return _fields("LEAF", False, False, number, self._plan.graph.index[core.proposition])
+        leaves = [core for plan in self.plans for _, core in plan.leaves]
+        yield array("uint8_t", "leaf_values", [one for leaf in leaves for one in _values(leaf)])
 
 
-def _fields(kind: str, turned: bool, kept: bool, left: int, right: int, *distances: int) -> str:
-    """Of a node, as its type in C has them."""
-    low, high, over = (max(-_FARTHEST, min(one, _FARTHEST)) for one in distances or (0, 0, 0))
-    ticks = ", ".join(f"INT64_C({one})" for one in (low, high, over))
-    return f"{kind}, {int(turned)}, {str(kept).lower()}, {left}, {right}, {ticks}"
+def _values(core: Literal | Constant) -> Iterator[int]:
+    """What a leaf counts as where its proposition is FALSE, UNKNOWN and TRUE."""
+    if isinstance(core, Constant):
+        yield from [(_WORSE + _BETTER) * core.value] * 3
+        return
+    wanted = TRUE if core.sense is Sense.TRUE else FALSE
+    unknown = 0 if core.sense is Sense.KNOWN_FALSE else _BETTER
+    for value in (FALSE, UNKNOWN, TRUE):
+        known = (_WORSE + _BETTER) * (value == wanted)
+        yield unknown if value == UNKNOWN else known

@@ -189,6 +189,7 @@ def _asked(rule: PlannedRule) -> Iterator[State]:
     named = (rule.trigger, rule.again, rule.unborn, rule.running, rule.blurs)
     yield from (state for state in named if state is not None)
     yield from rule.alphabet.propositions
+    yield from rule.asked
 
 
 def _guarded(

@@ -20,6 +20,7 @@ from typing import Any, Protocol
 from rvmon.codegen.c_build import NATIVE, Build, loaded
 from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import whole_limits
+from rvmon.codegen.c_margins import Measures
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array, lists
@@ -34,6 +35,7 @@ from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 
 _PARTS = ("online.c.in", "online_calls.c.in", "online_type.c.in")
+_PARTS_MEASURED = (*_PARTS[:2], "online_margins.c.in", _PARTS[2])
 _PARTS_BESIDE = (*_PARTS[:2], "beside.c.in", "beside_state.c.in", _PARTS[2])
 
 _MODULE = "rvmon_online"
@@ -143,6 +145,26 @@ class Core(Protocol):
     def reset(self) -> None:
         """Begin anew."""
 
+    # Where robustness is measured; `step`, `step_ns`, `flush` and `open` then give `Measured`.
+
+    def feed(self, times: Any, columns: tuple[Any, ...], /) -> int:
+        """Take samples that are rows.
+
+        Args:
+            times: int64[n] ticks.
+            columns: per signal and event an array: bool[n], or float64[n] of numbers, NaN where
+                nothing is known; `None`: it never comes.
+
+        Returns:
+            How many were taken: fewer than given if one is out of order.
+        """
+
+    def figures(self) -> bytes:
+        """What was settled of attempts and not given out, as `margin_judge.c.in` lays it out."""
+
+    def series(self, requirement: int, /) -> tuple[bytes, bytes, bytes, bytes]:
+        """What a requirement owes at the rows: int64[n] ticks, three times float64[n]."""
+
 
 @dataclass(frozen=True, slots=True)
 class OnlineLibrary:
@@ -168,6 +190,7 @@ class OnlineLibrary:
         look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
         heard: Callable[[Sequence[Attempt]], object] | None = None,
         details: Any = None,
+        measured: tuple[Any, ...] = (),
     ) -> Core:
         """Begin a run.
 
@@ -177,6 +200,8 @@ class OnlineLibrary:
             look_closer_ns: the same at ticks.
             heard: beside Python, hears of decisions if they are attended.
             details: beside Python what gives attempts their other fields, one per rule.
+            measured: where robustness is measured, whether of each position of a sample, and the
+                type of a figure with its fields, and that of its bounds with theirs.
         """
         plan, names = self.plan, self.names
         called = (*plan.signals, *plan.events)
@@ -202,16 +227,20 @@ class OnlineLibrary:
                 DECISIONS,
                 _Details(plan) if details is None else details,
             ),
+            measured,
         )
 
 
-def online_build(plan: Plan, *, optimised: bool = True, beside: bool = False) -> Build:
+def online_build(
+    plan: Plan, *, optimised: bool = True, beside: bool = False, measured: bool = False
+) -> Build:
     """The module of a plan.
 
     Args:
         plan: of requirements that all have automata.
         optimised: whether it is to be fast; otherwise it is compiled sooner.
         beside: whether it stands beside a monitor in Python, which lends its state.
+        measured: whether it tells of robustness, and not of verdicts.
 
     Raises:
         RvmonError: a number of the specification is no double.
@@ -220,26 +249,34 @@ def online_build(plan: Plan, *, optimised: bool = True, beside: bool = False) ->
     named = replace(plan, spec=replace(plan.spec, name="rvmon"))
     made = c_files(named)
     name = f"{made.prefix}_online.c"
-    texts = {**made.texts, name: online_source(named, beside=beside), "python.txt": sys.version}
+    texts = {
+        **made.texts,
+        name: online_source(named, beside=beside, measured=measured),
+        "python.txt": sys.version,
+    }
     flags = [*(FAST if optimised else ("-O0",)), *_SHARED]
     return Build(
         texts, [name, *made.units], EXTENSION_SUFFIXES[0], flags, sysconfig.get_path("include")
     )
 
 
-def online_library(plan: Plan, *, optimised: bool = True, beside: bool = False) -> OnlineLibrary:
+def online_library(
+    plan: Plan, *, optimised: bool = True, beside: bool = False, measured: bool = False
+) -> OnlineLibrary:
     """Compile a plan, once for each content.
 
     Args:
         plan: as for `online_build`; so are the others.
         optimised: whether it is to be fast.
         beside: see there.
+        measured: see there.
 
     Raises:
         RvmonError: there is no C compiler, or no header of Python; a requirement has no automaton,
             or a number of the specification is no double.
     """
-    return library_of(plan, loaded(online_build(plan, optimised=optimised, beside=beside), type_in))
+    build = online_build(plan, optimised=optimised, beside=beside, measured=measured)
+    return library_of(plan, loaded(build, type_in))
 
 
 def library_of(plan: Plan, type_: Callable[..., Core]) -> OnlineLibrary:
@@ -264,16 +301,20 @@ def type_in(path: Path) -> Callable[..., Core]:
     return made
 
 
-def online_source(plan: Plan, *, beside: bool = False) -> str:
+def online_source(plan: Plan, *, beside: bool = False, measured: bool = False) -> str:
     """The source of the module; it includes that of `rvmon.codegen.c_source.c_files`.
 
     Args:
-        plan: see `online_build`; so is the other.
+        plan: see `online_build`; so are the others.
         beside: see there.
+        measured: see there.
     """
     names = Names(plan)
+    heads = ["beside"] if beside else ["margin"] if measured else []
     places = {  # the first ones hold others
-        "BESIDE_HEAD": template("beside_head.c.in") if beside else "",
+        "HEAD": "".join(template(f"{head}_head.c.in") for head in heads),
+        "MEASURES": str(int(measured)),
+        "MEASURING": Measures(plan).source() if measured else "",
         "BESIDE": str(int(beside)),
         "HEAP": template("heap.c.in"),
         "KINDS": "\n".join((*_kinds(plan, names), *(_noted(plan, names) if beside else ()))),
@@ -281,7 +322,7 @@ def online_source(plan: Plan, *, beside: bool = False) -> str:
         "PREFIX": names.prefix.upper(),
         "prefix": names.prefix,
     }
-    parts = _PARTS_BESIDE if beside else _PARTS
+    parts = _PARTS_BESIDE if beside else _PARTS_MEASURED if measured else _PARTS
     return filled("".join(template(part) for part in parts), places)
 
 

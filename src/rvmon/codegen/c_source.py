@@ -37,8 +37,12 @@ _BEGIN = ("monitor_head.c.in", "monitor_tokens.c.in")
 _DRIVE = ("monitor_drive.c.in", "monitor_clock.c.in", "monitor_run.c.in")
 _UNIT = ("unit_monitors.c.in", "unit_keys.c.in", "unit_api.c.in")
 
-_NETWORK = tuple(
-    f"network_{part}.c.in" for part in ("ranges", "known", "nodes", "state", "attempts", "judge")
+_NETWORK = (
+    "formulas.c.in",
+    *(
+        f"network_{part}.c.in"
+        for part in ("ranges", "known", "nodes", "state", "attempts", "judge")
+    ),
 )
 """What stands behind the attempts where a network judges some of them."""
 

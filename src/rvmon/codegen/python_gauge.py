@@ -30,7 +30,7 @@ class GaugeWriter:
         self.gap = gap or 1
         self.sparse = gap is None
         self.fixed = _fixed(plan)
-        self.alone = _asked_alone(plan)
+        self.alone = asked_alone(plan)
         self.state: dict[str, str] = {}
 
     def is_leaf(self, place: int) -> bool:
@@ -66,7 +66,7 @@ def _fixed(plan: NetworkPlan) -> Mapping[int, str]:
     return found
 
 
-def _asked_alone(plan: NetworkPlan) -> set[int]:
+def asked_alone(plan: NetworkPlan) -> set[int]:
     """The nodes whose value matters only at the positions that the formula is asked for at."""
     alone, elsewhere = {len(plan.nodes) - 1}, set[int]()
     for place in range(len(plan.nodes) - 1, -1, -1):

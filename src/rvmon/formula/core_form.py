@@ -29,14 +29,17 @@ class Lowering:
         factory: where core formulas are made.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         favour: whether what is not born counts in favour of what is owed.
+        measured: see `rvmon.formula.four.Reader`.
 
     Attributes:
         origins: where what was made comes from.
     """
 
-    def __init__(self, factory: Factory, period: int | None, favour: bool) -> None:
+    def __init__(
+        self, factory: Factory, period: int | None, favour: bool, *, measured: bool = False
+    ) -> None:
         self.factory = factory
-        self.reader = Reader(factory, period)
+        self.reader = Reader(factory, period, measured=measured)
         self.favour = favour
         self.origins: dict[Core, Origin] = {}
         self._made_up: dict[int, Formula] = {}

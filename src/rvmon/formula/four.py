@@ -96,13 +96,16 @@ class Reader(Reading[Four]):
     Args:
         factory: where they are made.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
+        measured: whether what is made has the robustness that the formula has, and not its truth
+            alone, which takes more formulas.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
 
-    def __init__(self, factory: Factory, period: int | None) -> None:
+    def __init__(self, factory: Factory, period: int | None, *, measured: bool = False) -> None:
         self.factory = factory
         self.period = period
+        self.measured = measured
         self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
@@ -204,12 +207,27 @@ class Reader(Reading[Four]):
 
         def read(reading: int) -> State:
             joined = factory.state_all([arg.read(reading or TRUE) for arg in args])
+            if reading == FALSE and self.measured:
+                return self._measured(args, joined, unborn)
             if reading != FALSE or unborn is factory.state_false:
                 return joined
             born_or_not_true = [factory.negation(unborn), factory.negation(joined)]
             return factory.state_all([joined, factory.state_any(born_or_not_true)])
 
         return Four(factory, read, mortal=any(arg.mortal for arg in args), parts=args)
+
+    def _measured(self, args: Sequence[Four], joined: State, unborn: State) -> State:
+        """All of some, FALSE where one is not born: by any distance, unless one was lost.
+
+        Args:
+            args: the formulas.
+            joined: all of them, TRUE where not born.
+            unborn: that one is not born.
+        """
+        factory = self.factory
+        lost = factory.state_all([joined, factory.negation(joined)])
+        born = factory.state_any([factory.negation(unborn), lost])
+        return factory.state_all([*(arg.read(UNKNOWN) for arg in args), born])
 
     def _some_unborn(self, args: Sequence[Four]) -> State:
         """Two-valued: one of them is not born; what is read off the input is one leaf."""

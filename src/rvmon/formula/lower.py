@@ -26,19 +26,26 @@ from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.spec.checked.tense import has_future, subformulas
 
 
-def lower(requirement: Requirement, factory: Factory, period: int | None = None) -> Obligation:
+def lower(
+    requirement: Requirement,
+    factory: Factory,
+    period: int | None = None,
+    *,
+    measured: bool = False,
+) -> Obligation:
     """Bring a requirement into core form.
 
     Args:
         requirement: as checked.
         factory: where its formulas are made; shared by the requirements of a spec.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
+        measured: see `rvmon.formula.four.Reader`.
 
     Raises:
         UnmonitorableError: the trigger speaks of the future.
     """
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
-    lowering = Lowering(factory, period, favour)
+    lowering = Lowering(factory, period, favour, measured=measured)
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
             return Obligation(None, lowering.core(requirement.consequent, True), lowering.origins)

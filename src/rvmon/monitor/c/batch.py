@@ -111,6 +111,13 @@ def evaluate_samples(
         return judging.report(source.end)
 
 
+def out_of_order(row: int, t: int) -> TimeOrderError:
+    """The error of a row at `t` ticks that is not after the one before."""
+    return TimeOrderError(
+        f"row {row} at {format_ticks(t)} is not after the one before: sort the recording by time"
+    )
+
+
 class _Judging:
     """A run of a compiled monitor over the rows of one recording."""
 
@@ -138,10 +145,7 @@ class _Judging:
     ) -> None:
         taken = self._run.feed(times, columns, kinds)
         if taken < len(times):
-            raise TimeOrderError(
-                f"row {self._rows + taken} at {format_ticks(int(times[taken]))} is not after the "
-                "one before: sort the recording by time"
-            )
+            raise out_of_order(self._rows + taken, int(times[taken]))
         if self._origin is None and len(times):
             self._origin = int(times[0])
         self._rows += taken

@@ -33,6 +33,7 @@ class CompiledMonitor(Monitor):
         requirements: to be judged.
         settle: see `build_monitor`.
         sources: the names that can arrive; `None`: all.
+        measured: see `rvmon.codegen.c_online.OnlineLibrary.core`.
     """
 
     def __init__(
@@ -42,13 +43,18 @@ class CompiledMonitor(Monitor):
         requirements: Sequence[CompiledRequirement],
         settle: str,
         sources: frozenset[str] | None,
+        *,
+        measured: tuple[Any, ...] = (),
     ) -> None:
         names = {*compiled.checked.signals, *compiled.checked.events}
         absent = frozenset() if sources is None else frozenset(names - sources)
         self._library = library
         self._ids = [one.requirement.id for one in requirements]
         self._core = library.core(
-            absent, look_closer=self._take_at, look_closer_ns=self._look_closer
+            absent,
+            look_closer=self._take_at,
+            look_closer_ns=self._look_closer,
+            measured=measured,
         )
         super().__init__(compiled, requirements, "c", settle, sources, None)
 

@@ -10,10 +10,8 @@ import numpy as np
 from rvmon.dataflow.margin_arrays import Steps, Whole, steps_of
 from rvmon.dataflow.margin_end import End, Rest
 from rvmon.dataflow.margins import INFINITE, base_factor, signed
-from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import Sweep
 from rvmon.formula.core import Constant, Literal, Sense
-from rvmon.formula.expand import expanded
 from rvmon.monitor.columns.leaves import NotByColumnsError, distance
 from rvmon.monitor.columns.reading import Flat
 from rvmon.monitor.columns.timeline import Timeline
@@ -79,7 +77,7 @@ class ColumnMargins:
         if one.requirement.captures or one.requirement.for_each or one.gap not in (None, 1):
             raise NotByColumnsError
         self._trace = trace
-        self._plan = plan_of(expanded(one.obligation.owed), one.gap)
+        self._plan = one.measured_plan
         leaves = self._leaves()
         low, high = (self._steps(leaves, rest) for rest in (Rest.LEAST, Rest.GREATEST))
         swept = any(isinstance(node, Sweep) and node.future for node in self._plan.nodes)

@@ -69,6 +69,7 @@ def _rule(
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
+        measured=one.measured.owed if measured else None,
     )
 
 
@@ -86,12 +87,15 @@ def _planned(requirement: CompiledRequirement, explained: bool) -> Automaton | N
     return requirement.automaton if explained else requirement.slim
 
 
-def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
+def plan_alone(
+    compiled: CompiledSpec, only: Iterable[str] | None = None, *, measured: bool = False
+) -> Plan:
     """The plan of what is to run without rvmon.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
+        measured: see `plan_requirements`.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
@@ -103,4 +107,5 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     chosen = compiled.chosen(ids)
     refuse(chosen, of_c, "generated code")
-    return plan_in_units(compiled.checked, [_rule(one, explained=False) for one in chosen])
+    rules = [_rule(one, explained=False, measured=measured) for one in chosen]
+    return plan_in_units(compiled.checked, rules)

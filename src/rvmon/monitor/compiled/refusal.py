@@ -152,6 +152,19 @@ def of_c(one: CompiledRequirement) -> Refusal | None:
     return None
 
 
+def of_measured_c(one: CompiledRequirement) -> Refusal | None:
+    """What compiled C does not measure."""
+    reason = ""
+    if one.obligation.trigger is None:
+        reason = "is judged `upon end`"
+    elif one.gap not in (None, 1):
+        reason = "has a clock of several ticks"
+    elif one.measures_payloads:
+        reason = "compares payloads"
+    own = Refusal(reason, _LEAVE_OUT, "python") if reason else None
+    return of_c(one) or _of_captured(one) or own
+
+
 def of_prepared(one: CompiledRequirement) -> Refusal | None:
     """What `auto` does not have compiled C judge, be that prepared: Python does all of it."""
     generated = of_generated(one)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,6 +21,7 @@ from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.soonest_news import delay_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
+from rvmon.formula.core import Literal
 from rvmon.formula.expand import expanded
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
@@ -85,6 +86,8 @@ class CompiledRequirement:
         alphabet: of what it owes.
         gap: ticks between two positions; `None` if only samples are positions.
         is_beside: whether this judges the attempts in doubt of a requirement.
+        measured: its formulas as they are measured: their truth is that of `obligation`.
+        measures: whether evaluators work out what is measured, too.
     """
 
     def __init__(
@@ -96,9 +99,13 @@ class CompiledRequirement:
         factory: Factory,
         *,
         is_beside: bool = False,
+        measured: Callable[[], Obligation] | None = None,
+        measures: bool = False,
     ) -> None:
         self._factory = factory
         self.is_beside = is_beside
+        self._measured = measured
+        self.measures = measures
         self.rank = rank
         self.spec = spec
         self.gap = spec.gap
@@ -172,12 +179,12 @@ class CompiledRequirement:
     @cached_property
     def hidden(self) -> CompiledRequirement | None:
         """What judges its attempts in doubt; `None` if there are none."""
-        return self._beside(self.obligation.hidden)
+        return self._beside(self.obligation.hidden, lambda: self.measured.hidden)
 
     @cached_property
     def doubted(self) -> CompiledRequirement | None:
         """The same where no trigger is sure."""
-        return self._beside(self.obligation.doubted)
+        return self._beside(self.obligation.doubted, lambda: self.measured.doubted)
 
     @property
     def judges(self) -> Mapping[str, CompiledRequirement]:
@@ -185,11 +192,20 @@ class CompiledRequirement:
         beside = {"": self, "?": self.hidden, "??": self.doubted}
         return {kind: one for kind, one in beside.items() if one is not None}
 
-    def _beside(self, obligation: Obligation | None) -> CompiledRequirement | None:
+    def _beside(
+        self, obligation: Obligation | None, measured: Callable[[], Obligation | None]
+    ) -> CompiledRequirement | None:
         if obligation is None:
             return None
         return CompiledRequirement(
-            self.rank, self.spec, self.requirement, obligation, self._factory, is_beside=True
+            self.rank,
+            self.spec,
+            self.requirement,
+            obligation,
+            self._factory,
+            is_beside=True,
+            measured=lambda: measured() or obligation,
+            measures=self.measures,
         )
 
     @cached_property
@@ -208,7 +224,33 @@ class CompiledRequirement:
     @cached_property
     def measured_plan(self) -> NetworkPlan:
         """The same of what it owes as far as that is measured, past operators included."""
-        return plan_of(expanded(self.obligation.owed), self.gap)
+        return plan_of(expanded(self.measured.owed), self.gap)
+
+    @cached_property
+    def measured(self) -> Obligation:
+        """See `CompiledRequirement`."""
+        if self._measured is not None:
+            return self._measured()
+        return lower(self.requirement, self._factory, self.spec.period, measured=True)
+
+    @property
+    def measures_payloads(self) -> bool:
+        """Whether payloads are compared in what is measured of it."""
+        leaves = [
+            core.proposition.leaf
+            for one in self.judges.values()
+            for _, core in one.measured_plan.leaves
+            if isinstance(core, Literal)
+        ]
+        return any(
+            isinstance(leaf, Compare) and events_of(leaf.left, leaf.right) for leaf in leaves
+        )
+
+    @cached_property
+    def measuring(self) -> CompiledRequirement:
+        """The same for runs in which evaluators work out what is measured."""
+        given = (self.rank, self.spec, self.requirement, self.obligation, self._factory)
+        return CompiledRequirement(*given, measures=True)
 
     def network_delay(self, letter: Sequence[bool]) -> int:
         """Ticks that pass in its delay network until an attempt that begins can be decided."""
@@ -277,6 +319,9 @@ class CompiledRequirement:
         if self.requirement.mode is Mode.WHENEVER:
             states = (obligation.trigger, obligation.running)
             yield from (one for one in states if one is not None)
+        if self.measures:
+            read = (core for _, core in self.measured_plan.leaves)
+            yield from (core.proposition for core in read if isinstance(core, Literal))
 
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:

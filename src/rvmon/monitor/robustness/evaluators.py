@@ -10,7 +10,7 @@ from typing import Any
 from rvmon.automaton.machine import Token
 from rvmon.codegen.python_unit import margins_function
 from rvmon.dataflow.nodes import NetworkPlan
-from rvmon.formula.core import Constant, Literal
+from rvmon.formula.core import Literal
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.instance import Instance
@@ -25,7 +25,6 @@ from rvmon.monitor.robustness.gauged import Gauged
 from rvmon.monitor.robustness.margin_judge import MarginJudge
 from rvmon.plan.graph import Graph
 from rvmon.plan.leaves import reads
-from rvmon.plan.numbers import events_of
 from rvmon.plan.plan import Plan
 from rvmon.runtime.past import History
 from rvmon.runtime.rule import Rule
@@ -55,7 +54,7 @@ def measuring_forms(
         if waits or len(requirements) > MOST_GENERATED:
             by_unit = []
         forms = forms_of(compiled, by_unit, sources, measured=True)
-        others = [one for one in requirements if one not in by_unit]
+        others = [one.measuring for one in requirements if one not in by_unit]
         compiled.forms[key] = replace(forms, others=others, unit=_watched(forms.unit))
     found = compiled.forms[key]
     assert isinstance(found, Forms)  # noqa: S101 - it is what was put there
@@ -64,17 +63,7 @@ def measuring_forms(
 
 def _is_for_unit(compiled: CompiledRequirement) -> bool:
     """Whether all that is measured can be read when a sample was taken or a position visited."""
-    return compiled.is_fed and compiled.gap in (None, 1) and not _reads_payloads(compiled)
-
-
-def _reads_payloads(compiled: CompiledRequirement) -> bool:
-    leaves = [
-        core.proposition.leaf
-        for one in compiled.judges.values()
-        for _, core in one.measured_plan.leaves
-        if not isinstance(core, Constant)
-    ]
-    return any(isinstance(leaf, Compare) and events_of(leaf.left, leaf.right) for leaf in leaves)
+    return compiled.is_fed and compiled.gap in (None, 1) and not compiled.measures_payloads
 
 
 def _watched(unit: type[Unit]) -> type[Unit]:

@@ -302,3 +302,11 @@ def test_labels_have_no_difference(op):
         monitor.step(0, {"a": "right", "b": "left"})
         [found] = monitor.step(1, {"e": True})
         assert found.robustness.low == (INFINITE if op == "!=" else -INFINITE)
+
+
+@pytest.mark.parametrize(("bound", "high"), [("5 cm", INFINITE), ("-5 cm", -INFINITE)])
+def test_a_conjunction_of_which_a_part_had_no_value_is_at_no_known_distance(bound, high):
+    """What was never known is not taken for true below an operator of the past."""
+    found = margins(f"upon start then once (x <= {bound} and p)", [(0, {"x": 1})])
+    attempt = found.attempts["R1", 1]
+    assert (attempt.low, attempt.high) == (-INFINITE, high)
