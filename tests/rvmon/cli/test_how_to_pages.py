@@ -32,7 +32,8 @@ def test_the_page_is_true(tmp_path, monkeypatch, capsys, name):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "examples" / "base.csv", tmp_path)
     commands = set()
-    for kind, text in re.findall(r"```(rv|csv|jsonl|toml|console|python)\n(.*?)```", page, re.DOTALL):
+    blocks = r"```(rv|csv|jsonl|toml|console|python)\n(.*?)```"
+    for kind, text in re.findall(blocks, page, re.DOTALL):
         if kind == "python":
             exec(text, {})  # noqa: S102 - our page
             capsys.readouterr()
