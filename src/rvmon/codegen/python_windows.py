@@ -66,7 +66,7 @@ class _Writer:
         """The class."""
         yield "class Generated(Windows):"
         for signature, body in (
-            ("__init__(self, letter)", self._init()),
+            ("__init__(self, start, letter)", self._init()),
             ("note(self, position, letter)", self._note()),
             ("outcome(self, position)", self._outcome()),
             ("forget(self, position)", self._forget()),
@@ -89,7 +89,7 @@ class _Writer:
         if self.chain.left is not None:
             yield f"self.ended = self.end_begun = {self._value(self.chain.left)}"
             yield "self.ends = []"
-            yield "self.start = -NEVER"
+            yield "self.start = start"
         if self.sparse:
             yield "self.stamps = []"
 

@@ -97,10 +97,11 @@ class Windows:
     """What generated code follows a chain by; see `rvmon.codegen.python_windows`.
 
     Args:
-        letter: that of the first position, the truth of each of the plan's leaves.
+        start: the first position; what is kept up is well up to there.
+        letter: that of the position, the truth of each of the plan's leaves.
     """
 
-    def __init__(self, letter: Sequence[bool]) -> None:
+    def __init__(self, start: int, letter: Sequence[bool]) -> None:
         raise NotImplementedError
 
     def note(self, position: int, letter: Sequence[bool]) -> None:

@@ -51,8 +51,9 @@ class Journal:
     def noted_since(self, t: int) -> list[tuple[int, Sequence[bool]]]:
         """The positions that it was told of, from `t` on, at which the letter stood as well."""
         noted = [(at, letter) for at, letter, _ in self._told if letter is not None]
-        count = bisect_right(noted, t, key=itemgetter(0))
-        return [(t, noted[count - 1][1]), *noted[count:]]
+        count = max(bisect_right(noted, t, key=itemgetter(0)), 1)
+        at, letter = noted[count - 1]
+        return [(max(t, at), letter), *noted[count:]]
 
     def note(self, network: Network | None, t: int, letter: Sequence[bool]) -> None:
         """Tell the network of a position, if there is one by now; see `Network.note`."""

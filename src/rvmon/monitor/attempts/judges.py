@@ -39,8 +39,9 @@ def judge_of(
         **kind: `rank`, `hidden` and so on.
     """
     if compiled.is_beside or compiled.engine(engine) == "network":
-        made = NetworkJudge if compiled.windows is None else WindowJudge
-        return made(compiled, standing, clerk, captured, **kind)
+        if compiled.windows is None:
+            return NetworkJudge(compiled, standing, clerk, captured, **kind)
+        return WindowJudge(*compiled.windows, compiled, standing, clerk, captured, **kind)
     return MachineJudge(compiled, compiled.machine(engine), standing, clerk, captured, **kind)
 
 

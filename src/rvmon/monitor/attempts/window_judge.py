@@ -7,6 +7,7 @@ positions when somebody asks.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from rvmon.dataflow.chain import Windows
@@ -17,13 +18,28 @@ from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge, position
 from rvmon.monitor.attempts.network_letters import Letters
 from rvmon.runtime.values import NEVER
 
+Noted = tuple[int, Sequence[bool]]
+"""An instant and the letter from there on."""
+
 
 class WindowJudge(NetworkJudge):
-    """Judges by generated code as long as nothing is unknown; then, until it rests, by networks."""
+    """Judges by generated code; where something is unknown, by networks for a while.
 
-    def __init__(self, *args: Any, **kind: Any) -> None:
+    Args:
+        windows: the class of that code.
+        reach: ticks after which what was unknown does not matter to it any more.
+        *args: as for `NetworkJudge`.
+        **kind: the same.
+    """
+
+    def __init__(self, windows: type[Windows], reach: int, *args: Any, **kind: Any) -> None:
+        self._made, self._reach = windows, reach
         self._network: Network | None = None
         self._windows: Windows | None = None
+        self._clear: list[Noted] = []
+        """What was noted, while networks judge, since nothing is unknown."""
+        self._torn = False
+        """Whether an interrupt left the code with a part of a position."""
         super().__init__(*args, **kind)
 
     @property
@@ -47,12 +63,16 @@ class WindowJudge(NetworkJudge):
 
     def visit(self, t: int) -> None:
         """See `NetworkJudge`."""
-        if self._windows is not None or (self._network is None and self._is_waited_for):
-            letters = self._read(self.flow.values)
-            if letters[0] == letters[1]:
-                self._follow(t, letters)
-                return
-            self._fall_back()
+        if self._windows is None and not (self._network is None and self._is_waited_for):
+            super().visit(t)
+            if self._network is not None and self._letters is not None:
+                self._note_clear(t, self._letters)
+            return
+        letters = self._read(self.flow.values)
+        if letters[0] == letters[1]:
+            self._follow(t, letters)
+            return
+        self._fall_back()
         super().visit(t)
 
     def _follow(self, t: int, letters: Letters) -> None:
@@ -60,32 +80,42 @@ class WindowJudge(NetworkJudge):
             self._letters, letter = letters, letters[0]
             windows, journal = self._windows, self._journals[0]
             if windows is None or journal is None:
-                made = self.compiled.windows
-                if made is None:
-                    raise AssertionError("such a requirement is judged by networks")
-                windows = self._windows = made(letter)
-                journal = self._journals[0] = Journal(Network(self.plan, self.flow.gap))
-            elif journal.is_over:
-                journal = self._renewed(windows, journal)
-            journal.note(None, t, letter)
-            windows.note(t // (self.flow.gap or 1), letter)
+                self._begin_windows([(t, letter)])
+            else:
+                if journal.is_over:
+                    gap = self.flow.gap or 1
+                    noted = journal.noted_since(windows.forget(self.position // gap) * gap)
+                    journal = self._journals[0] = self._journal_of(noted)
+                self._torn = True
+                journal.note(None, t, letter)
+                windows.note(t // (self.flow.gap or 1), letter)
+                self._torn = False
         self.position = t
         self._look(2 * t + 1)
 
-    def _renewed(self, windows: Windows, journal: Journal) -> Journal:
-        """A journal of what may still be asked for."""
+    def _begin_windows(self, noted: Sequence[Noted]) -> Windows:
+        """Have generated code judge what is open from now on."""
         gap = self.flow.gap or 1
-        start = windows.forget(self.position // gap)
-        noted = journal.noted_since(start * gap)
+        start, letter = noted[0]
+        windows = self._made(start // gap, letter)
+        for at, letter in noted:
+            windows.note(at // gap, letter)
+        self._journals = [self._journal_of(noted), None]
+        self._windows = windows
+        return windows
+
+    def _journal_of(self, noted: Sequence[Noted]) -> Journal:
+        """A journal that begins with what may still be asked for."""
+        gap, (t, letter) = self.flow.gap or 1, noted[0]
         network = Network(self.plan, self.flow.gap)
         first = self._first_waiting(better=False)
-        start = noted[0][0] // gap
-        network.begin_at(start, start if first is None else min(first // gap, start), noted[0][1])
-        self._journals[0] = journal = Journal(network, noted)
-        return journal
+        if first is not None and first < t:
+            network.begin_at(t // gap, first // gap, letter)
+        return Journal(network, noted)
 
     def _fall_back(self) -> None:
         """Have networks judge what is open."""
+        self._clear = []
         if self._windows is None:
             super()._begin_network()
             return
@@ -93,6 +123,26 @@ class WindowJudge(NetworkJudge):
         self._network, self._windows = network and network.copy(), None
         self._journals = [None, None]
         self._bounded_at = -FOREVER
+
+    def _note_clear(self, t: int, letters: Letters) -> None:
+        """Go back to generated code once all that was unknown is too long ago to matter.
+
+        What is known of all positions before then leaves an attempt open for good, or only leads on
+        to them.
+        """
+        clear = self._clear
+        if letters[0] != letters[1]:
+            clear.clear()
+            return
+        if not clear or clear[-1][1] != letters[0] or self.flow.gap is None:
+            clear.append((t, letters[0]))
+        if t - clear[0][0] <= self._reach:
+            return
+        self._clear = []
+        if not any(one.better is not None and _waits(one) for one in self.attempts):
+            self._network = self.better = None
+            self._begin_windows(clear)
+            self._look(2 * t + 1)
 
     def _join(self, attempt: Open, t: int) -> None:
         if self._network is not None:
@@ -105,12 +155,15 @@ class WindowJudge(NetworkJudge):
         if windows is None or journal is None:
             super()._look(limit)
             return
+        if self._torn:
+            windows = self._begin_windows(journal.noted_since(-FOREVER))
+            self._torn = False
         self.now = limit
         gap, attempts = self.flow.gap or 1, self.attempts
         found = []
         due = NEVER
         parted = 0  # what the unknown leaves open comes before all that waits
-        while attempts[parted].token[0] != WAITING:
+        while parted < len(attempts) and attempts[parted].token[0] != WAITING:
             parted += 1
         for attempt in attempts[parted:] if parted else attempts:
             value, at = windows.outcome(position_of(attempt) // gap)
@@ -120,13 +173,13 @@ class WindowJudge(NetworkJudge):
             found.append((attempt, value, at // 2))
         if found:
             journal.grow(None, limit, position_of(found[0][0]))
-            del attempts[parted : parted + len(found)]
             self._stood = None
             for attempt, value, t in found:
                 self._decided(attempt, value, max(t, position_of(attempt)), attempt.token)
-            if len(attempts) == parted:
-                self._windows = self._letters = None
-                self._journals = [None, None]
+            del attempts[parted : parted + len(found)]
+        if len(attempts) == parted:
+            self._windows = self._letters = None
+            self._journals = [None, None]
         self.due = due
         self.restless = self.flow.gap is None and self._windows is not None
 
@@ -156,3 +209,8 @@ class WindowJudge(NetworkJudge):
         if self._windows is not None:
             self._fall_back()
         return super().held_at_end(attempt, end, reached)
+
+
+def _waits(attempt: Open) -> bool:
+    """Whether an attempt that is split is waited for."""
+    return WAITING in (attempt.token[0], attempt.better and attempt.better[0])
