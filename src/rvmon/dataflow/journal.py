@@ -57,9 +57,11 @@ class Journal:
 
     def note(self, network: Network | None, t: int, letter: Sequence[bool]) -> None:
         """Tell the network of a position, if there is one by now; see `Network.note`."""
+        self._telling = True
         if network is not None:
             network.note(t, letter)
         self._told.append((t, letter, None))
+        self._telling = False
 
     def grow(self, network: Network | None, limit: int, wanted: int | None = None) -> None:
         """Tell the network of time, if there is one by now; see `Network.grow`."""

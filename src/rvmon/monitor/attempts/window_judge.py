@@ -39,7 +39,7 @@ class WindowJudge(NetworkJudge):
         self._clear: list[Noted] = []
         """What was noted, while networks judge, since nothing is unknown."""
         self._torn = False
-        """Whether an interrupt left the code with a part of a position."""
+        """Whether the code is at work; else, if an interrupt left it with a part of a position."""
         super().__init__(*args, **kind)
 
     @property
@@ -48,7 +48,7 @@ class WindowJudge(NetworkJudge):
         journal = self._journals[0]
         if self._windows is None or journal is None:
             return self._network
-        if not journal.is_at(self.now):
+        if not (self._torn or journal.is_at(self.now)):
             journal.grow(None, self.now, self._first_waiting(better=False))
         return journal.after(len(journal))
 
@@ -57,12 +57,16 @@ class WindowJudge(NetworkJudge):
         self._network = network
 
     def _begin_network(self) -> None:
+        if self._torn:
+            self._mend()
         if self._network is None and self._windows is None:
             self._letters = None
             self.sleeps = -NEVER
 
     def visit(self, t: int) -> None:
         """See `NetworkJudge`."""
+        if self._torn:
+            self._mend()
         if self._windows is None and not (self._network is None and self._is_waited_for):
             super().visit(t)
             if self._network is not None and self._letters is not None:
@@ -77,7 +81,7 @@ class WindowJudge(NetworkJudge):
 
     def _follow(self, t: int, letters: Letters) -> None:
         if letters != self._letters or self.flow.gap is None:
-            self._letters, letter = letters, letters[0]
+            self._torn, letter = True, letters[0]
             windows, journal = self._windows, self._journals[0]
             if windows is None or journal is None:
                 self._begin_windows([(t, letter)])
@@ -86,10 +90,9 @@ class WindowJudge(NetworkJudge):
                     gap = self.flow.gap or 1
                     noted = journal.noted_since(windows.forget(self.position // gap) * gap)
                     journal = self._journals[0] = self._journal_of(noted)
-                self._torn = True
                 journal.note(None, t, letter)
                 windows.note(t // (self.flow.gap or 1), letter)
-                self._torn = False
+            self._letters = letters
         self.position = t
         self._look(2 * t + 1)
 
@@ -124,6 +127,12 @@ class WindowJudge(NetworkJudge):
         self._journals = [None, None]
         self._bounded_at = -FOREVER
 
+    def _mend(self) -> None:
+        """Go on by networks behind an interrupt: those are told of whole positions."""
+        if self._windows is not None:
+            self._fall_back()
+        self._torn = False
+
     def _note_clear(self, t: int, letters: Letters) -> None:
         """Go back to generated code once all that was unknown is too long ago to matter.
 
@@ -155,10 +164,7 @@ class WindowJudge(NetworkJudge):
         if windows is None or journal is None:
             super()._look(limit)
             return
-        if self._torn:
-            windows = self._begin_windows(journal.noted_since(-FOREVER))
-            self._torn = False
-        self.now = limit
+        self._torn = True
         gap, attempts = self.flow.gap or 1, self.attempts
         found = []
         due = NEVER
@@ -180,14 +186,17 @@ class WindowJudge(NetworkJudge):
         if len(attempts) == parted:
             self._windows = self._letters = None
             self._journals = [None, None]
-        self.due = due
+        self.now, self.due = limit, due
         self.restless = self.flow.gap is None and self._windows is not None
+        self._torn = False
 
     def _rest(self) -> None:
         if self._windows is None:
             super()._rest()
 
     def _wait(self, limit: int) -> None:
+        if self._torn:
+            self._mend()
         if self._windows is None:
             super()._wait(limit)
         else:
