@@ -209,7 +209,7 @@ class _Writer:
         yield f"start = position - {self.chain.reach // self.gap + 2}"
         if self.sparse:
             yield "stamps = self.stamps"
-            yield "del stamps[:bisect_left(stamps, start)]"
+            yield "del stamps[:min(bisect_left(stamps, start), len(stamps) - 1)]"
             yield "start = stamps[0]"
         lists = [(f"changes{level}", f"begun{level}") for level in self.levels]
         if self.chain.left is not None:

@@ -43,7 +43,7 @@ class WindowJudge(NetworkJudge):
         super().__init__(*args, **kind)
 
     @property
-    def worse(self) -> Network | None:  # type: ignore[override]
+    def worse(self) -> Network | None:
         """See `NetworkJudge`; while generated code judges, the network that it stands for."""
         journal = self._journals[0]
         if self._windows is None or journal is None:
@@ -80,21 +80,25 @@ class WindowJudge(NetworkJudge):
         super().visit(t)
 
     def _follow(self, t: int, letters: Letters) -> None:
-        if letters != self._letters or self.flow.gap is None:
+        windows, journal, same = self._windows, self._journals[0], letters is self._letters
+        self.position = t
+        if not same or self.flow.gap is None:
             self._torn, letter = True, letters[0]
-            windows, journal = self._windows, self._journals[0]
             if windows is None or journal is None:
                 self._begin_windows([(t, letter)])
             else:
                 if journal.is_over:
                     gap = self.flow.gap or 1
-                    noted = journal.noted_since(windows.forget(self.position // gap) * gap)
-                    journal = self._journals[0] = self._journal_of(noted)
+                    journal = self._journal_of(journal.noted_since(windows.forget(t // gap) * gap))
+                    self._journals[0] = journal
                 journal.note(None, t, letter)
                 windows.note(t // (self.flow.gap or 1), letter)
             self._letters = letters
-        self.position = t
-        self._look(2 * t + 1)
+        if same and t < self.due:
+            # Another sample like the last one decides nothing sooner.
+            self.now, self._torn = 2 * t + 1, False
+        else:
+            self._look(2 * t + 1)
 
     def _begin_windows(self, noted: Sequence[Noted]) -> Windows:
         """Have generated code judge what is open from now on."""
@@ -165,14 +169,13 @@ class WindowJudge(NetworkJudge):
             super()._look(limit)
             return
         self._torn = True
-        gap, attempts = self.flow.gap or 1, self.attempts
+        gap, attempts, due = self.flow.gap or 1, self.attempts, NEVER
         found = []
-        due = NEVER
         parted = 0  # what the unknown leaves open comes before all that waits
         while parted < len(attempts) and attempts[parted].token[0] != WAITING:
             parted += 1
         for attempt in attempts[parted:] if parted else attempts:
-            value, at = windows.outcome(position_of(attempt) // gap)
+            value, at = windows.outcome(attempt.token[1][0] // gap)
             if at > limit:
                 due = at // 2
                 break
