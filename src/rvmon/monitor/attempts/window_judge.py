@@ -8,6 +8,7 @@ positions when somebody asks.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import islice
 from typing import Any
 
 from rvmon.dataflow.chain import Windows
@@ -174,7 +175,7 @@ class WindowJudge(NetworkJudge):
         parted = 0  # what the unknown leaves open comes before all that waits
         while parted < len(attempts) and attempts[parted].token[0] != WAITING:
             parted += 1
-        for attempt in attempts[parted:] if parted else attempts:
+        for attempt in islice(attempts, parted, None):
             value, at = windows.outcome(attempt.token[1][0] // gap)
             if at > limit:
                 due = at // 2
