@@ -123,6 +123,7 @@ class _Writer:
         Its last value is that of the base, as that of all levels is.
         """
         window = self.chain.windows[level - 1]
+        back = f" - {window.low}" if window.low else ""
         decides = "not value" if window.every else "value"
         yield f"given, own = self.changes{level - 1}, self.changes{level}"
         yield f"if ({decides}) is added:"  # what decides begins here, or does not any more
@@ -130,11 +131,11 @@ class _Writer:
         yield "    if added:"
         yield "        added = not (own and own[-1] >= start)"
         yield "    else:"  # the stretch before, if that was joined to it, ends again
-        yield f"        position = given[-1] - {window.low} if given else start - 1"
+        yield f"        position = given[-1]{back} if given else start - 1"
         yield "        added = position >= start"
         yield "        start = position"
         yield "else:"
-        yield f"    start = position - {window.low}"
+        yield f"    start = position{back}"
         yield "if added:"
         yield "    own.append(start)"
         yield "    position = start"
@@ -211,6 +212,8 @@ class _Writer:
             yield "stamps = self.stamps"
             yield "del stamps[:min(bisect_left(stamps, start), len(stamps) - 1)]"
             yield "start = stamps[0]"
+        if self.chain.left is not None:
+            yield "start = self.start = max(start, self.start)"
         lists = [(f"changes{level}", f"begun{level}") for level in self.levels]
         if self.chain.left is not None:
             lists.append(("ends", "end_begun"))
@@ -219,6 +222,4 @@ class _Writer:
             yield f"del self.{changes}[:count]"
             yield "if count & 1:"
             yield f"    self.{begun} = not self.{begun}"
-        if self.chain.left is not None:
-            yield "self.start = start"
         yield "return start"
