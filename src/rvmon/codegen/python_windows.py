@@ -212,8 +212,6 @@ class _Writer:
             yield "stamps = self.stamps"
             yield "del stamps[:min(bisect_left(stamps, start), len(stamps) - 1)]"
             yield "start = stamps[0]"
-        if self.chain.left is not None:
-            yield "start = self.start = max(start, self.start)"
         lists = [(f"changes{level}", f"begun{level}") for level in self.levels]
         if self.chain.left is not None:
             lists.append(("ends", "end_begun"))
@@ -222,4 +220,6 @@ class _Writer:
             yield f"del self.{changes}[:count]"
             yield "if count & 1:"
             yield f"    self.{begun} = not self.{begun}"
+        if self.chain.left is not None:
+            yield "start = self.start = max(start, self.start)"
         yield "return start"
