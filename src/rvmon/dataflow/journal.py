@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
+from operator import itemgetter
 
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.piecewise import FAR
@@ -18,15 +20,18 @@ class Journal:
 
     Args:
         network: as it stands.
+        noted: the positions that it is to be told of next.
     """
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: Network, noted: Sequence[tuple[int, Sequence[bool]]] = ()) -> None:
         self._plan, self._gap = network.plan, network.positions.distance
         # Most networks live for an attempt alone.
         self._begun = None if network.grown == -FAR and not network.noted else network.copy()
-        self._told: list[tuple[int, Sequence[bool] | None, int | None]] = []
+        self._told: list[tuple[int, Sequence[bool] | None, int | None]] = [
+            (t, letter, None) for t, letter in noted
+        ]
         size = sum(len(true) + len(false) for true, false in network.known)
-        self._most = max(_LEAST, size + len(network.noted))
+        self._most = max(_LEAST, size + len(network.noted), 2 * len(noted))
         self._telling = False
         self._played: tuple[int, Network] | None = None
 
@@ -39,15 +44,30 @@ class Journal:
         """Whether it is time for another one: it is full, or the network was interrupted."""
         return self._telling or len(self._told) >= self._most
 
-    def note(self, network: Network, t: int, letter: Sequence[bool]) -> None:
-        """Tell the network of a position; see `Network.note`."""
-        network.note(t, letter)
-        self._told.append((t, letter, None))
+    def is_at(self, limit: int) -> bool:
+        """Whether the last that it told was that time came to a stamp."""
+        return bool(self._told) and self._told[-1][0] == limit and self._told[-1][1] is None
 
-    def grow(self, network: Network, limit: int, wanted: int | None = None) -> None:
-        """Tell the network of time; see `Network.grow`."""
+    def noted_since(self, t: int) -> list[tuple[int, Sequence[bool]]]:
+        """The positions that it was told of, from `t` on, at which the letter stood as well."""
+        noted = [(at, letter) for at, letter, _ in self._told if letter is not None]
+        count = max(bisect_right(noted, t, key=itemgetter(0)), 1)
+        at, letter = noted[count - 1]
+        return [(max(t, at), letter), *noted[count:]]
+
+    def note(self, network: Network | None, t: int, letter: Sequence[bool]) -> None:
+        """Tell the network of a position, if there is one by now; see `Network.note`."""
         self._telling = True
-        network.grow(limit, wanted)
+        if network is not None:
+            network.note(t, letter)
+        self._told.append((t, letter, None))
+        self._telling = False
+
+    def grow(self, network: Network | None, limit: int, wanted: int | None = None) -> None:
+        """Tell the network of time, if there is one by now; see `Network.grow`."""
+        self._telling = True
+        if network is not None:
+            network.grow(limit, wanted)
         self._told.append((limit, None, wanted))
         self._telling = False
 

@@ -57,6 +57,24 @@ class Network(Knowledge):
     _soonest: Soonest | None = None
     """What tells before when a position is not known, whatever letters come."""
 
+    def begin_at(self, start: int, first: int, letter: Sequence[bool]) -> None:
+        """Begin in the midst of a word; what is before only leads on to where it does.
+
+        Args:
+            start: the position.
+            first: the first one whose value is wanted.
+            letter: that of the position, the truth of each of the plan's leaves.
+        """
+        positions, count = self.positions, len(self.plan.nodes)
+        positions.first = first
+        if positions.sparse:
+            positions.last = start - 1
+            positions.stamps = [first] if first < start else []
+        self.grown = positions.slope * start
+        self._letter = letter
+        self.pending, self.swept = [start] * count, [start] * count
+        self.pending[-1] = first
+
     def note(self, t: int, letter: Sequence[bool]) -> None:
         """Note a position with a letter, which stays until the next one.
 

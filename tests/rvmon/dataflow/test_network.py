@@ -169,8 +169,9 @@ def test_letters_that_decide_nothing_are_but_noted(time, monkeypatch):
         original(self, *args)
 
     monkeypatch.setattr(Network, "grow", counted)
-    monitor = spec_of("upon e then F[0 s, 5 s] G[0 s, 4 s] a", time).monitor(engine="network")
-    monitor.step(0, {"e": True, "a": False})
+    owed = "upon e then F[0 s, 5 s] ((G[0 s, 4 s] a) or b)"
+    monitor = spec_of(owed, time).monitor(engine="network")
+    monitor.step(0, {"e": True, "a": False, "b": False})
     before = len(grown)
     for k in range(1, 390):
         monitor.step(k * 0.01, {"a": k % 2 == 0})

@@ -9,6 +9,7 @@ from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk
 from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge
+from rvmon.monitor.attempts.window_judge import WindowJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.standing import Standing
 from rvmon.runtime.rule import Rule
@@ -38,7 +39,9 @@ def judge_of(
         **kind: `rank`, `hidden` and so on.
     """
     if compiled.is_beside or compiled.engine(engine) == "network":
-        return NetworkJudge(compiled, standing, clerk, captured, **kind)
+        if compiled.windows is None:
+            return NetworkJudge(compiled, standing, clerk, captured, **kind)
+        return WindowJudge(*compiled.windows, compiled, standing, clerk, captured, **kind)
     return MachineJudge(compiled, compiled.machine(engine), standing, clerk, captured, **kind)
 
 

@@ -96,6 +96,10 @@ class NetworkJudge(AttemptJudge):
             if delay > (self.flow.gap or 1):
                 self.due = min(self.due, self.sleeps)
                 return
+        self._join(attempt, t)
+
+    def _join(self, attempt: Open, t: int) -> None:
+        """Judge what is known of an attempt that began at the position `t`."""
         self._look(2 * t + 1)
         # What was known of the position before the attempt began is no news.
         open_still = bool(self.attempts) and self.attempts[-1] is attempt
@@ -261,7 +265,7 @@ class NetworkJudge(AttemptJudge):
         attempts, gap = self.attempts, network.positions.gap
         if not attempts:
             return
-        oldest, youngest = (_position(attempts[end]) // gap for end in (0, -1))
+        oldest, youngest = (position_of(attempts[end]) // gap for end in (0, -1))
         for pieces in network.news[-2:]:
             start, position = 0, oldest
             for left, right, _, _ in pieces:
@@ -270,19 +274,19 @@ class NetworkJudge(AttemptJudge):
                 if left > youngest:
                     break
                 if left > position:
-                    start = bisect_left(attempts, left * gap, start, key=_position)
-                    position = _position(attempts[start]) // gap
+                    start = bisect_left(attempts, left * gap, start, key=position_of)
+                    position = position_of(attempts[start]) // gap
                     if right < position:
                         continue
-                end = bisect_right(attempts, right * gap, start, key=_position)
+                end = bisect_right(attempts, right * gap, start, key=position_of)
                 yield start, end - 1
                 if end == len(attempts):
                     break
-                start, position = end, _position(attempts[end]) // gap
+                start, position = end, position_of(attempts[end]) // gap
 
     def _judge(self, attempt: Open, worse: Network, better: Network | None) -> bool:
         """Look at one attempt; returns whether it was decided."""
-        t = _position(attempt)
+        t = position_of(attempt)
         if attempt.token[0] == WAITING and (found := self._known(worse, t)):
             value, at = found
             if value or better is None:
@@ -319,9 +323,9 @@ class NetworkJudge(AttemptJudge):
             gap = network.positions.gap
             for value, pieces in zip((True, False), ahead.news[-2:], strict=True):
                 for left, right, at, slope in pieces:
-                    index = bisect_left(attempts, left * gap, key=_position)
+                    index = bisect_left(attempts, left * gap, key=position_of)
                     if index < len(attempts):
-                        t = _position(attempts[index]) // gap
+                        t = position_of(attempts[index]) // gap
                         if t <= right:
                             yield self._decides(network, value), at + slope * t
 
@@ -368,7 +372,7 @@ class NetworkJudge(AttemptJudge):
         """What is known as seen from `t`; equal for runs that go on alike."""
         self._look(2 * self.position + 1)
         standing = frozenset(
-            (attempt.token[0], attempt.better and attempt.better[0], _position(attempt) - t)
+            (attempt.token[0], attempt.better and attempt.better[0], position_of(attempt) - t)
             for attempt in self.attempts
         )
         networks = (self.worse, self.better)
@@ -380,10 +384,10 @@ class NetworkJudge(AttemptJudge):
             return False
         if self._held is None:
             self._held = held_at_end(self.worse, end, reached)
-        return stamp(self._held, _position(attempt) // self.worse.positions.gap) is not None
+        return stamp(self._held, position_of(attempt) // self.worse.positions.gap) is not None
 
 
-def _position(attempt: Open) -> int:
+def position_of(attempt: Open) -> int:
     """The instant of the position whose value is an attempt's."""
     return attempt.token[1][0]
 

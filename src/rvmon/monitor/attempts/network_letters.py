@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from operator import itemgetter
 
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.core import Constant, Sense
@@ -11,6 +12,9 @@ from rvmon.plan.graph import Graph
 
 Letters = tuple[Sequence[bool], Sequence[bool]]
 """The truth of a plan's leaves, the unknown taken for the worse and for the better."""
+
+_MOST = 256
+"""So many letters are kept."""
 
 _VALUES = (FALSE, UNKNOWN, TRUE)
 
@@ -42,10 +46,20 @@ def letter_reader(plan: NetworkPlan, graph: Graph) -> Callable[[Sequence[int]], 
         for _, core in plan.leaves
     )
 
+    made: dict[object, Letters] = {}
+    places = {place for place, _, _ in reads if place >= 0}
+    seen: Callable[[Sequence[int]], object] = itemgetter(*places) if places else len
+
     def read(values: Sequence[int]) -> Letters:
-        return (
-            tuple([worse[values[place] if place >= 0 else 0] for place, worse, _ in reads]),
-            tuple([better[values[place] if place >= 0 else 0] for place, _, better in reads]),
-        )
+        key = seen(values)
+        found = made.get(key)
+        if found is None:
+            if len(made) >= _MOST:
+                made.clear()
+            found = made[key] = (
+                tuple([worse[values[place] if place >= 0 else 0] for place, worse, _ in reads]),
+                tuple([better[values[place] if place >= 0 else 0] for place, _, better in reads]),
+            )
+        return found
 
     return read

@@ -16,6 +16,8 @@ from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
+from rvmon.codegen.python_windows import windows_class
+from rvmon.dataflow.chain import Windows, chain_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.soonest_news import delay_of
@@ -220,6 +222,14 @@ class CompiledRequirement:
     def network_plan(self) -> NetworkPlan:
         """The nodes of its delay network."""
         return plan_of(self.obligation.owed, self.gap)
+
+    @cached_property
+    def windows(self) -> tuple[type[Windows], int] | None:
+        """What follows its network's windows, and their reach; `None` if they are no chain."""
+        chain = None if self.is_beside else chain_of(self.network_plan, self.gap)
+        if chain is None:
+            return None
+        return windows_class(self.network_plan, chain, self.gap), chain.reach
 
     @cached_property
     def measured_plan(self) -> NetworkPlan:

@@ -1,0 +1,121 @@
+"""Windows within windows over what a letter tells: what is known of them is known in order.
+
+Of such a formula no position becomes known before one that lies further left: where one position of
+a window decides, it is the first such one; where all do, the last. So what is known ends at one
+position, and all that has to be kept is where the values change. This holds of what has to be kept
+up while something stays (`whenever` and `always`), too: the first position at which it is false is
+the first that is known to be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Sweep, Window
+from rvmon.formula.core import Constant, Sense
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """A formula of that kind.
+
+    Attributes:
+        base: the place of what the innermost window is over: a leaf, or a junction of leaves.
+        windows: the innermost first.
+        left: the place of the leaf that ends what is kept up; `None` if nothing is.
+    """
+
+    base: int
+    windows: tuple[Window, ...]
+    left: int | None
+
+    @property
+    def reach(self) -> int:
+        """Ticks after which a position is known at the latest, whatever letters come."""
+        return sum(window.over or 0 for window in self.windows)
+
+
+def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
+    """The chain that a plan is; `None` if it is none.
+
+    Args:
+        plan: of a network.
+        gap: ticks between two positions; `None` if only samples are positions. There a window that
+            opens later may hold no position, so that what is known does not end at one.
+    """
+    nodes = plan.nodes
+    top, left = len(nodes) - 1, None
+    root = nodes[top]
+    if isinstance(root, Sweep):
+        if not (root.future and root.dual and isinstance(nodes[root.left], Leaf)):
+            return None
+        left, top = root.left, root.right
+        right = nodes[top]
+        if isinstance(right, Junction):
+            inner = [one for one in right.operands if not _ends(plan, left, one)]
+            if right.every or len(inner) != 1 or len(right.operands) != 2:
+                return None
+            top = inner[0]
+    windows: list[Window] = []
+    node = nodes[top]
+    while isinstance(node, Window) and node.over is not None and node.low <= node.high:
+        if gap is None and node.low:
+            return None
+        windows.append(node)
+        top = node.operand
+        node = nodes[top]
+    if not windows or not _is_read(plan, top):
+        return None
+    return Chain(top, tuple(reversed(windows)), left)
+
+
+def _ends(plan: NetworkPlan, left: int, place: int) -> bool:
+    """Whether, with no unknown, a leaf is true where the one on the left is."""
+    one, other = plan.nodes[left], plan.nodes[place]
+    if not (isinstance(one, Leaf) and isinstance(other, Leaf)):
+        return False
+    if isinstance(one.core, Constant) or isinstance(other.core, Constant):
+        return False
+    falses = (Sense.FALSE, Sense.KNOWN_FALSE)
+    return (
+        one.core.proposition is other.core.proposition
+        and one.core.sense in falses
+        and other.core.sense in falses
+    )
+
+
+def _is_read(plan: NetworkPlan, place: int) -> bool:
+    """Whether a letter tells a node."""
+    node = plan.nodes[place]
+    if isinstance(node, Junction):
+        return all(_is_read(plan, operand) for operand in node.operands)
+    return isinstance(node, Leaf)
+
+
+class Windows:
+    """What generated code follows a chain by; see `rvmon.codegen.python_windows`.
+
+    Args:
+        start: the first position; what is kept up is well up to there.
+        letter: that of the position, the truth of each of the plan's leaves.
+    """
+
+    def __init__(self, start: int, letter: Sequence[bool]) -> None:
+        raise NotImplementedError
+
+    def note(self, position: int, letter: Sequence[bool]) -> None:
+        """Take a position, whose letter stays until the next one."""
+        raise NotImplementedError
+
+    def outcome(self, position: int) -> tuple[bool, int]:
+        """The value of the formula at a position, and the stamp as of which it is known.
+
+        If the letter stays, where that stamp is yet to come: then that is behind all stamps if it
+        would stay unknown.
+        """
+        raise NotImplementedError
+
+    def forget(self, position: int) -> int:
+        """Drop what lies before all that is not known at a position; returns where that begins."""
+        raise NotImplementedError
