@@ -118,6 +118,7 @@ PLANTED = {
     "takes-any-signal": (other(readiness=EITHER), "activates-again", "T20"),
     "starts-at-any-signal": (other(activation=EITHER), "ready-first", "T18"),
     "checks-no-grip": (other(checks_grip=False), "piece-slips", "T13"),
+    "minds-no-hand": (other(minds_hand=False), "hand-in-the-grip", "R5 T33"),
     "resets-fast": (other(reset_s=0.9), "released", "T14"),
     "gives-no-time-to-take": (other(release_s=1.9), "released", "T31"),
     "says-released": (SaysReleased, "released", "T5 T6"),

@@ -25,7 +25,7 @@ NUMBERS = {
     "hand_distance",
     "hand_offset_x",
     "hand_offset_z",
-    "hand_clearance",
+    "true_distance",
     "hand_force",
     "gripper_opening",
     "piece_height",
