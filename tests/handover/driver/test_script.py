@@ -62,7 +62,7 @@ def play(*actions: Action, informed_at: float | None = None, connected: bool = T
         actions,
         Node(bus, {}, 0.0),
         body,  # type: ignore[arg-type]
-        random.Random(1),
+        random.Random(1).uniform,
         start_s=1.0,
         connected=connected,
     )

@@ -305,7 +305,7 @@ def test_transitions_are_those_of_the_protocol() -> None:
 
 @pytest.mark.parametrize("name", sorted(set(MUTATIONS) - {"crashes"}))
 def test_mutants_differ_from_the_robot(name: str) -> None:
-    """Each mutated robot does something else than the original in one of four situations."""
+    """Each mutated robot does something else than the original in one of five situations."""
     bad = [
         Reading(gaze=False, pressure=True, location=True),
         Reading(gaze=True, pressure=False, location=True),
@@ -314,6 +314,7 @@ def test_mutants_differ_from_the_robot(name: str) -> None:
         lambda: AttemptJudge(protocol()),
         lambda: AttemptJudge(protocol(), reading=lambda _: bad[0]),
         lambda: AttemptJudge(protocol(), reading=lambda _: bad[1]),
+        lambda: AttemptJudge(protocol(), hand=0.01),
         AttemptJudge,
     ]
     differs = False
