@@ -55,6 +55,7 @@ def _test(rng: random.Random, index: int) -> AbstractTest:
     return AbstractTest(
         name=f"disturbed-{index:03}",
         strategy="disturbed",
+        robot="correct",
         seed=rng.getrandbits(32),
         actions=behave(rng),
         postures="at_limits" if rng.random() < P_AT_LIMITS else "in_range",
