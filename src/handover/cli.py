@@ -65,7 +65,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         metavar="NAMES",
         default="pseudorandom,constrained",
         help="of pseudorandom, constrained, model-based, model-based-shortest, "
-        "model-based-fastest, disturbed, directed (default: the first two)",
+        "model-based-fastest, disturbed (correct robot only), directed (default: the first two)",
     )
     add_campaign_options(parser)
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
@@ -97,7 +97,7 @@ def _add_demo(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     )
     add_campaign_options(parser)
     _add_conform(parser, 3)
-    parser.set_defaults(run=_demo, pages="all")
+    parser.set_defaults(run=_demo)
 
 
 def _add_close(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

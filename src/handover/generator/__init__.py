@@ -6,6 +6,7 @@ from handover.generator.abstract_test import (
     ReceiveSignal,
     SendSignal,
     SetParam,
+    Withdraw,
 )
 
-__all__ = ["AbstractTest", "Action", "ReceiveSignal", "SendSignal", "SetParam"]
+__all__ = ["AbstractTest", "Action", "ReceiveSignal", "SendSignal", "SetParam", "Withdraw"]

@@ -46,7 +46,7 @@ def disturbed(count: int, seed: int) -> tuple[AbstractTest, ...]:
     """Tests with a person who may do anything, on sensors and a scene that may fail.
 
     >>> [len(test.actions) for test in disturbed(3, seed=1)]
-    [16, 10, 4]
+    [11, 16, 12]
     """
     return tuple(_test(random.Random(f"disturbed/{seed}/{i}"), i) for i in range(count))  # noqa: S311
 
@@ -55,6 +55,7 @@ def _test(rng: random.Random, index: int) -> AbstractTest:
     return AbstractTest(
         name=f"disturbed-{index:03}",
         strategy="disturbed",
+        robot="correct",
         seed=rng.getrandbits(32),
         actions=behave(rng),
         postures="at_limits" if rng.random() < P_AT_LIMITS else "in_range",

@@ -102,7 +102,7 @@ def behave(rng: random.Random) -> tuple[Action, ...]:
     Source: as the seed's closing section asks for; a Markov usage model (Whittaker and Thomason
     1994, "A Markov chain model for statistical software testing").
 
-    >>> behave(random.Random(2))[0]
+    >>> behave(random.Random(1))[0]
     SendSignal(signal='activateRobot')
     """
     actions: list[Action] = []

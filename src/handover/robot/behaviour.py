@@ -18,6 +18,7 @@ class Behaviour:
         activation: signals that activate the robot.
         readiness: signals that say that the human is ready.
         only_fresh: whether signals from before the state was entered are ignored.
+        minds_hand: whether it closes the gripper only where no hand is seen.
         grip_pause_s: seconds from the command to close until the gripper counts as closed.
         announce_pause_s: seconds between the messages about the closed gripper.
         settle_s: seconds at the handover pose before the human is informed.
@@ -41,6 +42,7 @@ class Behaviour:
     activation: frozenset[str]
     readiness: frozenset[str]
     only_fresh: bool
+    minds_hand: bool
     grip_pause_s: float
     announce_pause_s: float
     settle_s: float
@@ -64,6 +66,7 @@ CORRECT = Behaviour(
     activation=frozenset({"activateRobot"}),
     readiness=frozenset({"humanIsReady"}),
     only_fresh=True,
+    minds_hand=True,
     grip_pause_s=0.5,
     announce_pause_s=0.05,
     settle_s=0.15,
@@ -88,6 +91,7 @@ LEGACY = Behaviour(
     activation=frozenset({"activateRobot", "humanIsReady"}),
     readiness=frozenset({"activateRobot", "humanIsReady"}),
     only_fresh=False,
+    minds_hand=False,
     grip_pause_s=0.5,
     announce_pause_s=0.2,
     settle_s=1.0,

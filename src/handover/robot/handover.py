@@ -39,6 +39,7 @@ GRIP_ABOVE_CENTRE = 0.02
 APPROACH_HEIGHTS = (0.18, 0.06, 0.0)
 PLAN_ATTEMPTS = 3
 PIECE_TOLERANCE = 0.05
+HAND_CLEARANCE = 0.06
 CLOCK_TOLERANCE_S = 1e-6
 
 
@@ -128,6 +129,8 @@ class HandoverRobot:
             arrived = yield from self.go_to(x, z + GRIP_ABOVE_CENTRE + height)
             if not arrived:
                 return self.give_up("no path to the piece")
+        if self.behaviour.minds_hand and self.hand_is_close():
+            return self.give_up("a hand is in the grip")
         self.gripper.close()
         yield self.behaviour.grip_pause_s
         self.node.publish("grip_closed")
@@ -248,6 +251,11 @@ class HandoverRobot:
             return False
         x, z = HANDOVER_POINT
         return math.hypot(found[0] - x, found[1] + GRIP_ABOVE_CENTRE - z) < PIECE_TOLERANCE
+
+    def hand_is_close(self) -> bool:
+        """Whether a hand is seen so near that the gripper would close on it."""
+        distance = self.sensors.hand_distance()
+        return distance is not None and distance < HAND_CLEARANCE
 
     def go_to(self, x: float, z: float) -> Steps[bool]:
         """Plan a path of the grip to a point and follow it; tell whether it got there."""

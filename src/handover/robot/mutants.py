@@ -6,6 +6,14 @@ from handover.robot.handover import END, HandoverRobot
 from handover.robot.ports import Steps
 
 
+class MindsNoHand(HandoverRobot):
+    """Closes the gripper wherever a hand is."""
+
+    def hand_is_close(self) -> bool:
+        """See no hand."""
+        return False
+
+
 class ReleasesAnyway(HandoverRobot):
     """Decides without looking at the sensors."""
 
@@ -86,6 +94,7 @@ MUTATIONS: dict[str, type[HandoverRobot]] = {
     "ends-silently": EndsSilently,
     "forgets-to-release": ForgetsToRelease,
     "ignores-pressure": IgnoresPressure,
+    "minds-no-hand": MindsNoHand,
     "never-decides": NeverDecides,
     "releases-anyway": ReleasesAnyway,
     "releases-late": ReleasesLate,

@@ -92,5 +92,8 @@ class Sensors(Protocol):
     def piece(self) -> tuple[float, float] | None:
         """Where the piece is, metres; `None`: not in sight."""
 
+    def hand_distance(self) -> float | None:
+        """How far the hand is from the gripper, metres; `None`: not known."""
+
     def sense(self) -> Reading:
         """Read gaze, pressure and location."""

@@ -17,14 +17,14 @@ class SensorFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit
     Attributes:
         noise_m: standard deviation of every measured length, metres.
         delay_s: age of what the robot reads of gaze, pressure and location, seconds.
-        loss: probability that a sensor gives no reading when it is read.
         dropout: sensors that are dead: the robot gets no reading, the signal is unknown.
+        loss: probability that gaze, pressure or location gives no reading when it is read.
     """
 
     noise_m: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     delay_s: Annotated[float, msgspec.Meta(ge=0, le=10)] = 0.0
-    loss: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     dropout: tuple[Sensor, ...] = ()
+    loss: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
 
 
 class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):

@@ -90,14 +90,6 @@ def gripper_opening(scene: Scene) -> float:
     return float((tips[0] - tips[1]).length)
 
 
-def hand_clearance(scene: Scene) -> float:
-    """Metres of free space between the hand and the nearest part of the gripper."""
-    at = scene.hand.position
-    parts = (scene.links[2], *scene.fingers)
-    gap = min(shape.point_query(at).distance for part in parts for shape in part.shapes)
-    return float(max(0.0, gap - p.HAND_RADIUS))
-
-
 def hand_offset(scene: Scene) -> tuple[float, float]:
     """Metres between the mass centres of hand and gripper on each axis, without sign."""
     x, z = gripper_centre(scene)

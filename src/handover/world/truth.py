@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from handover.world import parameters as p
 from handover.world.human import Human
 from handover.world.measures import (
     gaze_is_ok,
     gripper_force,
     gripper_opening,
-    hand_clearance,
+    hand_offset,
     location_is_ok,
     tool_speed,
 )
@@ -45,7 +47,7 @@ class Truth:
             "person_holds": self._human.holds(),
             "gripper_opening": round(gripper_opening(scene), 3),
             "hand_force": round(peak),
-            "hand_clearance": round(hand_clearance(scene), 3),
+            "true_distance": round(math.hypot(*hand_offset(scene)), 3),
             "true_gaze": gaze_is_ok(scene),
             "true_pressure": self._human.shares_piece(),
             "true_location": location_is_ok(scene),

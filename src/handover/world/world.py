@@ -103,6 +103,11 @@ class World:
         """Where the robot's camera sees the piece, (x, z) in metres."""
         return seen_piece(self.scene)
 
+    def hand_distance(self) -> float | None:
+        """Metres between the mass centres of hand and gripper, as it is sensed."""
+        offset = self.sensors.hand_offset()
+        return None if offset is None else math.hypot(*offset)
+
     @property
     def stepped_s(self) -> float:
         """Seconds for which the physics was stepped."""

@@ -11,11 +11,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
+from msgspec import structs
 
 from handover.driver import Run, run_test
 from handover.driver.draws import draw
 from handover.driver.run import SampleValues
 from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
+from handover.generator.disturbed import disturbed
 from handover.generator.pseudorandom import constrained, pseudorandom
 from rvmon.cdv import TestError
 
@@ -25,7 +27,7 @@ NUMBERS = {
     "hand_distance",
     "hand_offset_x",
     "hand_offset_z",
-    "hand_clearance",
+    "true_distance",
     "hand_force",
     "gripper_opening",
     "piece_height",
@@ -88,6 +90,21 @@ def test_jumps_change_no_event(robot: str) -> None:
         for one, other in closings:
             assert one == pytest.approx(other, abs=1e-3)
     assert gripped >= 4
+
+
+def test_jumps_change_no_event_where_the_scene_surprises() -> None:
+    """So it is with collisions, sensors that fail and a person who does otherwise."""
+    for test in disturbed(5, seed=6):
+        short = structs.replace(test, horizon_s=40.0)
+        assert facts(run_test(short)) == facts(run_test(short, jump=False))
+
+
+def test_signals_to_the_correct_robot_do_not_get_lost() -> None:
+    """Start-up loss was fitted to the robot of the paper's testbench, and is its alone."""
+    seed = next(seed for seed in range(100) if not draw(seed, startup_loss=True).connected)
+    test = structs.replace(protocol_test(seed), startup_loss=True)
+    assert not instants(run_test(test, robot="legacy"), "activateRobot")
+    assert instants(run_test(test), "activateRobot")
 
 
 def digest(run: Run) -> str:

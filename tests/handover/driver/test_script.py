@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from handover.driver.script import INFORMED, Script
-from handover.generator import Action, ReceiveSignal, SendSignal, SetParam
+from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.world import parameters as p
 from handover.world.bus import Bus, Node
 from handover.world.process import Process
@@ -31,6 +31,9 @@ class Body:
 
     def grasp(self, *, closed: bool) -> None:
         self.note("grasp", closed)
+
+    def withdraw(self) -> None:
+        self.note("withdraw")
 
     def note(self, what: str, *how: float | bool) -> None:
         self.done.append((self.schedule.now_ns / p.NS, what, how))
@@ -62,7 +65,7 @@ def play(*actions: Action, informed_at: float | None = None, connected: bool = T
         actions,
         Node(bus, {}, 0.0),
         body,  # type: ignore[arg-type]
-        random.Random(1),
+        random.Random(1).uniform,
         start_s=1.0,
         connected=connected,
     )
@@ -103,6 +106,12 @@ def test_actions_without_effect(action: Action) -> None:
     """Some actions of the alphabet do nothing and take no time."""
     played = play(action)
     assert (played.signals, played.body.done, played.ended) == ([], [], 1.0)
+
+
+def test_withdrawing_takes_no_time_of_the_script() -> None:
+    """The person begins to withdraw, and the next action follows at once."""
+    played = play(Withdraw(), SetParam("hpressureOk", 1))
+    assert played.body.done == [(1.0, "withdraw", ()), (1.0, "grasp", (True,))]
 
 
 def test_receiving_waits_for_the_robot() -> None:

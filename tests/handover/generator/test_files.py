@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
+from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.generator.abstract_test import Switch
 from handover.generator.files import directed
 from handover.generator.pseudorandom import constrained
 from handover.robot.mutants import MUTATIONS
-from handover.world.faults import SensorFaults
+from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import TestError
 from rvmon.cdv.files import from_json, load, save, to_json
 
@@ -27,6 +27,7 @@ CANNOT_OCCUR = {("R4", "F"), ("R4", "NT")}
 ACTIONS = st.one_of(
     st.builds(SendSignal),
     st.builds(ReceiveSignal),
+    st.builds(Withdraw),
     st.builds(SetParam, st.just("time"), st.integers(0, 4000)),
     st.builds(SetParam, st.sampled_from(get_args(Switch)), st.integers(0, 1)),
 )
@@ -45,6 +46,7 @@ TESTS = st.builds(
         loss=st.floats(0, 1),
         dropout=st.just(("gaze",)),
     ),
+    scene=st.builds(SceneFaults, st.floats(0.01, 2), st.floats(0, 1), st.booleans()),
 )
 
 

@@ -6,8 +6,11 @@ from collections import Counter
 
 import pytest
 
-from handover.generator import ReceiveSignal, SendSignal, SetParam
+from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
+from handover.generator.disturbed import disturbed
+from handover.generator.person import PERSON
 from handover.generator.pseudorandom import PREFIX, constrained, pseudorandom
+from handover.world.faults import SceneFaults, SensorFaults
 
 
 def test_pseudorandom_actions_are_uniform() -> None:
@@ -52,7 +55,42 @@ def test_constrained_begin_with_the_protocol() -> None:
     assert {len(test.actions) - len(PREFIX) for test in tests} == set(range(1, 11))
 
 
-@pytest.mark.parametrize("make", [pseudorandom, constrained])
+def test_disturbed_tests_show_each_deviation() -> None:
+    """Each kind of fault of sensors and scene comes, alone too, and so does each person's way."""
+    tests = disturbed(400, seed=1)
+    as_planned = [t for t in tests if t.faults == SensorFaults() and t.scene == SceneFaults()]
+    assert 0.2 < len(as_planned) / 400 < 0.4
+    for name in ("noise_m", "delay_s", "loss", "dropout"):
+        assert sum(bool(getattr(test.faults, name)) for test in tests) > 10
+    assert sum(test.scene.friction < 0.1 for test in tests) > 10
+    assert sum(test.scene.plan_failure > 0 for test in tests) > 10
+    assert {test.postures for test in tests} == {"in_range", "at_limits"}
+    ways = Counter(what for test in tests for what in deviations(test.actions))
+    assert set(ways) == {"wrong signal", "ready early", "reaches early", "withdraws", "as it is"}
+    assert min(ways.values()) > 10
+
+
+def deviations(actions: tuple[Action, ...]) -> set[str]:
+    """In which ways a person departs from the protocol."""
+    inform = ReceiveSignal("informHumanOfHandoverStart")
+    before = actions[: actions.index(inform)] if inform in actions else actions
+    found = {
+        "wrong signal": actions.count(SendSignal("activateRobot")) > 1,
+        "ready early": SendSignal("humanIsReady") in before,
+        "reaches early": SetParam("hlocationOk", 1) in before,
+        "withdraws": Withdraw() in actions,
+    }
+    return {name for name, is_so in found.items() if is_so} or {"as it is"}
+
+
+def test_probabilities_of_the_person_add_up() -> None:
+    """In each state something is done for certain, and each other state can be reached."""
+    for ways in PERSON.values():
+        assert sum(weight for weight, _, _ in ways) == pytest.approx(1)
+    assert {state for ways in PERSON.values() for _, _, state in ways} == {*PERSON, "leaves"}
+
+
+@pytest.mark.parametrize("make", [pseudorandom, constrained, disturbed])
 def test_tests_depend_on_seed_and_index_alone(make: type) -> None:
     """A longer campaign begins with the tests of a shorter one; another seed gives others."""
     assert make(20, seed=4)[:5] == make(5, seed=4)

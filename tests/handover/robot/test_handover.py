@@ -43,6 +43,7 @@ class AttemptJudge:
     reading: Callable[[float], Reading] = lambda _: ALL_OK
     piece_seen: Callable[[float], tuple[float, float] | None] = lambda _: (0.2, 0.2)
     reachable: bool = True
+    hand: float | None = 0.5
     timeout_time: int = 50
     time: float = 0.0
     log: list[tuple[float, str, object]] = field(default_factory=list)
@@ -85,6 +86,9 @@ class AttemptJudge:
 
     def piece(self) -> tuple[float, float] | None:
         return self.piece_seen(self.time)
+
+    def hand_distance(self) -> float | None:
+        return self.hand
 
     def sense(self) -> Reading:
         return self.reading(self.time)
@@ -252,6 +256,17 @@ def test_invisible_piece_ends_the_task() -> None:
     assert bench.commands == ["open"]
 
 
+@pytest.mark.parametrize(("hand", "closes"), [(0.05, False), (0.07, True), (None, True)])
+def test_gripper_does_not_close_on_a_hand(hand: float | None, closes: bool) -> None:
+    """A hand that is seen in the grip ends the task; only the legacy robot closes on it."""
+    bench = AttemptJudge(protocol(), hand=hand)
+    assert (bench.play().outcome == "released") is closes
+    assert ("close" in bench.commands) is closes
+    legacy = AttemptJudge(protocol(), hand=hand)
+    legacy.play(LEGACY)
+    assert "close" in legacy.commands
+
+
 def test_transitions_are_those_of_the_protocol() -> None:
     """Only the protocol's 15 transitions occur, whatever the human does."""
     allowed = {
@@ -290,7 +305,7 @@ def test_transitions_are_those_of_the_protocol() -> None:
 
 @pytest.mark.parametrize("name", sorted(set(MUTATIONS) - {"crashes"}))
 def test_mutants_differ_from_the_robot(name: str) -> None:
-    """Each mutated robot does something else than the original in one of four situations."""
+    """Each mutated robot does something else than the original in one of five situations."""
     bad = [
         Reading(gaze=False, pressure=True, location=True),
         Reading(gaze=True, pressure=False, location=True),
@@ -299,6 +314,7 @@ def test_mutants_differ_from_the_robot(name: str) -> None:
         lambda: AttemptJudge(protocol()),
         lambda: AttemptJudge(protocol(), reading=lambda _: bad[0]),
         lambda: AttemptJudge(protocol(), reading=lambda _: bad[1]),
+        lambda: AttemptJudge(protocol(), hand=0.01),
         AttemptJudge,
     ]
     differs = False

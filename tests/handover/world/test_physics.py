@@ -12,6 +12,7 @@ import pytest
 
 from handover.world import parameters as p
 from handover.world.bus import Node
+from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.process import Process, Program
 from handover.world.reading import Reading
 from handover.world.world import World
@@ -321,3 +322,65 @@ def test_reaching_into_the_grip_is_closer_than_five_centimetres() -> None:
     assert len(distances) == 1
     assert distances[0] is not None
     assert distances[0] < 0.05
+
+
+def test_withdrawing_ends_all_readings() -> None:
+    """The person who loses interest lets go, and is seen no more at the chest."""
+    stage = Stage()
+
+    def program(stage: Stage) -> Program:
+        yield from fetch_offer_sense(stage)
+        stage.world.human.withdraw()
+        yield 2.0
+        stage.sense()
+
+    stage.play(program, 25)
+    assert stage.readings[1] == Reading(gaze=None, pressure=None, location=None)
+    assert stage.hand == pytest.approx(p.HAND_REST, abs=0.01)
+    assert stage.piece == pytest.approx((HANDOVER[0], HANDOVER[1] - 0.02), abs=0.02)
+
+
+@pytest.mark.parametrize(("in_plane", "feels_it"), [(True, True), (False, False)])
+def test_the_gripper_pushes_a_hand_in_its_plane_alone(*, in_plane: bool, feels_it: bool) -> None:
+    """A hand on the table where the gripper comes down is hit, one in front of it is passed."""
+    stage = Stage(World(random.Random(1), scene_faults=SceneFaults(hand_in_plane=in_plane)))
+
+    def program(stage: Stage) -> Program:
+        stage.world.human.reach(*p.LOCATION_OK, near=True)
+        yield 1.5
+        yield from stage.go(p.LOCATION_OK[0] + 0.07, 0.05)
+
+    stage.play(program, 10)
+    forces = [v["hand_force"] for _, v in stage.world.recorder.samples if "hand_force" in v]
+    assert (max(force or 0.0 for force in forces) > 10) is feels_it
+
+
+def test_greasy_piece_slips_out_of_the_gripper() -> None:
+    """It is closed on and does not come along."""
+    stage = Stage(World(random.Random(1), scene_faults=SceneFaults(friction=0.02)))
+    stage.play(Stage.fetch, 25)
+    assert stage.piece[1] < 0.06
+
+
+@pytest.mark.parametrize(("plan_failure", "found"), [(1.0, False), (0.0, True)])
+def test_failing_planner_finds_no_path(plan_failure: float, *, found: bool) -> None:
+    """It takes its time all the same; one that never fails finds each path."""
+    stage = Stage(World(random.Random(1), scene_faults=SceneFaults(plan_failure=plan_failure)))
+    paths = []
+
+    def program(stage: Stage) -> Program:
+        paths.append((yield from stage.world.arm.plan(*HANDOVER)))
+        stage.notes.append((stage.world.schedule.now_ns / p.NS, 0.0))
+
+    stage.play(program, 5)
+    assert [path is not None for path in paths] == [found]
+    assert p.PLAN_LATENCY_S[0] <= stage.notes[0][0] <= p.PLAN_LATENCY_S[1]
+
+
+@pytest.mark.parametrize("loss", [0.0, 1.0])
+def test_lost_readings_are_none(loss: float) -> None:
+    """A sensor that loses each reading says nothing of a person who does all that it takes."""
+    stage = Stage(World(random.Random(1), faults=SensorFaults(loss=loss)))
+    stage.play(fetch_offer_sense, 25)
+    value = None if loss else True
+    assert stage.readings == [Reading(gaze=value, pressure=value, location=value)]
