@@ -22,6 +22,7 @@ from rvmon.cli.campaign import (
     judged_by,
     names_of,
 )
+from rvmon.cli.mutate import add_mutate_options, mutate
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -44,6 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_demo(commands)
     _add_replay(commands)
+    _add_mutate(commands)
     return parser
 
 
@@ -93,6 +95,18 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser.set_defaults(run=_replay)
 
 
+def _add_mutate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser(
+        "mutate",
+        help="which small wrong changes of the robot's code do tests see?",
+        description="Change the correct robot's code, one small thing at a time, play suites of "
+        "tests on each change, and show what kills it, or which question a survivor asks.",
+        epilog="example: handover mutate --strategy directed --out out/mutants",
+    )
+    add_mutate_options(parser)
+    parser.set_defaults(run=_mutate)
+
+
 def _run(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
     from rvmon.cli.campaign_run import conduct, show
@@ -140,6 +154,12 @@ def _replay(arguments: argparse.Namespace) -> int:
         mcap=arguments.mcap,
         form=arguments.format,
     )
+
+
+def _mutate(arguments: argparse.Namespace) -> int:
+    from handover.campaign.campaign import handover_campaign
+
+    return mutate(handover_campaign(("correct",)), "correct", arguments)
 
 
 if __name__ == "__main__":
