@@ -7,7 +7,9 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
@@ -22,6 +24,11 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.report.folder import made
 from rvmon.writing import write_whole
 
+if TYPE_CHECKING:
+    from rvmon.cdv.mutation.mutant import Mutant
+    from rvmon.cdv.mutation.report import MutationReport
+    from rvmon.cdv.mutation.spec_mutants import SpecMutant
+
 MOST_LISTED = 10
 """Survivors of a kind that the terminal shows; files have all."""
 
@@ -34,11 +41,18 @@ def add_mutate_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tests",
         metavar="N|DIR",
-        default="100",
+        type=_number_or_folder,
+        default=100,
         help="of each random strategy (100); or a folder of tests, which is the suite",
     )
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the tests (1)")
     parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+    parser.add_argument(
+        "--of",
+        choices=("code", "spec", "both"),
+        default="both",
+        help="mutants of the code, of its requirements, or %(default)s (default)",
+    )
     parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has this")
     parser.add_argument(
         "--all", action="store_true", help="play all tests, also after a requirement failed"
@@ -50,7 +64,9 @@ def add_mutate_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--strict", action="store_true", help="exit with 1 unless all mutants are killed"
     )
-    parser.add_argument("--out", metavar="DIR", help="write survivors.txt and mutation.json there")
+    parser.add_argument(
+        "--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there"
+    )
     add_judging_options(parser)
 
 
@@ -62,69 +78,117 @@ def mutate(campaign: Campaign, robot: str, arguments: argparse.Namespace) -> int
         robot: its name.
         arguments: those of `add_mutate_options`.
     """
-    from rvmon.cdv.mutation.equivalent import equivalents
-    from rvmon.cdv.mutation.find import code_mutants
-    from rvmon.cdv.mutation.play import play_mutants
-    from rvmon.cdv.mutation.question import readers
-    from rvmon.cdv.mutation.report import ALL, MutationReport, SuiteTried
-    from rvmon.cdv.mutation.suite import mutated_code, record_suite
+    from rvmon.cdv.mutation.page import mutation_page
     from rvmon.cdv.mutation.text import list_text, report_text
 
     campaign = judged_by(campaign, arguments.spec)
-    code = mutated_code(campaign)
-    mutants = code_mutants(code)
-    equivalent = {} if code.equivalent is None else equivalents(code.equivalent, mutants)
-    mutants = [one for one in mutants if arguments.only in one.identity]
-    if not mutants:
-        raise UnknownNameError(f"no mutant has `{arguments.only}` in its name: --list lists all")
+    found = _mutants(campaign, robot, arguments)
     if arguments.list:
-        say(list_text(mutants, held_out=arguments.held_out), end="")
+        say(list_text([*found.code, *found.spec], held_out=arguments.held_out), end="")
         return 0
     folder = made(arguments.out) if arguments.out else None
-    jobs = arguments.jobs or os.cpu_count() or 1
-    begun = time.perf_counter()
-    suites = {}
-    for name, tests in _suites(campaign, arguments).items():
-        with bar(f"{name}: tests", len(tests)) as tell:
-            suite = record_suite(campaign, robot, tests, jobs=jobs, progress=tell)
-        with bar(f"{name}: mutants", len(mutants)) as tell:
-            tried = play_mutants(suite, mutants, jobs=jobs, every=arguments.all, progress=tell)
-        suites[name] = SuiteTried(len(suite.tests), suite.left_out, tuple(tried))
-    report = MutationReport(
-        campaign.name,
-        campaign.robots[robot].title or robot,
-        suites,
-        equivalent,
-        readers(suite.spec.checked),
-        shows_held_out=arguments.held_out,
-        seconds=time.perf_counter() - begun,
-    )
+    report = _reported(campaign, robot, found, arguments)
     if arguments.format == "json":
         say_json(to_json(report.document()).decode().removesuffix("\n"))
     else:
         is_short = folder is not None or sys.stdout.isatty()
         say(report_text(report, most=MOST_LISTED if is_short else None))
-        say(f"{len(mutants)} mutants in {report.seconds:.1f} s.")
+        say(f"{len(found.code) + len(found.spec)} mutants in {report.seconds:.1f} s.")
     if folder is not None:
         write_whole(folder / "mutation.txt", report_text(report))
         write_whole(folder / "mutation.json", to_json(report.document()))
+        write_whole(folder / "mutation.html", mutation_page(report))
     wrong = report.contradictions()
     for what in wrong:
         warn(what)
-    scores = [report.scores(name)[ALL] for name in suites]
-    survives = any(one.killed < one.rest for one in scores)
-    return int(bool(wrong) or (arguments.strict and survives))
+    return int(bool(wrong) or (arguments.strict and report.survives))
+
+
+@dataclass(frozen=True, slots=True)
+class _Mutants:
+    code: list[Mutant]
+    spec: list[SpecMutant]
+    equivalent: dict[str, str]
+
+
+def _mutants(campaign: Campaign, robot: str, arguments: argparse.Namespace) -> _Mutants:
+    """The mutants that are asked for."""
+    from rvmon.cdv.mutation.equivalent import equivalents
+    from rvmon.cdv.mutation.find import code_mutants
+    from rvmon.cdv.mutation.spec_mutants import spec_mutants
+    from rvmon.cdv.mutation.suite import mutated_code, mutated_spec
+
+    code: list[Mutant] = []
+    spec: list[SpecMutant] = []
+    equivalent: dict[str, str] = {}
+    if arguments.of != "spec":
+        mutated = mutated_code(campaign)
+        code = code_mutants(mutated)
+        if mutated.equivalent is not None:
+            equivalent = equivalents(mutated.equivalent, code)
+        code = [one for one in code if arguments.only in one.identity]
+    if arguments.of != "code":
+        spec = spec_mutants(mutated_spec(campaign, robot).checked)
+        spec = [one for one in spec if arguments.only in one.identity]
+    if not code and not spec:
+        raise UnknownNameError(f"no mutant has `{arguments.only}` in its name: --list lists all")
+    return _Mutants(code, spec, equivalent)
+
+
+def _reported(
+    campaign: Campaign, robot: str, found: _Mutants, arguments: argparse.Namespace
+) -> MutationReport:
+    """What each suite sees of the mutants."""
+    from rvmon.cdv.mutation.play import play_mutants
+    from rvmon.cdv.mutation.question import readers
+    from rvmon.cdv.mutation.report import MutationReport, SuiteTried
+    from rvmon.cdv.mutation.spec_mutants import try_spec_mutants
+    from rvmon.cdv.mutation.suite import mutated_spec, record_suite
+
+    jobs = arguments.jobs or os.cpu_count() or 1
+    begun = time.perf_counter()
+    spec = mutated_spec(campaign, robot)
+    suites = {}
+    for name, tests in _suites(campaign, arguments).items():
+        with bar(f"{name}: tests", len(tests)) as tell:
+            suite = record_suite(campaign, robot, tests, jobs=jobs, progress=tell)
+        with bar(f"{name}: mutants", len(found.code)) as tell:
+            tried = play_mutants(suite, found.code, jobs=jobs, every=arguments.all, progress=tell)
+        spec_tried = try_spec_mutants(spec, found.spec, suite.recorded)
+        suites[name] = SuiteTried(len(suite.tests), suite.left_out, tuple(tried), tuple(spec_tried))
+    return MutationReport(
+        campaign.name,
+        campaign.robots[robot].title or robot,
+        suites,
+        found.equivalent,
+        readers(spec.checked),
+        shows_held_out=arguments.held_out,
+        seconds=time.perf_counter() - begun,
+    )
 
 
 def _suites(campaign: Campaign, arguments: argparse.Namespace) -> dict[str, Sequence[Test]]:
     """The tests of each suite, by its name."""
-    if not arguments.tests.isascii() or not arguments.tests.isdigit():
+    tests = arguments.tests
+    if isinstance(tests, Path):
         if arguments.strategy is not None:
-            raise RvmonError(f"--tests {arguments.tests} is a suite by itself: omit --strategy")
-        paths = sorted(Path(arguments.tests).glob("*.json"))
+            raise RvmonError(f"--tests {tests} is a suite by itself: omit --strategy")
+        paths = sorted(tests.glob("*.json"))
         if not paths:
-            raise RvmonError(f"no test in {arguments.tests}: name a folder of .json files")
-        return {Path(arguments.tests).name: [load(path, campaign.test) for path in paths]}
-    count = positive(arguments.tests)
+            raise RvmonError(f"no test in {tests}: name a folder of .json files")
+        return {tests.name: [load(path, campaign.test) for path in paths]}
     names = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    return dict(plan(campaign, names, tests=count, seed=arguments.seed).tests)
+    return dict(plan(campaign, names, tests=tests, seed=arguments.seed).tests)
+
+
+def _number_or_folder(text: str) -> int | Path:
+    """How many tests, or where they are.
+
+    Raises:
+        argparse.ArgumentTypeError: it is neither.
+    """
+    if text.isascii() and text.isdigit():
+        return positive(text)
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"expected a number, or a folder of tests, not {text}")
+    return Path(text)

@@ -15,6 +15,15 @@ A score on mutants that were looked at says how well they were looked at.
 HELD_OUT = THIRDS[-1]
 
 
+def third_of(identity: str) -> str:
+    """The third that an identity is in.
+
+    >>> third_of("R1:bound:1") in THIRDS
+    True
+    """
+    return THIRDS[int.from_bytes(hashlib.sha256(identity.encode()).digest()) % len(THIRDS)]
+
+
 @dataclass(frozen=True, slots=True)
 class Mutant:
     """One change of one file.
@@ -52,8 +61,7 @@ class Mutant:
     @property
     def third(self) -> str:
         """The third that it is in, which follows from its identity: nobody can choose."""
-        digest = hashlib.sha256(self.identity.encode()).digest()
-        return THIRDS[int.from_bytes(digest) % len(THIRDS)]
+        return third_of(self.identity)
 
     def __str__(self) -> str:
         return f"line {self.line:>3} of {self.change}"

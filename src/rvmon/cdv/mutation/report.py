@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from rvmon.cdv.mutation.mutant import HELD_OUT, THIRDS
 from rvmon.cdv.mutation.question import Missing, missing, question
+from rvmon.cdv.mutation.spec_mutants import SpecTried, spec_scored
 from rvmon.cdv.mutation.tried import Finding, Score, Tried, scored
 
 ALL = "all"
@@ -19,12 +20,14 @@ class SuiteTried:
     Attributes:
         tests: how many there are.
         left_out: tests of no use here, and why.
-        tried: all mutants.
+        tried: the mutants of the code.
+        spec_tried: the mutants of the requirements.
     """
 
     tests: int
     left_out: Mapping[str, str]
-    tried: tuple[Tried, ...]
+    tried: tuple[Tried, ...] = ()
+    spec_tried: tuple[SpecTried, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +61,24 @@ class MutationReport:
         }
         return {**thirds, ALL: scored(tried, self.equivalent)}
 
+    def spec_scores(self, suite: str) -> dict[str, Score]:
+        """The score on mutants of the requirements; what is equivalent is proved to be."""
+        tried = self.suites[suite].spec_tried
+        thirds = {
+            third: spec_scored(one for one in tried if one.mutant.third == third)
+            for third in THIRDS
+        }
+        return {**thirds, ALL: spec_scored(tried)}
+
+    def spec_survivors(self, suite: str) -> list[SpecTried]:
+        """The mutants of requirements that are shown, and that no run tells apart."""
+        return [
+            one
+            for one in self.suites[suite].spec_tried
+            if not (one.test or one.proved)
+            and (self.shows_held_out or one.mutant.third != HELD_OUT)
+        ]
+
     def shown(self, suite: str) -> list[Tried]:
         """The mutants that are shown one by one."""
         tried = self.suites[suite].tried
@@ -70,6 +91,14 @@ class MutationReport:
             if not (one.killed or one.invalid or one.mutant.identity in self.equivalent):
                 found[missing(one)].append(one)
         return {kind: members for kind, members in found.items() if members}
+
+    @property
+    def survives(self) -> bool:
+        """Whether a suite does not see a mutant that is not known to be equivalent."""
+        scores = (
+            one[ALL] for name in self.suites for one in (self.scores(name), self.spec_scores(name))
+        )
+        return any(one.killed < one.rest for one in scores)
 
     def contradictions(self) -> list[str]:
         """Mutants that are said to be equivalent, and are killed."""
@@ -96,6 +125,12 @@ class MutationReport:
             "left_out": suite.left_out,
             "scores": {third: _score(one) for third, one in self.scores(name).items()},
             "mutants": [self._mutant(one) for one in self.shown(name)],
+            "spec_scores": {third: _score(one) for third, one in self.spec_scores(name).items()},
+            "spec_mutants": [
+                _spec_mutant(one)
+                for one in suite.spec_tried
+                if self.shows_held_out or one.mutant.third != HELD_OUT
+            ],
         }
 
     def _mutant(self, one: Tried) -> dict[str, object]:
@@ -126,6 +161,19 @@ def killer(one: Tried) -> str:
     found = next((each for each in one.findings if each.how == "requirement"), one.findings[0])
     what = ", ".join(found.what)
     return f"{found.how} ({what})" + (f" in {found.test}" if found.test else "")
+
+
+def _spec_mutant(one: SpecTried) -> dict[str, object]:
+    document: dict[str, object] = {
+        "mutant": one.mutant.identity,
+        "third": one.mutant.third,
+        "before": one.mutant.before,
+        "after": one.mutant.after,
+        "proved_equivalent": one.proved,
+    }
+    if one.was is not None and one.now is not None:
+        document["killed_by"] = {"test": one.test, "was": one.was.value, "now": one.now.value}
+    return document
 
 
 def _finding(found: Finding) -> dict[str, object]:

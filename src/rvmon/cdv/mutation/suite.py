@@ -83,6 +83,18 @@ def mutated_code(campaign: Campaign) -> Code:
     return campaign.code
 
 
+def mutated_spec(campaign: Campaign, robot: str) -> Spec:
+    """The requirements of a robot.
+
+    Raises:
+        RvmonError: it has none, or they are wrong.
+    """
+    path = campaign.robots[robot].spec
+    if path is None:
+        raise RvmonError(f"robot `{robot}` has no requirements: name some by --spec")
+    return load(path)
+
+
 def record_suite(
     campaign: Campaign,
     robot: str,
@@ -107,15 +119,14 @@ def record_suite(
     """
     under_test = campaign.robots[robot]
     code = mutated_code(campaign)
-    if under_test.spec is None:
-        raise RvmonError(f"robot `{robot}` has no requirements: name some by --spec")
+    spec = mutated_spec(campaign, robot)
     own = [one for one in tests if one.mutation is None and one.robot in (None, robot)]
     recorded: dict[str, Recorded] = {}
     left_out: dict[str, str] = {}
     with closing(
         parallel.execute(
             own,
-            partial(_begin, robot, under_test, code),
+            partial(_begin, robot, under_test, spec, code),
             jobs=jobs,
             what="test",
             instead=_ended,
@@ -134,13 +145,11 @@ def record_suite(
         why = next(iter(left_out.values()), "it has no test for this robot without a planted fault")
         raise RvmonError(f"the suite says nothing about robot `{robot}`: {why}")
     used = {one.name: one for one in own if one.name in recorded}
-    spec = load(under_test.spec)
     return Suite(robot, under_test, spec, code, used, recorded, left_out)
 
 
-def _begin(name: str, robot: Robot, code: Code) -> Callable[[Test], Recorded | str]:
-    assert robot.spec is not None  # noqa: S101 - looked at before
-    return Recorder(system_of(name, robot), Checker(load(robot.spec)), code).play
+def _begin(name: str, robot: Robot, spec: Spec, code: Code) -> Callable[[Test], Recorded | str]:
+    return Recorder(system_of(name, robot), Checker(spec), code).play
 
 
 def _ended(_: Test, ended: Ended) -> Recorded | str:

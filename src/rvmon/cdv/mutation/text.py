@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
 from rvmon.cdv.mutation.question import TITLES, question
 from rvmon.cdv.mutation.report import MutationReport, SuiteTried
+from rvmon.cdv.mutation.spec_mutants import SpecMutant
 from rvmon.cdv.mutation.tried import How, Tried
 from rvmon.report.percent import percent_text
 from rvmon.report.plain_table import plain_table
@@ -14,6 +15,13 @@ from rvmon.report.plain_table import plain_table
 HEAD = (
     *("suite", "third", "mutants", "equivalent", "killed", "by a requirement", "not run"),
     *("score", "by a requirement"),
+)
+
+SPEC_HEAD = ("suite", "third", "mutants", "proved equivalent", "killed", "score")
+
+SPEC_TITLE = (
+    "No recorded run is judged otherwise: is a stimulus missing, or does the requirement say more "
+    "than matters?"
 )
 
 
@@ -24,17 +32,34 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
         report: what is shown.
         most: survivors of each kind that are listed; `None`: all.
     """
-    lines = [plain_table([HEAD, *score_rows(report)])]
-    for name, suite in report.suites.items():
-        lines += [f"{name}: {_killers(suite)}.", *_left_out(suite), ""]
+    lines = []
+    if any(suite.tried for suite in report.suites.values()):
+        lines += ["Mutants of the code", "", plain_table([HEAD, *score_rows(report)])]
+        for name, suite in report.suites.items():
+            lines += [f"{name}: {_killers(suite)}.", *_left_out(suite), ""]
+    if any(suite.spec_tried for suite in report.suites.values()):
+        lines += ["Mutants of the requirements", ""]
+        lines += [plain_table([SPEC_HEAD, *spec_score_rows(report)])]
     for name in report.suites:
-        for kind, survivors in report.survivors(name).items():
-            lines += [f"{name}: {len(survivors)} survive. {TITLES[kind]}", ""]
-            for one in survivors[:most]:
-                lines += [*survivor_lines(one, report), ""]
-            if most is not None and len(survivors) > most:
-                lines += [f"… and {len(survivors) - most} more", ""]
+        for title, blocks in _survivors(report, name):
+            lines += [f"{name}: {len(blocks)} survive. {title}", ""]
+            for block in blocks[:most]:
+                lines += [*block, ""]
+            if most is not None and len(blocks) > most:
+                lines += [f"  … and {len(blocks) - most} more", ""]
     return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[list[str]]]]:
+    """What survives, by what may be missing: a heading, and the lines of each."""
+    for kind, survivors in report.survivors(suite).items():
+        yield TITLES[kind], [list(survivor_lines(one, report)) for one in survivors]
+    if spec_survivors := report.spec_survivors(suite):
+        blocks = [
+            [f"  {one.mutant.identity}", *_difference(one.mutant.before, one.mutant.after)]
+            for one in spec_survivors
+        ]
+        yield SPEC_TITLE, blocks
 
 
 def score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
@@ -53,15 +78,23 @@ def survivor_lines(one: Tried, report: MutationReport) -> Iterator[str]:
     """A survivor: its place, the change, the question."""
     mutant = one.mutant
     yield f"  {mutant.path.name}:{mutant.line}  {mutant.identity}"
-    yield from (f"    {line}" for line in change_lines(mutant))
+    yield from _difference(mutant.before, mutant.after)
     yield f"    {question(one, report.reading)}"
 
 
-def change_lines(mutant: Mutant) -> Iterator[str]:
-    """The change as lines of a difference."""
-    for sign, code in (("-", mutant.before), ("+", mutant.after)):
+def spec_score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
+    """The scores on mutants of requirements, likewise."""
+    for name in report.suites:
+        for third, score in report.spec_scores(name).items():
+            counts = (score.mutants, score.equivalent, score.killed)
+            yield name, third, *map(str, counts), percent_text(score.killed, score.rest)
+            name = ""
+
+
+def _difference(before: str, after: str) -> Iterator[str]:
+    for sign, code in (("-", before), ("+", after)):
         for line in code.splitlines():
-            yield f"{sign} {line}"
+            yield f"    {sign} {line}"
 
 
 def _killers(suite: SuiteTried) -> str:
@@ -91,13 +124,18 @@ def _left_out(suite: SuiteTried) -> Iterator[str]:
         yield f"  left out: {name}: {why}"
 
 
-def list_text(mutants: list[Mutant], *, held_out: bool) -> str:
-    """The mutants one by one, without playing them."""
+def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:
+    """The mutants one by one, without playing them.
+
+    Args:
+        mutants: all there are.
+        held_out: list also those that are held out.
+    """
     shown = [one for one in mutants if held_out or one.third != HELD_OUT]
-    rows = [("third", "line", "mutant", "change")]
+    rows = [("third", "mutant", "change")]
     for one in shown:
         change = f"{one.before.splitlines()[0]} => {one.after.splitlines()[0]}"
-        rows.append((one.third, str(one.line), one.identity, change))
+        rows.append((one.third, one.identity, change))
     hidden = len(mutants) - len(shown)
-    told = f"{len(mutants)} mutants" + (f", {hidden} of them held out and not shown" * bool(hidden))
-    return plain_table(rows) + f"{told}\n"
+    told = f", {hidden} of them held out and not listed" if hidden else ""
+    return plain_table(rows) + f"{len(mutants)} mutants{told}\n"
