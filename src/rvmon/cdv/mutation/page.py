@@ -44,7 +44,9 @@ def mutation_page(report: MutationReport) -> str:
         body.append(_section("The requirements", table))
     body.extend(_suite(report, name) for name in report.suites)
     title = f"Mutants: {report.campaign}"
-    return page(title, body, styles=["base.css", "report.css", "coverage.css"], scripts=[])
+    return page(
+        title, body, styles=["base.css", "report.css", "coverage.css", "mutation.css"], scripts=[]
+    )
 
 
 def _suite(report: MutationReport, name: str) -> ET.Element:
@@ -100,19 +102,18 @@ def _killers(killed: Sequence[Tried]) -> ET.Element:
         for what in best.what if best.how is How.REQUIREMENT else (best.how.value,):
             counts[what] += 1
             tests.setdefault(what, Counter())[best.test] += 1
-    rows = (
-        (
-            what,
-            str(count),
-            ", ".join(f"{test or 'unknown'} {n}" for test, n in tests[what].most_common()),
-        )
-        for what, count in counts.most_common()
-    )
+    rows = [
+        (what, ", ".join(f"{test or 'unknown'} {own}" for test, own in tests[what].most_common()))
+        for what, _ in counts.most_common()
+    ]
+    counted_rows = [(*row, str(counts[row[0]])) for row in rows]
     return _table(("requirement", "mutants", "in the tests"), rows, texts=1)
 
 
 def _change(before: str, after: str) -> ET.Element:
-    return e("pre", None, e("del", None, before), "\n", e("ins", None, after))
+    lines = [e("del", None, f"- {line}\n") for line in before.splitlines()]
+    lines += [e("ins", None, f"+ {line}\n") for line in after.splitlines()]
+    return e("pre", {"class": "change"}, *lines)
 
 
 def _short(one: Tried) -> str:
@@ -129,14 +130,13 @@ def _section(title: str, *parts: Child) -> ET.Element:
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]], *, texts: int) -> ET.Element:
-    """A table whose first columns, and all but numbers, are texts."""
-    titles = e("tr", None, *(e("th", None, title) for title in head))
+    """A table whose first columns are texts, the others numbers."""
+    titles = e("tr", None, *_cells(head, texts, tag="th"))
     lines = [e("tr", None, *_cells(row, texts)) for row in rows]
     grid = e("table", None, e("thead", None, titles), e("tbody", None, *lines))
     return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
 
 
-def _cells(row: Sequence[str], texts: int) -> Iterator[ET.Element]:
+def _cells(row: Sequence[str], texts: int, *, tag: str = "td") -> Iterator[ET.Element]:
     for place, cell in enumerate(row):
-        is_text = place < texts or not cell[:1].isdigit()
-        yield e("td", {"class": "text" if is_text else None}, cell)
+        yield e(tag, {"class": "text" if place < texts else None}, cell)

@@ -24,12 +24,15 @@ from rvmon.execute import parallel
 from rvmon.execute.ended import Ended
 from rvmon.verdict.verdict import Verdict
 
-MOST_MEMORY = 1 << 30
+MOST_MEMORY = 2 << 30
 """Bytes that a mutant may take beyond what its process begins with."""
 
-LEAST_CPU_S = 2.0
+LEAST_CPU_S = 0.5
 TIMES_CPU = 10
 """A test hangs after so many seconds of processor time, and so many times what it takes else."""
+
+HANGS = "it computes without an end: its time, or its memory, was all"
+"""Said of both: an endless loop that also collects something may come first to either."""
 
 PATIENCE_S = 60.0
 """Seconds of wall time, beside those that the suite may compute, until a mutant is ended."""
@@ -113,8 +116,7 @@ def _tried(suite: Suite, sources: dict[str, str], every: bool, task: _Task) -> T
             with _at_most(_most_cpu_s(was)):
                 now = recorder.play(suite.tests[name])
         except _Overtime:
-            told = f"it took more than {_most_cpu_s(was):.3g} s of processor time"
-            findings.append(Finding(name, How.HUNG, (told,)))
+            findings.append(Finding(name, How.HUNG, (HANGS,)))
             continue
         finding = _finding(suite, name, was, now)
         if finding is not None:
@@ -135,6 +137,8 @@ def _finding(suite: Suite, name: str, was: Recorded, now: Recorded) -> Finding |
     if failed:
         return Finding(name, How.REQUIREMENT, failed)
     if now.run.error is not None:
+        if now.run.error.startswith(MemoryError.__name__):
+            return Finding(name, How.HUNG, (HANGS,))
         return Finding(name, How.CRASHED, (now.run.error,))
     wrong = tuple(
         requirement

@@ -17,9 +17,9 @@ from rvmon.spec.checked.specification import CheckedSpec
 class Missing(StrEnum):
     """What may be missing where a mutant survives."""
 
-    STIMULUS = "stimulus"
-    OBSERVATION = "observation"
     REQUIREMENT = "requirement"
+    OBSERVATION = "observation"
+    STIMULUS = "stimulus"
 
 
 TITLES = {
