@@ -18,11 +18,12 @@ from rvmon.cli.campaign import (
     INTERRUPTED,
     add_campaign_options,
     add_judging_options,
+    add_mutate_options,
     add_replay_options,
     judged_by,
+    mutate_code,
     names_of,
 )
-from rvmon.cli.mutate import add_mutate_options, mutate
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -159,7 +160,7 @@ def _replay(arguments: argparse.Namespace) -> int:
 def _mutate(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
 
-    return mutate(handover_campaign(("correct",)), "correct", arguments)
+    return mutate_code(handover_campaign(("correct",)), "correct", arguments)
 
 
 if __name__ == "__main__":

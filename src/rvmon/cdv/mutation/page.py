@@ -106,8 +106,8 @@ def _killers(killed: Sequence[Tried]) -> ET.Element:
         (what, ", ".join(f"{test or 'unknown'} {own}" for test, own in tests[what].most_common()))
         for what, _ in counts.most_common()
     ]
-    counted_rows = [(*row, str(counts[row[0]])) for row in rows]
-    return _table(("requirement", "mutants", "in the tests"), rows, texts=1)
+    lines = [(*row, str(counts[row[0]])) for row in rows]
+    return _table(("requirement", "in the tests", "mutants"), lines, texts=2)
 
 
 def _change(before: str, after: str) -> ET.Element:

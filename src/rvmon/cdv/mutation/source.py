@@ -51,15 +51,16 @@ def mutants(
     ordinals: Counter[tuple[str, str]] = Counter()
     for name, body in _scopes(tree, "", constants):
         scope = Scope(body, strings)
-        own = range(body[0].lineno, (body[0].end_lineno or 0) + 1) if name in constants else lines
-        for statement in body:
-            for node in _executed(statement):
-                if isinstance(node, ast.expr | ast.stmt) and node.lineno in own:
-                    for kind, before, after, text in _changes(source, node, scope, chosen):
-                        ordinals[name, kind] += 1
-                        yield Mutant(
-                            path, node.lineno, kind, before, after, text, name, ordinals[name, kind]
-                        )
+        is_constant = name in constants
+        for node in (node for statement in body for node in _executed(statement)):
+            if not isinstance(node, ast.expr if is_constant else ast.expr | ast.stmt):
+                continue
+            if is_constant or node.lineno in lines:
+                for kind, before, after, text in _changes(source, node, scope, chosen):
+                    ordinals[name, kind] += 1
+                    yield Mutant(
+                        path, node.lineno, kind, before, after, text, name, ordinals[name, kind]
+                    )
 
 
 def _scopes(

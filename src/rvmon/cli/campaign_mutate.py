@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 import time
+from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +16,6 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.documents import to_json
 from rvmon.cdv.files import load
 from rvmon.cdv.plan import plan
-from rvmon.cli.campaign import add_judging_options, judged_by, names_of
-from rvmon.cli.numbers import positive
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
@@ -33,61 +31,24 @@ MOST_LISTED = 10
 """Survivors of a kind that the terminal shows; files have all."""
 
 
-def add_mutate_options(parser: argparse.ArgumentParser) -> None:
-    """Declare which mutants are played by which tests, and where results go."""
-    parser.add_argument(
-        "--strategy", metavar="NAMES", help="suites: the tests of each of these (default: all)"
-    )
-    parser.add_argument(
-        "--tests",
-        metavar="N|DIR",
-        type=_number_or_folder,
-        default=100,
-        help="of each random strategy (100); or a folder of tests, which is the suite",
-    )
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the tests (1)")
-    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
-    parser.add_argument(
-        "--of",
-        choices=("code", "spec", "both"),
-        default="both",
-        help="mutants of the code, of its requirements, or %(default)s (default)",
-    )
-    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has this")
-    parser.add_argument(
-        "--all", action="store_true", help="play all tests, also after a requirement failed"
-    )
-    parser.add_argument(
-        "--held-out", action="store_true", help="show also single mutants that are held out"
-    )
-    parser.add_argument("--list", action="store_true", help="list the mutants, and play nothing")
-    parser.add_argument(
-        "--strict", action="store_true", help="exit with 1 unless all mutants are killed"
-    )
-    parser.add_argument(
-        "--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there"
-    )
-    add_judging_options(parser)
-
-
-def mutate(campaign: Campaign, robot: str, arguments: argparse.Namespace) -> int:
+def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments: Namespace) -> int:
     """Play suites on mutants of a robot's code, show and keep the scores, return an exit code.
 
     Args:
         campaign: that the tests are of.
         robot: its name.
+        strategies: each makes a suite, unless a folder is one.
         arguments: those of `add_mutate_options`.
     """
     from rvmon.cdv.mutation.page import mutation_page
     from rvmon.cdv.mutation.text import list_text, report_text
 
-    campaign = judged_by(campaign, arguments.spec)
     found = _mutants(campaign, robot, arguments)
     if arguments.list:
         say(list_text([*found.code, *found.spec], held_out=arguments.held_out), end="")
         return 0
     folder = made(arguments.out) if arguments.out else None
-    report = _reported(campaign, robot, found, arguments)
+    report = _reported(campaign, robot, strategies, found, arguments)
     if arguments.format == "json":
         say_json(to_json(report.document()).decode().removesuffix("\n"))
     else:
@@ -111,7 +72,7 @@ class _Mutants:
     equivalent: dict[str, str]
 
 
-def _mutants(campaign: Campaign, robot: str, arguments: argparse.Namespace) -> _Mutants:
+def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
     """The mutants that are asked for."""
     from rvmon.cdv.mutation.equivalent import equivalents
     from rvmon.cdv.mutation.find import code_mutants
@@ -136,7 +97,11 @@ def _mutants(campaign: Campaign, robot: str, arguments: argparse.Namespace) -> _
 
 
 def _reported(
-    campaign: Campaign, robot: str, found: _Mutants, arguments: argparse.Namespace
+    campaign: Campaign,
+    robot: str,
+    strategies: Sequence[str],
+    found: _Mutants,
+    arguments: Namespace,
 ) -> MutationReport:
     """What each suite sees of the mutants."""
     from rvmon.cdv.mutation.play import play_mutants
@@ -149,7 +114,7 @@ def _reported(
     begun = time.perf_counter()
     spec = mutated_spec(campaign, robot)
     suites = {}
-    for name, tests in _suites(campaign, arguments).items():
+    for name, tests in _suites(campaign, strategies, arguments).items():
         with bar(f"{name}: tests", len(tests)) as tell:
             suite = record_suite(campaign, robot, tests, jobs=jobs, progress=tell)
         with bar(f"{name}: mutants", len(found.code)) as tell:
@@ -167,7 +132,9 @@ def _reported(
     )
 
 
-def _suites(campaign: Campaign, arguments: argparse.Namespace) -> dict[str, Sequence[Test]]:
+def _suites(
+    campaign: Campaign, strategies: Sequence[str], arguments: Namespace
+) -> dict[str, Sequence[Test]]:
     """The tests of each suite, by its name."""
     tests = arguments.tests
     if isinstance(tests, Path):
@@ -177,18 +144,4 @@ def _suites(campaign: Campaign, arguments: argparse.Namespace) -> dict[str, Sequ
         if not paths:
             raise RvmonError(f"no test in {tests}: name a folder of .json files")
         return {tests.name: [load(path, campaign.test) for path in paths]}
-    names = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    return dict(plan(campaign, names, tests=tests, seed=arguments.seed).tests)
-
-
-def _number_or_folder(text: str) -> int | Path:
-    """How many tests, or where they are.
-
-    Raises:
-        argparse.ArgumentTypeError: it is neither.
-    """
-    if text.isascii() and text.isdigit():
-        return positive(text)
-    if not Path(text).is_dir():
-        raise argparse.ArgumentTypeError(f"expected a number, or a folder of tests, not {text}")
-    return Path(text)
+    return dict(plan(campaign, strategies, tests=tests, seed=arguments.seed).tests)
