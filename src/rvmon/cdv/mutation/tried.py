@@ -94,7 +94,7 @@ class Score:
 
     Attributes:
         mutants: all that can be planted.
-        equivalent: of them so many are known to change no behaviour.
+        equivalent: of them so many are said to change no behaviour, and none of them is killed.
         killed: by whatever.
         by_requirement: killed by a requirement that fails.
         unreached: so many are in lines that no test runs.
@@ -108,7 +108,7 @@ class Score:
 
     @property
     def rest(self) -> int:
-        """The mutants that are not known to be equivalent."""
+        """The mutants that are not equivalent."""
         return self.mutants - self.equivalent
 
 
@@ -117,13 +117,13 @@ def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
 
     Args:
         tried: mutants.
-        equivalent: the identities of those that change no behaviour.
+        equivalent: the identities of those that are said to change no behaviour.
     """
     counted = [one for one in tried if not one.invalid]
     known = set(equivalent)
     return Score(
         len(counted),
-        sum(one.mutant.identity in known for one in counted),
+        sum(one.mutant.identity in known and not one.killed for one in counted),
         sum(one.killed for one in counted),
         sum(one.killed_by_requirement for one in counted),
         sum(not one.reaching for one in counted),

@@ -80,10 +80,10 @@ def test_what_is_said_to_be_equivalent_leaves_the_score(campaign, tmp_path):
 
 def test_an_equivalent_mutant_that_is_killed_fails(campaign, tmp_path, capsys):
     """Its argument is wrong."""
-    name = "Lift.ride:early-return:1"
+    name = "Lift.ride:dropped-statement"
     known = equivalent(campaign, tmp_path, name)
     assert main(known, ["mutate", "--of", "code", "--only", name, "--jobs", "1"]) == 1
-    assert f"lift:{name} is said to be equivalent, and" in capsys.readouterr().err
+    assert f"lift:{name}:4 is said to be equivalent, and requirement (L1)" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -88,13 +88,13 @@ def test_what_is_killed_by_a_requirement_counts_apart():
 
 
 def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
-    """One that survives is no survivor, and leaves the score."""
+    """And counts in the score; one that survives is no survivor, and leaves the score."""
     found = report(Tried(SHOWN[0], 1, 1), Tried(SHOWN[1], 1, 1, (KILLED,)), equivalent=SHOWN[:2])
     assert found.survivors("s") == {}
     assert found.contradictions() == [
         f"{SHOWN[1].identity} is said to be equivalent, and requirement (R1) in t kills it"
     ]
-    assert found.scores("s")["all"].rest == 0
+    assert found.scores("s")["all"].rest == 1
 
 
 ENTRY = """
