@@ -2,24 +2,13 @@
 
 from __future__ import annotations
 
-from handover.robot import behaviour
+from handover.robot import behaviour, handover
 from handover.robot.handover import STATES
 from handover.robot.layout import COMMON, code_blocks
 from rvmon.cdv import Block, Code
 
 _BEFORE_THE_TEST = "__init__"
 """The one function that runs before any step of the robot can be measured."""
-
-_CONSTANTS = (
-    "RESET_MOTIONS",
-    "HANDOVER_POINT",
-    "GRIP_ABOVE_CENTRE",
-    "APPROACH_HEIGHTS",
-    "PLAN_ATTEMPTS",
-    "PIECE_TOLERANCE",
-    "CLOCK_TOLERANCE_S",
-)
-"""The numbers of the state machine itself."""
 
 
 def robot_code() -> Code:
@@ -37,5 +26,8 @@ def robot_code() -> Code:
         [Block(state, path, frozenset(own)) for state, own in lines.items()],
         marked=True,
         kind="state",
-        constants={path: _CONSTANTS, str(behaviour.__file__): ("CORRECT",)},
+        constants={
+            path: [name for name in vars(handover) if name.isupper()],
+            str(behaviour.__file__): ["CORRECT"],
+        },
     )

@@ -63,6 +63,8 @@ def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
     """
     if survivor.difference is not None:
         return _differs(survivor.difference, reading)
+    if survivor.reaching == 1:
+        return "one test runs it, and nothing that is recorded differs"
     if survivor.reaching:
         return f"{survivor.reaching} tests run it, and nothing that is recorded differs"
     return "no test runs it"

@@ -13,7 +13,6 @@ from rvmon.cdv.meter import Meter, statements_name
 from rvmon.cdv.mutation.tried import Difference
 from rvmon.cdv.play import run_of
 from rvmon.cdv.system import Observer, Run, System, Values
-from rvmon.trace.sample import Value
 from rvmon.verdict.verdict import Verdict
 
 
@@ -135,8 +134,8 @@ def _first(t_ns: int, was: Values, now: Values) -> tuple[int, str, str, str] | N
 
 
 def _told(values: Values, name: str) -> str:
-    """A value as text: NaN is as NaN."""
+    """A value as text, all digits of it; NaN is as NaN."""
     if name not in values:
         return ""
-    value: Value = values[name]
+    value = values[name]
     return "unknown" if value is None else str(value)

@@ -9,12 +9,13 @@ from rvmon.cdv.mutation.question import TITLES, question
 from rvmon.cdv.mutation.report import MutationReport, SuiteTried
 from rvmon.cdv.mutation.spec_mutants import SpecMutant
 from rvmon.cdv.mutation.tried import How, Tried
+from rvmon.report.coverage_summary import counted
 from rvmon.report.percent import percent_text
 from rvmon.report.plain_table import plain_table
 
 HEAD = (
     *("suite", "third", "mutants", "equivalent", "killed", "by a requirement", "not run"),
-    *("score", "by a requirement"),
+    *("score", "score by requirements"),
 )
 
 SPEC_HEAD = ("suite", "third", "mutants", "proved equivalent", "killed", "score")
@@ -42,7 +43,7 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
         lines += [plain_table([SPEC_HEAD, *spec_score_rows(report)])]
     for name in report.suites:
         for title, blocks in _survivors(report, name):
-            lines += [f"{name}: {len(blocks)} survive. {title}", ""]
+            lines += [f"{name}: {counted(len(blocks), 'survivor')}. {title}", ""]
             for block in blocks[:most]:
                 lines += [*block, ""]
             if most is not None and len(blocks) > most:
@@ -107,7 +108,7 @@ def _killers(suite: SuiteTried) -> str:
     told = ", ".join(f"{count} {_SAID[how]}" for how, count in counts.items() if count)
     invalid = sum(bool(one.invalid) for one in suite.tried)
     rest = f"; {invalid} cannot be planted" if invalid else ""
-    return f"{suite.tests} tests, {told or 'nothing killed'}{rest}"
+    return f"{counted(suite.tests, 'test')}, {told or 'nothing killed'}{rest}"
 
 
 _SAID = {
