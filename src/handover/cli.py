@@ -62,7 +62,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         metavar="NAMES",
         default="pseudorandom,constrained",
         help="of pseudorandom, constrained, model-based, model-based-shortest, "
-        "model-based-fastest, directed (default: the first two)",
+        "model-based-fastest, disturbed, directed (default: the first two)",
     )
     add_campaign_options(parser)
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")

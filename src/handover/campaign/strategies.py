@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from handover.generator.abstract_test import AbstractTest
+from handover.generator.disturbed import disturbed
 from handover.generator.files import directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
@@ -23,6 +24,7 @@ STRATEGIES: Mapping[str, Strategy] = {
     "model-based": model_based,
     "model-based-shortest": partial(model_based, policy="shortest"),
     "model-based-fastest": partial(model_based, policy="fastest"),
+    "disturbed": disturbed,
     "directed": _directed,
 }
 """In the order of the columns of a table."""

@@ -28,7 +28,7 @@ def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
         if "model-based" in summary.robots[name].strategies:
             notes = (*notes, WITNESSES)
         own = replace(one.own, checked=checked, notes=notes)
-        control = one.control
+        control = one.control if name == "legacy" else None
         if control is not None:
             title = f"{summary.robots[name].title}, without the fitted loss of signals at start-up"
             control = replace(control, title=title)
@@ -36,10 +36,10 @@ def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
             own=own,
             beside={"paper": paper_table()} if name == "legacy" else {},
             control=control,
-            control_label="no fit" if name == "legacy" else "",
+            control_label="no fit",
             control_title="The same without the fitted loss of signals",
             sources=(f"paper: {SOURCE}",) if name == "legacy" else (),
-            remark=_fitted(own, control) if name == "legacy" and control is not None else "",
+            remark=_fitted(own, control) if control is not None else "",
         )
     return shown
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-SPECS = {"correct": "specs/handover.rv", "legacy": "specs/handover_legacy.rv"}
-"""The specification that judges each robot: the paper's words, and its testbench's triggers."""
+SPECS = {"correct": "specs/handover_correct.rv", "legacy": "specs/handover_legacy.rv"}
+"""What judges each robot: the paper's words and the truth of the world, or the triggers that the
+paper's testbench had."""
 
 
 def spec_path(robot: str) -> Path:
     """The file of a robot's requirements, in an installed package or in the source tree.
 
     >>> spec_path("correct").name
-    'handover.rv'
+    'handover_correct.rv'
     """
     return _placed(SPECS[robot])
 

@@ -33,7 +33,8 @@ def run_test(
         test: what the human does, and the seed of everything random.
         robot: `"correct"` or `"legacy"`; default: the robot that the test names, else correct.
         mutation: default: the one that the test names.
-        startup_loss: `False` switches the fitted loss of signals off in any case.
+        startup_loss: `False` switches the fitted loss of signals to the legacy robot off in any
+            case; the correct one loses none.
         jump: skip the physics while nothing moves; `False` steps all of it.
         record_poses: keep the scene over time for an animation.
         observer: called with each whole sample, in time order.
@@ -60,10 +61,11 @@ def run_test(
         raise TestError(f"no mutation named {mutation!r}: there are {', '.join(MUTATIONS)}")
     make_robot = HandoverRobot if mutation is None else MUTATIONS[mutation]
 
-    draws = draw(test.seed, startup_loss=startup_loss and test.startup_loss)
+    draws = draw(test.seed, startup_loss=startup_loss and test.startup_loss and robot == "legacy")
     world = World(
         stream(test.seed, "world"),
         faults=test.faults,
+        scene_faults=test.scene,
         jump=jump,
         record_poses=record_poses,
         observer=observer,
@@ -83,11 +85,13 @@ def run_test(
     robot_node = Node(world.bus, params, draws.poll_growth_s)
     human_node = Node(world.bus, {}, draws.poll_growth_s)
     machine = make_robot(robot_node, world.arm, world.gripper, world, BEHAVIOURS[robot])
+    rng = stream(test.seed, "postures")
+    at_limits = test.postures == "at_limits"
     script = Script(
         test.actions,
         human_node,
         world.human,
-        stream(test.seed, "postures"),
+        (lambda *limits: rng.choice(limits)) if at_limits else rng.uniform,
         start_s=draws.human_start_s,
         connected=draws.connected,
     )

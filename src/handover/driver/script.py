@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import random
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import assert_never
 
 from handover.generator.abstract_test import (
@@ -13,6 +12,7 @@ from handover.generator.abstract_test import (
     ReceiveSignal,
     SendSignal,
     SetParam,
+    Withdraw,
 )
 from handover.world import parameters as p
 from handover.world.bus import Node
@@ -33,7 +33,7 @@ class Script:
         actions: of the abstract test.
         node: the human's connection to the bus.
         human: the body that takes the postures.
-        rng: draws postures from their ranges.
+        draw: draws a number of a posture from its range.
         start_s: seconds until the script begins.
         connected: whether signals reach the robot.
     """
@@ -43,7 +43,7 @@ class Script:
         actions: Iterable[Action],
         node: Node,
         human: Human,
-        rng: random.Random,
+        draw: Callable[[float, float], float],
         *,
         start_s: float,
         connected: bool,
@@ -51,7 +51,7 @@ class Script:
         self._actions = actions
         self._node = node
         self._human = human
-        self._rng = rng
+        self._draw = draw
         self._start_s = start_s
         self._connected = connected
 
@@ -72,6 +72,8 @@ class Script:
                     yield units * TIME_UNIT_S
                 case SetParam(param=param, value=value):
                     self._take_posture(param, ok=value != 0)
+                case Withdraw():
+                    self._human.withdraw()
                 case _:
                     assert_never(action)
 
@@ -106,13 +108,11 @@ class Script:
 
     def _look(self, *, ok: bool) -> None:
         offset, distance, angle = p.GAZE_OK if ok else p.GAZE_BAD
-        self._human.look(
-            self._rng.uniform(*offset), self._rng.uniform(*distance), self._rng.uniform(*angle)
-        )
+        self._human.look(self._draw(*offset), self._draw(*distance), self._draw(*angle))
 
     def _reach(self, *, ok: bool) -> None:
         if ok:
             self._human.reach(*p.LOCATION_OK, near=True)
         else:
-            away = self._rng.uniform(*p.LOCATION_BAD)
+            away = self._draw(*p.LOCATION_BAD)
             self._human.reach(away, away, near=False)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from handover.world.faults import SensorFaults
+from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import Test
 
 HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
@@ -32,6 +32,7 @@ Strategy = Literal[
     "model-based",
     "model-based-shortest",
     "model-based-fastest",
+    "disturbed",
     "directed",
 ]
 
@@ -65,7 +66,11 @@ class SetParam(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="set
             raise ValueError(f"`{self.param}` is 0 or 1, not {self.value}")
 
 
-Action = SendSignal | ReceiveSignal | SetParam
+class Withdraw(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="withdraw"):
+    """The human loses interest: lets go, takes the hand back to the chest and looks away."""
+
+
+Action = SendSignal | ReceiveSignal | SetParam | Withdraw
 
 
 class AbstractTest(Test, frozen=True, kw_only=True):
@@ -76,14 +81,18 @@ class AbstractTest(Test, frozen=True, kw_only=True):
         actions: in order; each begins when the one before is over.
         robot: the robot it is written for; `None`: any.
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
+        postures: drawn from their ranges, or at the ends of these, where sensors may err.
         horizon_s: simulated seconds.
         startup_loss: whether the human's signals may get lost as the processes start.
         faults: what is wrong with the sensors.
+        scene: what the scene has in store for the robot.
     """
 
     strategy: Strategy
     actions: tuple[Action, ...]
     robot: Literal["correct", "legacy"] | None = None
+    postures: Literal["in_range", "at_limits"] = "in_range"
     horizon_s: Annotated[float, msgspec.Meta(gt=0, le=3600)] = 200.0
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
+    scene: SceneFaults = SceneFaults()

@@ -56,7 +56,7 @@ class Behaviour:
 
 
 CORRECT = Behaviour(
-    reset_s=0.9,
+    reset_s=4.5,
     poll_s=0.1,
     poll_limit=200,
     shared_polls=False,

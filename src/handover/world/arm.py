@@ -21,12 +21,23 @@ class Arm:
         scene: where the motors are.
         rng: draws the planner's latency.
         wake: called with the seconds for which the scene is going to move.
+        note: called with the name of each command.
+        plan_failure: probability that there is no path, though the place is in reach.
     """
 
-    def __init__(self, scene: Scene, rng: random.Random, wake: Callable[[float], None]) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        rng: random.Random,
+        wake: Callable[[float], None],
+        note: Callable[[str], None],
+        plan_failure: float = 0.0,
+    ) -> None:
         self._scene = scene
         self._rng = rng
+        self._plan_failure = plan_failure
         self._wake = wake
+        self._note = note
         self._goal = self.joints()
         self._path: Trajectory | None = None
         self._path_s = 0.0
@@ -45,7 +56,8 @@ class Arm:
         """
         yield self._rng.uniform(*p.PLAN_LATENCY_S)
         goal = joints_for(x, z)
-        return None if goal is None else self._path_to(goal)
+        fails = self._plan_failure > 0 and self._rng.random() < self._plan_failure
+        return None if goal is None or fails else self._path_to(goal)
 
     def interpolate(self, joints: Joints, duration: float) -> Trajectory:
         """A path to joint angles, in a given time and without planning."""
@@ -55,6 +67,7 @@ class Arm:
         """Move along a path; returns when it is over."""
         self._path, self._path_s = path, 0.0
         self._goal = path.goal
+        self._note("arm_commanded")
         self._wake(path.duration)
         yield path.duration
 
@@ -106,18 +119,34 @@ class Arm:
 class Gripper:
     """Two fingers that turn with a limited torque until something or their stop holds them."""
 
-    def __init__(self, scene: Scene, wake: Callable[[float], None]) -> None:
+    def __init__(
+        self, scene: Scene, wake: Callable[[float], None], note: Callable[[str], None]
+    ) -> None:
         self._scene = scene
         self._wake = wake
+        self._note = note
         self._travel_s = (p.FINGER_OPEN - p.FINGER_OVERCLOSED) / p.FINGER_SPEED
 
     def open(self) -> None:
         """Begin to open both fingers."""
+        self._note("open_commanded")
         self._turn(-p.FINGER_SPEED)
 
     def close(self) -> None:
         """Begin to close both fingers; they go on pressing."""
+        self._note("close_commanded")
         self._turn(p.FINGER_SPEED)
+
+    def control(self) -> None:
+        """Stop a finger at its stop: a motor that went on pressing would jerk the arm."""
+        palm = self._scene.links[2].angle
+        fingers = zip(self._scene.fingers, self._scene.finger_motors, (1, -1), strict=True)
+        for finger, motor, side in fingers:
+            angle, closing = side * (finger.angle - palm), side * motor.rate
+            if (closing < 0 and angle > p.FINGER_OPEN - p.AT_STOP) or (
+                closing > 0 and angle < p.FINGER_OVERCLOSED + p.AT_STOP
+            ):
+                motor.rate = 0.0
 
     def _turn(self, closing_speed: float) -> None:
         left, right = self._scene.finger_motors

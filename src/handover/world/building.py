@@ -7,8 +7,11 @@ import math
 import pymunk
 
 from handover.world import parameters as p
+from handover.world.faults import SceneFaults
 from handover.world.kinematics import Joints
 from handover.world.scene import Scene
+
+AS_PLANNED = SceneFaults()
 
 _SCENERY = 1
 _PIECE = 2
@@ -18,12 +21,13 @@ _FINGER_X = p.PALM_LENGTH / 2
 _FINGER_OFFSET = (p.PIECE_SIZE[0] + p.FINGER_THICKNESS) / 2
 
 
-def build(pose: Joints) -> Scene:
+def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     """Make the scene with the arm in a pose, the piece on the table and the human at rest.
 
     Collisions: the piece with everything; gripper and hand also with table and floor. Hand and
-    gripper pass each other, since the plane is a projection and the hand may be in front; how
-    close they come is what requirement 5 measures. The arm's links touch nothing.
+    gripper pass each other, since the plane is a projection and the hand may be in front (how
+    close they come is what requirement 5 measures), unless the faults have the hand in the
+    plane. The arm's links touch nothing.
     """
     space = pymunk.Space()
     space.gravity = (0.0, -p.GRAVITY)
@@ -32,8 +36,12 @@ def build(pose: Joints) -> Scene:
     _add_scenery(space)
     links, joint_motors = _add_arm(space, pose)
     fingers, finger_motors = _add_fingers(space, links[2])
-    piece = _add_piece(space)
+    piece = _add_piece(space, faults.friction)
     hand, hand_target, hand_pull = _add_hand(space)
+    if faults.hand_in_plane:
+        for part in (links[2], *fingers):
+            _touch(part, _HAND)
+        _touch(hand, _GRIPPER)
     head = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     head.position = p.HEAD_REST
     head.angle = p.HEAD_REST_ANGLE
@@ -54,6 +62,13 @@ def build(pose: Joints) -> Scene:
 
 def _filter(category: int, *collides_with: int) -> pymunk.ShapeFilter:
     return pymunk.ShapeFilter(categories=category, mask=sum(collides_with))
+
+
+def _touch(body: pymunk.Body, category: int) -> None:
+    """Let a body also collide with a category."""
+    for shape in body.shapes:
+        own = shape.filter
+        shape.filter = pymunk.ShapeFilter(categories=own.categories, mask=own.mask | category)
 
 
 def table_corners() -> tuple[tuple[float, float], ...]:
@@ -152,11 +167,11 @@ def _add_fingers(
     return (fingers[0], fingers[1]), (motors[0], motors[1])
 
 
-def _add_piece(space: pymunk.Space) -> pymunk.Body:
+def _add_piece(space: pymunk.Space, friction: float) -> pymunk.Body:
     piece = pymunk.Body(p.PIECE_MASS, pymunk.moment_for_box(p.PIECE_MASS, p.PIECE_SIZE))
     piece.position = (p.PIECE_X, p.PIECE_SIZE[1] / 2)
     shape = pymunk.Poly.create_box(piece, p.PIECE_SIZE)
-    shape.friction = p.FRICTION
+    shape.friction = friction
     shape.filter = _filter(_PIECE, _SCENERY, _GRIPPER, _HAND)
     space.add(piece, shape)
     return piece

@@ -1,10 +1,12 @@
-"""What may be wrong with the sensors; by default nothing."""
+"""What may be wrong with sensors and scene; by default nothing."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
 import msgspec
+
+from handover.world.parameters import FRICTION
 
 Sensor = Literal["gaze", "pressure", "location", "distance"]
 
@@ -15,9 +17,26 @@ class SensorFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit
     Attributes:
         noise_m: standard deviation of every measured length, metres.
         delay_s: age of what the robot reads of gaze, pressure and location, seconds.
+        loss: probability that a sensor gives no reading when it is read.
         dropout: sensors that are dead: the robot gets no reading, the signal is unknown.
     """
 
     noise_m: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     delay_s: Annotated[float, msgspec.Meta(ge=0, le=10)] = 0.0
+    loss: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     dropout: tuple[Sensor, ...] = ()
+
+
+class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+    """What the scene has in store for the robot.
+
+    Attributes:
+        friction: of the piece's surface; a slippery piece gets lost on the way.
+        plan_failure: probability that the arm's planner finds no path where there is one.
+        hand_in_plane: whether the hand is beside the gripper, so that they collide, and not in
+            front of it.
+    """
+
+    friction: Annotated[float, msgspec.Meta(ge=0.01, le=2)] = FRICTION
+    plan_failure: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
+    hand_in_plane: bool = False

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from handover.world import parameters as p
 from handover.world.grasp import Grasp
 from handover.world.limb import Limb
-from handover.world.measures import contact_force, seen_piece
+from handover.world.measures import contact_force, gripper_force, seen_piece
 from handover.world.scene import Scene
 
 
@@ -21,9 +21,7 @@ class Human:
         after: calls a function so many seconds later.
 
     Attributes:
-        gaze_taken_up: whether the human has begun to look, so that trackers know the head.
-        location_taken_up: whether the human has begun to reach, so that trackers know the hand.
-        pressure_taken_up: whether the human has opened or closed the hand for the piece.
+        hand_is_slack: whether the hand is neither opened nor closed for the piece.
     """
 
     def __init__(
@@ -32,9 +30,7 @@ class Human:
         wake: Callable[[float], None],
         after: Callable[[float, Callable[[], None]], None],
     ) -> None:
-        self.gaze_taken_up = False
-        self.location_taken_up = False
-        self.pressure_taken_up = False
+        self.hand_is_slack = True
         self._scene = scene
         self._wake = wake
         self._after = after
@@ -69,6 +65,10 @@ class Human:
         """Intend to hold the piece if the hand is near it, or to let go of it."""
         self._after(p.REACTION_S, lambda: self._start_to_grasp(closed=closed))
 
+    def withdraw(self) -> None:
+        """Intend to lose interest: look away, and have the hand back at the chest."""
+        self._after(p.REACTION_S, self._start_to_withdraw)
+
     def control(self) -> None:
         """Move head and arm on; take hold where the closed hand touches the piece."""
         self._head.control()
@@ -89,23 +89,40 @@ class Human:
         grasp = 0.0 if self._grasp is None else self._grasp.force()
         return grasp + contact_force(self._scene.hand, self._scene.piece)
 
+    def hand_force(self) -> float:
+        """N between the hand and all that is the robot's or that the robot holds."""
+        parts = (self._scene.links[2], *self._scene.fingers)
+        return self.holding_force() + sum(contact_force(self._scene.hand, one) for one in parts)
+
+    def holds(self) -> bool:
+        """Whether the hand has taken hold of the piece."""
+        return self._grasp is not None
+
+    def shares_piece(self) -> bool:
+        """Whether robot and human both hold the piece, by the forces between them and it."""
+        return min(gripper_force(self._scene), self.holding_force()) >= p.PRESSURE_MIN
+
     def _start_to_look(self, offset: float, distance: float, angle: float) -> None:
         piece_x, piece_z = seen_piece(self._scene)
         x, z = piece_x + distance, piece_z + offset
         towards = math.atan2(piece_z - z, piece_x - x) % math.tau
-        self.gaze_taken_up = True
         self._wake(self._head.start((x, z, towards - math.radians(angle))))
 
     def _start_to_reach(self, place: tuple[float, float], *, near: bool) -> None:
-        self.location_taken_up = True
         self._place, self._near = place, near
         self._move_hand()
 
     def _start_to_grasp(self, *, closed: bool) -> None:
-        self.pressure_taken_up = True
+        self.hand_is_slack = False
         self._closed = closed
         if self._near:
             self._move_hand()
+
+    def _start_to_withdraw(self) -> None:
+        self._place, self._near, self._closed, self.hand_is_slack = None, False, False, True
+        self._let_go()
+        self._wake(self._head.start((*p.HEAD_REST, p.HEAD_REST_ANGLE)))
+        self._wake(self._arm.start(p.HAND_REST))
 
     def _wants_hold(self) -> bool:
         return self._closed and self._near

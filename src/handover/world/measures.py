@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import pymunk
 
 from handover.world import parameters as p
@@ -24,6 +27,75 @@ def seen_piece(scene: Scene) -> tuple[float, float]:
     """Where camera and eyes see the piece, (x, z) in metres."""
     x, z = scene.piece.position
     return round(x, p.SIGHT_RESOLUTION_DIGITS), round(z, p.SIGHT_RESOLUTION_DIGITS)
+
+
+def exactly() -> float:
+    """The error of a measurement that has none."""
+    return 0.0
+
+
+def gaze_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
+    """Whether the head is close to the piece and turned towards it.
+
+    Offset is the head's height over the piece, distance is along x, and the angle is that
+    between the line of sight and the direction from head to piece.
+
+    Args:
+        scene: where the bodies are.
+        error: what to add to each measured length, m.
+    """
+    head, piece = scene.head.position, scene.piece.position
+    return (
+        abs(head.y - piece.y + error()) <= p.GAZE_MAX_OFFSET
+        and abs(head.x - piece.x + error()) <= p.GAZE_MAX_DISTANCE
+        and _turn_from_piece(scene) < p.GAZE_MAX_ANGLE
+    )
+
+
+def face_is_seen(scene: Scene) -> bool:
+    """Whether the head is turned to the piece so far that a tracker finds its eyes."""
+    return _turn_from_piece(scene) < p.FACE_MAX_ANGLE
+
+
+def hand_is_seen(scene: Scene) -> bool:
+    """Whether a tracker can tell the hand from the chest."""
+    return (scene.hand.position - p.HAND_REST).length > p.HAND_MIN_OFFSET
+
+
+def _turn_from_piece(scene: Scene) -> float:
+    """Degrees between the line of sight and the direction from head to piece."""
+    head, piece = scene.head.position, scene.piece.position
+    towards = math.atan2(piece.y - head.y, piece.x - head.x)
+    turn = (scene.head.angle - towards + math.pi) % math.tau - math.pi
+    return math.degrees(abs(turn))
+
+
+def location_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
+    """Whether the hand is near the piece on both axes; arguments as of `gaze_is_ok`."""
+    hand, piece = scene.hand.position, scene.piece.position
+    return (
+        abs(hand.x - piece.x + error()) <= p.LOCATION_MAX
+        and abs(hand.y - piece.y + error()) <= p.LOCATION_MAX
+    )
+
+
+def gripper_force(scene: Scene) -> float:
+    """N with which the weaker of both fingers presses on the piece."""
+    return min(contact_force(scene.piece, finger) for finger in scene.fingers)
+
+
+def gripper_opening(scene: Scene) -> float:
+    """Metres between the tips of the fingers, at their middle lines."""
+    tips = [finger.local_to_world((p.FINGER_LENGTH / 2, 0.0)) for finger in scene.fingers]
+    return float((tips[0] - tips[1]).length)
+
+
+def hand_clearance(scene: Scene) -> float:
+    """Metres of free space between the hand and the nearest part of the gripper."""
+    at = scene.hand.position
+    parts = (scene.links[2], *scene.fingers)
+    gap = min(shape.point_query(at).distance for part in parts for shape in part.shapes)
+    return float(max(0.0, gap - p.HAND_RADIUS))
 
 
 def hand_offset(scene: Scene) -> tuple[float, float]:

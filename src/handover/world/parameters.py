@@ -61,6 +61,9 @@ FINGER_OPEN: Final = 0.5
 FINGER_OVERCLOSED: Final = -0.1
 """rad of a finger against the palm's axis: at 0 the pads lie flat on the piece."""
 
+AT_STOP: Final = 1e-3
+"""rad from its stop at which a finger's motor is stopped."""
+
 PALM_LENGTH: Final = 0.05
 PALM_WIDTH: Final = 0.08
 
@@ -144,6 +147,12 @@ GAZE_MAX_DISTANCE: Final = 0.6
 GAZE_MAX_ANGLE: Final = 40.0
 LOCATION_MAX: Final = 0.3
 """Limits of a good gaze (the angle must be below its limit) and location (paper's testbench)."""
+
+FACE_MAX_ANGLE: Final = 90.0
+"""degrees: a camera at the piece sees the eyes of a head that is turned from it by less."""
+
+HAND_MIN_OFFSET: Final = 0.10
+"""m from the chest: a depth camera does not tell a nearer hand from the body."""
 
 PRESSURE_MIN: Final = 0.5
 """N between holder and piece that counts as holding: a sixth of the piece's weight."""

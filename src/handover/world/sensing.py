@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-import math
 import random
 from collections import deque
 
 from handover.world import parameters as p
 from handover.world.faults import SensorFaults
 from handover.world.human import Human
-from handover.world.measures import contact_force, hand_offset
+from handover.world.measures import (
+    face_is_seen,
+    gaze_is_ok,
+    hand_is_seen,
+    hand_offset,
+    location_is_ok,
+)
 from handover.world.reading import Reading
 from handover.world.scene import Scene
 
@@ -42,8 +47,9 @@ class Sensors:
     def read(self, t_ns: int) -> Reading:
         """Read gaze, pressure and location.
 
-        A sensor has a reading once the human has begun to take part in its respect, and not
-        while the tracked head or hand is moving. The value comes from the bodies alone.
+        A sensor has a reading while the tracked head or hand is in view and still: a face that
+        is turned away, or a hand at the chest, is not seen. Pressure is that of a hand which
+        has opened or closed: a slack one has not made up its mind.
 
         Args:
             t_ns: the instant of the reading.
@@ -69,44 +75,22 @@ class Sensors:
 
     def _read(self) -> Reading:
         head_moves, hand_moves = self._human.is_moving()
-        human = self._human
-        gaze_known = human.gaze_taken_up and not head_moves and not self.is_dead("gaze")
-        hand_known = human.location_taken_up and not hand_moves and not self.is_dead("location")
-        force_known = human.pressure_taken_up and not hand_moves and not self.is_dead("pressure")
+        head_known = face_is_seen(self._scene) and not head_moves
+        hand_known = hand_is_seen(self._scene) and not hand_moves
+        force_known = hand_known and not self._human.hand_is_slack
         return Reading(
-            gaze=self._gaze_is_ok() if gaze_known else None,
-            pressure=self._pressure_is_ok() if force_known else None,
-            location=self._location_is_ok() if hand_known else None,
+            gaze=gaze_is_ok(self._scene, self._noise) if self._says("gaze", head_known) else None,
+            pressure=self._human.shares_piece() if self._says("pressure", force_known) else None,
+            location=location_is_ok(self._scene, self._noise)
+            if self._says("location", hand_known)
+            else None,
         )
 
-    def _gaze_is_ok(self) -> bool:
-        """Whether the head is close to the piece and turned towards it.
-
-        Offset is the head's height over the piece, distance is along x, and the angle is that
-        between the line of sight and the direction from head to piece.
-        """
-        head, piece = self._scene.head.position, self._scene.piece.position
-        towards = math.atan2(piece.y - head.y, piece.x - head.x)
-        turn = (self._scene.head.angle - towards + math.pi) % math.tau - math.pi
-        return (
-            abs(head.y - piece.y + self._noise()) <= p.GAZE_MAX_OFFSET
-            and abs(head.x - piece.x + self._noise()) <= p.GAZE_MAX_DISTANCE
-            and math.degrees(abs(turn)) < p.GAZE_MAX_ANGLE
-        )
-
-    def _location_is_ok(self) -> bool:
-        """Whether the hand is near the piece on both axes."""
-        hand, piece = self._scene.hand.position, self._scene.piece.position
-        return (
-            abs(hand.x - piece.x + self._noise()) <= p.LOCATION_MAX
-            and abs(hand.y - piece.y + self._noise()) <= p.LOCATION_MAX
-        )
-
-    def _pressure_is_ok(self) -> bool:
-        """Whether robot and human both hold the piece, by the forces between them and it."""
-        piece = self._scene.piece
-        by_robot = min(contact_force(piece, finger) for finger in self._scene.fingers)
-        return min(by_robot, self._human.holding_force()) >= p.PRESSURE_MIN
+    def _says(self, sensor: str, known: bool) -> bool:
+        """Whether a sensor has a reading, of what it could know."""
+        if not known or self.is_dead(sensor):
+            return False
+        return not self._faults.loss or self._rng.random() >= self._faults.loss
 
     def _noise(self) -> float:
         sd = self._faults.noise_m

@@ -8,17 +8,18 @@ from collections.abc import Callable
 
 from handover.world import parameters as p
 from handover.world.arm import Arm, Gripper
-from handover.world.building import build
+from handover.world.building import AS_PLANNED, build
 from handover.world.bus import Bus, Value
-from handover.world.faults import SensorFaults
+from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.film import Film
 from handover.world.human import Human
-from handover.world.measures import seen_piece, tool_speed
+from handover.world.measures import seen_piece
 from handover.world.poses import Poses
 from handover.world.reading import Reading
 from handover.world.recorder import Recorder, SampleValue
 from handover.world.schedule import Schedule
 from handover.world.sensing import Sensors
+from handover.world.truth import Truth
 
 PERFECT = SensorFaults()
 
@@ -37,6 +38,7 @@ class World:
     Args:
         rng: draws what the world leaves to chance: the planner's latency, sensor noise.
         faults: what is wrong with the sensors.
+        scene_faults: what the scene has in store for the robot.
         jump: `False` steps the physics over rest, too.
         record_poses: keep a frame at 10 Hz while something moves.
         observer: called with each whole sample.
@@ -47,6 +49,7 @@ class World:
         rng: random.Random,
         *,
         faults: SensorFaults = PERFECT,
+        scene_faults: SceneFaults = AS_PLANNED,
         jump: bool = True,
         record_poses: bool = False,
         observer: Callable[[int, dict[str, SampleValue]], None] | None = None,
@@ -54,19 +57,22 @@ class World:
         self.schedule = Schedule()
         self.bus = Bus(self.schedule)
         self.recorder = Recorder(observer)
-        self.scene = build(p.ZERO_POSE)
-        self.arm = Arm(self.scene, rng, self._wake)
-        self.gripper = Gripper(self.scene, self._wake)
+        self.scene = build(p.ZERO_POSE, scene_faults)
+        self.arm = Arm(self.scene, rng, self._wake, self._note, scene_faults.plan_failure)
+        self.gripper = Gripper(self.scene, self._wake, self._note)
         self.human = Human(self.scene, self._wake, self._after)
         self.sensors = Sensors(self.scene, self.human, faults, rng)
+        self._truth = Truth(self.scene, self.human)
         self._stepped = 0
         self._step = 0
         self._planned_until = 0
         self._at_rest = False
         self._jump = jump
+        self._hand_in_plane = scene_faults.hand_in_plane
         self._film = Film(self.scene) if record_poses else None
         self.bus.tap(self._record)
         self._wake(0.0)
+        self.recorder.signal(0, "sensors_disturbed", faults != PERFECT)
         self._watch()
 
     def run(self, horizon_ns: int) -> None:
@@ -88,6 +94,9 @@ class World:
             dead = self.sensors.is_dead(sensor)
             value = None if dead else bool(getattr(reading, sensor))
             self.recorder.signal(now, f"{sensor}_ok", value)
+        self._note("sensors_read")
+        if None not in (reading.gaze, reading.pressure, reading.location):
+            self.recorder.event(now, "fully_read")
         return reading
 
     def piece(self) -> tuple[float, float]:
@@ -112,11 +121,14 @@ class World:
                 return
             if self._step % p.CONTROL_STEPS == 0:
                 self.arm.control()
+                self.gripper.control()
                 self.human.control()
                 self.sensors.remember(self._step * p.STEP_NS)
             self.scene.space.step(p.STEP_NS / p.NS)
             self._step += 1
             self._stepped += 1
+            if self._hand_in_plane:
+                self._truth.step()
             if self._step % p.WATCH_STEPS == 0 and not self._at_rest:
                 self._at_rest = self._step >= self._planned_until and self._is_still()
                 self._watch()
@@ -144,10 +156,22 @@ class World:
         """Publish distance and speed, and keep a frame."""
         t_ns = self._step * p.STEP_NS
         self._measure_hand(t_ns)
-        speed = 0.0 if self._at_rest else round(tool_speed(self.scene), 3)
-        self.recorder.signal(t_ns, "tool_speed", speed)
+        self._measure_truth(t_ns)
         if self._film is not None:
             self._film.take(t_ns)
+
+    def _measure_truth(self, t_ns: int) -> None:
+        truth = self._truth.measure()
+        if self._at_rest:
+            truth["tool_speed"] = 0.0
+        for name, value in truth.items():
+            self.recorder.signal(t_ns, name, value)
+
+    def _note(self, name: str) -> None:
+        """Record what was commanded or read, with what was so at that instant."""
+        now = self.schedule.now_ns
+        self._measure_truth(now)
+        self.recorder.event(now, name)
 
     def _measure_hand(self, t_ns: int) -> None:
         """Publish how far the hand is from the gripper, to 0.1 mm."""
@@ -163,7 +187,7 @@ class World:
         if topic in CLOSINGS and value is not False:
             self._measure_hand(now)
         if value is None:
-            self.recorder.event(now, topic)
+            self._note(topic)
         elif isinstance(value, str):
             if topic == HUMAN_SIGNALS:
                 self.recorder.event(now, value)

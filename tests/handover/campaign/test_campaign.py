@@ -119,7 +119,7 @@ def test_a_crash_of_the_robot_is_a_result(directed_results):
     outcome = crashed[0].outcome
     assert outcome.ending is Ending.CRASHED
     assert "ZeroDivisionError" in outcome.error
-    assert set(outcome.verdicts) == set(REQUIREMENTS)
+    assert set(outcome.verdicts) == set(SPECS["correct"].requirements)
 
 
 def test_an_interrupt_keeps_the_finished_tests(results):

@@ -58,7 +58,11 @@ def test_all_forms_of_the_table_agree(demo):
             strategy = sources[row["robot"]]["strategies"][row["strategy"]]
             counts = strategy["requirements"][row["requirement"]]
             assert counts == {name: int(row[name]) for name in counts}
-    assert content["model_checking"] == {"R1": True, "R2": True, "R3": True, "R4": True, "R5": None}
+    checked = content["model_checking"]
+    assert {name: checked[name] for name in checked if checked[name] is not None} == {
+        "R1": True, "R2": True, "R3": True, "R4": True
+    }  # fmt: skip
+    assert checked.keys() > {"R5", "T1"}
 
 
 def test_all_links_of_the_pages_lead_somewhere(demo):
@@ -106,7 +110,7 @@ def test_a_replay_gives_the_verdicts_of_the_campaign(demo, capsys, tmp_path):
     from rvmon.cli import main as rvmon
 
     assert rvmon(["run", str(spec_path("correct")), str(tmp_path / f"{name}.jsonl")]) == 1
-    assert "R1   F" in capsys.readouterr().out
+    assert re.search(r"R1 +F", capsys.readouterr().out)
 
 
 def test_a_replay_is_shown_by_foxglove(tmp_path):

@@ -15,12 +15,14 @@ from rvmon.cdv.checker import Checker
 @pytest.mark.campaign
 @pytest.mark.parametrize("test", directed(), ids=lambda test: test.name)
 def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
-    """Each directed test gives the verdicts that its file expects, for all five requirements."""
+    """Each directed test gives the verdicts that its file expects; else nothing fails."""
     assert test.robot is not None
     checker = Checker(rvmon.load(spec_path(test.robot)))
     checker.begin()
     run = run_test(test, observer=checker.observe)
     report = checker.finish(run.end_ns)
     verdicts = {name: str(verdict) for name, verdict in report.verdicts.items()}
-    assert verdicts == test.expected
+    assert {name: verdicts[name] for name in test.expected} == test.expected
+    others = {name for name, verdict in verdicts.items() if verdict == "F"} - test.expected.keys()
+    assert test.mutation is not None or others == set()
     assert (run.error is not None) == (test.mutation == "crashes")

@@ -114,7 +114,7 @@ class AttemptJudge:
 
 def protocol(ready_after: float = 25.0) -> list[Message]:
     """The signals of a human who follows the protocol."""
-    return [Message("activateRobot", 3.0), Message("humanIsReady", ready_after)]
+    return [Message("activateRobot", 5.0), Message("humanIsReady", ready_after)]
 
 
 def test_handover_goes_through_all_states() -> None:
@@ -188,7 +188,7 @@ def test_correct_refuses_the_wrong_signal() -> None:
 
 def test_correct_refuses_old_readiness() -> None:
     """Readiness from before the human was informed does not count."""
-    bench = AttemptJudge([Message("activateRobot", 3.0), Message("humanIsReady", 6.0)])
+    bench = AttemptJudge([Message("activateRobot", 5.0), Message("humanIsReady", 8.0)])
     machine = bench.play()
     assert "sense" not in bench.states()
     assert machine.outcome == "the human never was ready"
@@ -198,7 +198,7 @@ def test_correct_gives_up_after_twenty_seconds_in_each_wait() -> None:
     """Each wait of the correct robot has its own 20 s."""
     alone = AttemptJudge()
     alone.play()
-    assert alone.times("timed_out")[0] == pytest.approx(0.9 + 20.0)
+    assert alone.times("timed_out")[0] == pytest.approx(CORRECT.reset_s + 20.0)
     activated = AttemptJudge([Message("activateRobot", 15.0)])
     activated.play()
     informed = activated.times("informed")[0]
@@ -277,7 +277,7 @@ def test_transitions_are_those_of_the_protocol() -> None:
         AttemptJudge(protocol()),
         AttemptJudge(protocol(), reading=lambda _: bad),
         AttemptJudge(protocol(), reading=lambda _: nothing),
-        AttemptJudge([Message("activateRobot", 3.0)]),
+        AttemptJudge([Message("activateRobot", 5.0)]),
         AttemptJudge(),
     ]
     seen: set[tuple[str, str]] = set()

@@ -92,12 +92,12 @@ def test_all_is_ok_when_the_human_takes_hold() -> None:
     assert stage.readings == [Reading(gaze=True, pressure=True, location=True)]
 
 
-def test_hand_held_back_gives_no_pressure() -> None:
-    """A hand that is told to hold but is held back presses on nothing."""
+def test_hand_held_back_is_not_seen() -> None:
+    """A hand that is told to hold but is held back at the chest gives no reading."""
     stage = Stage()
     strap(stage, 60.0)
     stage.play(fetch_offer_sense, 25)
-    assert stage.readings == [Reading(gaze=True, pressure=False, location=False)]
+    assert stage.readings == [Reading(gaze=True, pressure=None, location=None)]
 
 
 def test_hand_overcomes_a_weak_strap() -> None:

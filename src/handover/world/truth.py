@@ -1,0 +1,53 @@
+"""What is so in the scene, whatever sensors and robot say of it."""
+
+from __future__ import annotations
+
+from handover.world import parameters as p
+from handover.world.human import Human
+from handover.world.measures import (
+    gaze_is_ok,
+    gripper_force,
+    gripper_opening,
+    hand_clearance,
+    location_is_ok,
+    tool_speed,
+)
+from handover.world.recorder import SampleValue
+from handover.world.scene import Scene
+
+
+class Truth:
+    """Measures the bodies without error, for requirements and people, never for the robot.
+
+    Args:
+        scene: where the bodies are.
+        human: who may hold the piece.
+    """
+
+    def __init__(self, scene: Scene, human: Human) -> None:
+        self._scene = scene
+        self._human = human
+        self._peak = 0.0
+
+    def step(self) -> None:
+        """Keep the greatest force on the hand between two measurements."""
+        self._peak = max(self._peak, self._human.hand_force())
+
+    def measure(self) -> dict[str, SampleValue]:
+        """All signals now: lengths in m, to 1 mm, forces in N, speeds in m/s."""
+        self.step()
+        peak, self._peak = self._peak, 0.0
+        scene = self._scene
+        grip = gripper_force(scene)
+        return {
+            "piece_height": round(scene.piece.position.y, 3),
+            "gripper_holds": grip >= p.PRESSURE_MIN,
+            "person_holds": self._human.holds(),
+            "gripper_opening": round(gripper_opening(scene), 3),
+            "hand_force": round(peak),
+            "hand_clearance": round(hand_clearance(scene), 3),
+            "true_gaze": gaze_is_ok(scene),
+            "true_pressure": self._human.shares_piece(),
+            "true_location": location_is_ok(scene),
+            "tool_speed": round(tool_speed(scene), 3),
+        }

@@ -1,0 +1,179 @@
+"""What the robot owes in the world: the correct one owes nothing, robots that deceive are told."""
+
+from dataclasses import replace
+
+import pytest
+
+import rvmon
+from handover.checker import spec_path
+from handover.driver import run_test
+from handover.generator.files import directed
+from handover.generator.model_based import model_based
+from handover.generator.pseudorandom import constrained, pseudorandom
+from handover.robot import mutants
+from handover.robot.handover import END, HandoverRobot
+from rvmon.cdv.checker import Checker
+
+pytestmark = pytest.mark.campaign
+
+TESTS = {test.name: test for test in directed()}
+SPEC = rvmon.load(spec_path("correct"))
+EITHER = frozenset({"activateRobot", "humanIsReady"})
+
+
+def failed(test, mutation=None):
+    """The requirements that fail when the correct robot, or a mutated one, plays a test."""
+    checker = Checker(SPEC)
+    checker.begin()
+    run = run_test(test, robot="correct", mutation=mutation, observer=checker.observe)
+    verdicts = checker.finish(run.end_ns).verdicts
+    return {name for name, verdict in verdicts.items() if verdict == "F"}
+
+
+def other(**rules):
+    """The robot with other numbers or rules."""
+
+    class Other(HandoverRobot):
+        def __init__(self, *ports):
+            super().__init__(*ports[:-1], replace(ports[-1], **rules))
+
+    return Other
+
+
+class SaysReleased(HandoverRobot):
+    def release(self):
+        self.node.publish("released")
+        yield self.behaviour.release_s
+        return "done"
+
+
+class OpensWhenItWithholds(HandoverRobot):
+    def decide(self):
+        next_state = yield from super().decide()
+        if next_state == "done":
+            self.gripper.open()
+        return next_state
+
+
+class OpensAtDone(HandoverRobot):
+    def done(self):
+        self.gripper.open()
+        return (yield from super().done())
+
+
+class GripsAgain(HandoverRobot):
+    def release(self):
+        next_state = yield from super().release()
+        self.gripper.close()
+        return next_state
+
+
+class ReleasesLaterOn(HandoverRobot):
+    def decide(self):
+        next_state = yield from super().decide()
+        if next_state == "done":
+            yield 2.1
+            return "release"
+        return next_state
+
+
+class IgnoresLocation(HandoverRobot):
+    def decide(self):
+        next_state = yield from super().decide()
+        reading = self.reading
+        return "release" if reading and reading.gaze and reading.pressure else next_state
+
+
+class OpensOnTheWay(HandoverRobot):
+    def send_signal(self):
+        next(self.arm.follow(self.arm.interpolate(self.node.params["zero_pose"], 3.0)))
+        yield 1.5
+        self.gripper.open()
+        return (yield from super().send_signal())
+
+
+class WithholdsUnread(HandoverRobot):
+    def sense(self):
+        yield self.behaviour.sense_poll_s
+        self.node.publish("withheld")
+        return "done"
+
+
+class StaysSilentOnRefusal(HandoverRobot):
+    def decide(self):
+        next_state = yield from super().decide()
+        return next_state if next_state == "release" else END
+
+
+PLANTED = {
+    "senses-one-poll-longer": (other(sense_limit_s=5.5), "no-posture", "T25 T26"),
+    "senses-one-poll-less": (other(sense_limit_s=4.5), "no-posture", "T26"),
+    "reads-sooner": (other(sense_poll_s=0.4), "no-posture", "T28"),
+    "reads-later": (other(sense_poll_s=0.6), "released", "T27"),
+    "keeps-its-polls": (other(shared_polls=True), "never-ready", "T24"),
+    "polls-once-more": (other(poll_limit=201), "never-ready", "T23 T24"),
+    "polls-once-more-at-first": (other(poll_limit=201), "nobody-comes", "T21 T22"),
+    "polls-once-less": (other(poll_limit=199), "never-ready", "T24"),
+    "keeps-stale-signals": (other(only_fresh=False), "ready-too-early", "T20"),
+    "takes-any-signal": (other(readiness=EITHER), "activates-again", "T20"),
+    "starts-at-any-signal": (other(activation=EITHER), "ready-first", "T18"),
+    "checks-no-grip": (other(checks_grip=False), "piece-slips", "T13"),
+    "resets-fast": (other(reset_s=0.9), "released", "T14"),
+    "gives-no-time-to-take": (other(release_s=1.9), "released", "T31"),
+    "says-released": (SaysReleased, "released", "T5 T6"),
+    "opens-when-it-withholds": (OpensWhenItWithholds, "withheld-no-gaze", "T2 T3 T7 T8"),
+    "drops-what-it-withholds": (OpensWhenItWithholds, "withheld-hand-far", "T1 T9"),
+    "opens-at-done": (OpensAtDone, "no-posture", "T1 T2 T3 T8 T32"),
+    "opens-at-done-after-release": (OpensAtDone, "released", "T32"),
+    "grips-again": (GripsAgain, "released", "T6 T12"),
+    "releases-later-on": (ReleasesLaterOn, "withheld-empty-hand", "T1 T7 T8 T29"),
+    "ignores-location": (IgnoresLocation, "location-misread", "R2 T7"),
+    "opens-on-the-way": (OpensOnTheWay, "never-ready", "T4"),
+    "withholds-unread": (WithholdsUnread, "released", "T10"),
+    "stays-silent": (StaysSilentOnRefusal, "withheld-no-gaze", "T30"),
+    "never-decides": (mutants.NeverDecides, "withheld-no-gaze", "T11"),
+    "ends-silently": (mutants.EndsSilently, "released", "T19"),
+}
+"""Fault, the directed test that meets it, and requirements of which each tells it."""
+
+BY_SAMPLES = {
+    "T15": [(0, {"hand_force": 0.0}), (1, {"hand_force": 281.0})],
+    "T16": [(0, {"hand_force": 0.0}), (1, {"hand_force": 141.0}), (1.6, {"hand_force": 0.0})],
+    "T17": [
+        (0, {"sensors_disturbed": False, "true_pressure": False, "true_location": True}),
+        (0.5, {"true_gaze": True, "gaze_ok": True, "location_ok": True}),
+        (1, {"pressure_ok": True, "fully_read": True}),
+    ],
+}
+"""What no fault of this robot's code brings about, and what would fail it."""
+
+
+@pytest.mark.parametrize("name", PLANTED)
+def test_a_planted_fault_fails_its_requirements(monkeypatch, name):
+    """The robot as it is meets them in the same test."""
+    fault, test, requirements = PLANTED[name]
+    monkeypatch.setitem(mutants.MUTATIONS, name, fault)
+    assert failed(TESTS[test], name) >= set(requirements.split())
+    assert not failed(TESTS[test]) & set(requirements.split())
+
+
+@pytest.mark.parametrize("requirement", BY_SAMPLES)
+def test_a_world_that_must_not_be_is_told(requirement):
+    """Forces on the hand and sensors that lie without a cause fail their requirement."""
+    report = SPEC.evaluate(BY_SAMPLES[requirement], end=3)
+    assert report.verdicts[requirement] == "F"
+
+
+def test_each_requirement_on_the_world_can_fail():
+    """None is there that nothing above fails."""
+    told = {name for _, _, names in PLANTED.values() for name in names.split()}
+    own = {name for name in SPEC.requirements if name.startswith("T")}
+    assert own == {name for name in told | set(BY_SAMPLES) if name.startswith("T")}
+
+
+@pytest.mark.parametrize(
+    "test", [*pseudorandom(3, seed=4), *constrained(3, seed=4), *model_based(4, seed=2)]
+)
+def test_the_correct_robot_owes_nothing(test):
+    """In generated tests it fails none of its requirements."""
+    assert failed(test) == set()
