@@ -1,4 +1,4 @@
-"""The file of mutants that are said to be equivalent: each with the change, and the argument."""
+"""The file of mutants that are said to be equivalent: arguments, and the mutants each is for."""
 
 from __future__ import annotations
 
@@ -10,11 +10,9 @@ from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
 
-_KEYS = {"change", "because"}
-
 
 def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
-    """Read the file: TOML, a table for each mutant, named by its identity.
+    """Read the file: TOML, a table for each argument, with the changes by the mutants' identities.
 
     Args:
         path: of the file.
@@ -32,21 +30,31 @@ def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
         raise RvmonError(f"{path}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise RvmonError(f"{path}: not TOML: {error}") from None
-    known = {one.identity: one for one in mutants}
-    return {name: _argument(path, name, entry, known) for name, entry in found.items()}
+    known = {one.identity: one.brief for one in mutants}
+    arguments: dict[str, str] = {}
+    for name, entry in found.items():
+        match entry:
+            case {"because": str() as because, "mutants": dict() as changes, **rest} if (
+                because.strip() and not rest
+            ):
+                _refuse_others(path, changes, known)
+                arguments |= dict.fromkeys(changes, because)
+            case _:
+                raise RvmonError(
+                    f"{path}: `{name}` is to have an argument, `because`, and `mutants`: their "
+                    "changes by their names, as --list shows them"
+                )
+    return arguments
 
 
-def _argument(path: str | Path, name: str, entry: object, known: Mapping[str, Mutant]) -> str:
-    if not isinstance(entry, dict) or entry.keys() != _KEYS:
-        raise RvmonError(f"{path}: `{name}` is to have `change` and `because`, and nothing else")
-    if name not in known:
-        raise RvmonError(f"{path}: no mutant `{name}`: --list lists them")
-    change, because = entry["change"], entry["because"]
-    if change != known[name].change:
-        raise RvmonError(
-            f"{path}: `{name}` is by now the change {known[name].change}: look whether it is "
-            "equivalent, and correct `change`"
-        )
-    if not isinstance(because, str) or not because.strip():
-        raise RvmonError(f"{path}: `{name}` needs an argument in `because`")
-    return because
+def _refuse_others(
+    path: str | Path, changes: Mapping[str, object], known: Mapping[str, str]
+) -> None:
+    for name, change in changes.items():
+        if name not in known:
+            raise RvmonError(f"{path}: no mutant `{name}`: --list lists them")
+        if change != known[name]:
+            raise RvmonError(
+                f"{path}: `{name}` is by now another change, {known[name]}: look whether it is "
+                "equivalent, and correct the entry"
+            )

@@ -54,6 +54,11 @@ class Mutant:
         return f"{self.path.name} {self.kind}: `{self.before}` => `{self.after}`"
 
     @property
+    def brief(self) -> str:
+        """The change, of several lines the first."""
+        return f"{_first(self.before)} => {_first(self.after)}"
+
+    @property
     def identity(self) -> str:
         """What it is known by in lists: file, function, kind and ordinal."""
         return f"{self.path.stem}:{self.function}:{self.kind}:{self.ordinal}".replace(" ", "-")
@@ -65,3 +70,8 @@ class Mutant:
 
     def __str__(self) -> str:
         return f"line {self.line:>3} of {self.change}"
+
+
+def _first(code: str) -> str:
+    first, *others = code.splitlines()
+    return f"{first} …" if others else first

@@ -69,14 +69,14 @@ def _suite(report: MutationReport, name: str) -> ET.Element:
     killed = [one for one in report.shown(name) if one.killed]
     if killed:
         parts += [e("h3", None, "What kills"), _killers(killed)]
-        rows = ((one.mutant.identity, _short(one), killer(one)) for one in killed)
+        rows = ((one.mutant.identity, one.mutant.brief, killer(one)) for one in killed)
         table = _table(("mutant", "change", "killed by"), rows, texts=3)
         summary = e("summary", None, f"{counted(len(killed), 'mutant')} killed")
         parts.append(e("details", None, summary, table))
     equivalent = [one for one in report.shown(name) if one.mutant.identity in report.equivalent]
     if equivalent:
         rows = (
-            (one.mutant.identity, _short(one), report.equivalent[one.mutant.identity])
+            (one.mutant.identity, one.mutant.brief, report.equivalent[one.mutant.identity])
             for one in equivalent
         )
         table = _table(("mutant", "change", "argument"), rows, texts=3)
@@ -114,10 +114,6 @@ def _change(before: str, after: str) -> ET.Element:
     lines = [e("del", None, f"- {line}\n") for line in before.splitlines()]
     lines += [e("ins", None, f"+ {line}\n") for line in after.splitlines()]
     return e("pre", {"class": "change"}, *lines)
-
-
-def _short(one: Tried) -> str:
-    return f"{one.mutant.before.splitlines()[0]} → {one.mutant.after.splitlines()[0]}"
 
 
 def _listed(title: str, lines: Sequence[ET.Element]) -> list[Child]:

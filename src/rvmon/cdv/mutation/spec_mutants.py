@@ -51,6 +51,11 @@ class SpecMutant:
         return third_of(self.identity)
 
     @property
+    def brief(self) -> str:
+        """The change."""
+        return f"{self.before} => {self.after}"
+
+    @property
     def before(self) -> str:
         """The requirement as it was, as text of the language."""
         return _text(self.requirement)

@@ -134,9 +134,7 @@ def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:
     """
     shown = [one for one in mutants if held_out or one.third != HELD_OUT]
     rows = [("third", "mutant", "change")]
-    for one in shown:
-        change = f"{one.before.splitlines()[0]} => {one.after.splitlines()[0]}"
-        rows.append((one.third, one.identity, change))
+    rows += [(one.third, one.identity, one.brief) for one in shown]
     hidden = len(mutants) - len(shown)
     told = f", {hidden} of them held out and not listed" if hidden else ""
     return plain_table(rows) + f"{len(mutants)} mutants{told}\n"

@@ -22,13 +22,13 @@ pytestmark = [
 def equivalent(campaign, folder, part):
     """The campaign, in which mutants with this in their name are said to be equivalent."""
     path = folder / "equivalent.toml"
-    entries = [
-        f'["{one.identity}"]\nchange = {json.dumps(one.change)}\nbecause = "nobody sees it"\n'
+    lines = [
+        f"{json.dumps(one.identity)} = {json.dumps(one.brief)}"
         for one in code_mutants(campaign.code)
         if part in one.identity
     ]
-    assert entries
-    path.write_text("".join(entries))
+    assert lines
+    path.write_text("\n".join(['[all]\nbecause = "nobody sees it"\n[all.mutants]', *lines]))
     return replace(campaign, code=replace(campaign.code, equivalent=path))
 
 

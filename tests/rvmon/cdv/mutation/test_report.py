@@ -98,9 +98,9 @@ def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
 
 
 ENTRY = """
-["m:f:comparison:1"]
-change = "m.py comparison: `a < b` => `a <= b`"
+[boundary]
 because = "they differ"
+mutants."m:f:comparison:1" = "a < b => a <= b"
 """
 
 
@@ -115,11 +115,12 @@ def test_equivalents_are_read(tmp_path):
     ("text", "message"),
     [
         ("[", "not TOML"),
-        (ENTRY.replace("because", "why"), "is to have `change` and `because`"),
+        (ENTRY.replace("because", "why"), "`boundary` is to have an argument"),
+        (ENTRY.replace("they differ", " "), "is to have an argument"),
+        (f"{ENTRY}\nelse = 1", "is to have an argument"),
         (ENTRY.replace(":1", ":99"), "no mutant `m:f:comparison:99`"),
-        (ENTRY.replace("a <= b", "a > b"), "is by now the change"),
-        (ENTRY.replace("they differ", " "), "needs an argument"),
-        ('"m:f:comparison:1" = 3', "is to have `change` and `because`"),
+        (ENTRY.replace("a <= b", "a > b"), "is by now another change, a < b => a <= b"),
+        ("boundary = 3", "is to have an argument"),
     ],
 )
 def test_equivalents_that_are_wrong_are_refused(tmp_path, text, message):
