@@ -101,13 +101,19 @@ class MutationReport:
         return any(one.killed < one.rest for one in scores)
 
     def contradictions(self) -> list[str]:
-        """Mutants that are said to be equivalent, and are killed."""
+        """Mutants that are said to be equivalent, and are killed, or make a run differ."""
         return [
-            f"{one.mutant.identity} is said to be equivalent, and {killer(one)} kills it"
+            f"{one.mutant.identity} is said to be equivalent, and {told}"
             for suite in self.suites.values()
             for one in suite.tried
-            if one.killed and one.mutant.identity in self.equivalent
+            if one.mutant.identity in self.equivalent and (told := self._told(one))
         ]
+
+    def _told(self, one: Tried) -> str:
+        """What tells a mutant from the code as it is; empty: nothing does."""
+        if one.killed:
+            return f"{killer(one)} kills it"
+        return question(one, self.reading) if one.difference is not None else ""
 
     def document(self) -> dict[str, object]:
         """All of it as data."""

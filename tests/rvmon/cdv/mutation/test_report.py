@@ -97,6 +97,13 @@ def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
     assert found.scores("s")["all"].rest == 1
 
 
+def test_an_equivalent_mutant_that_makes_a_run_differ_is_a_contradiction():
+    """Whether or not a requirement speaks of it."""
+    differs = Difference("t", 10**9, "stop", "True", "")
+    (told,) = report(Tried(SHOWN[0], 1, 1, (), differs), equivalent=SHOWN[:1]).contradictions()
+    assert told.endswith("in `t` the run differs at 1 s in `stop` (True → none), which R1 reads")
+
+
 ENTRY = """
 [boundary]
 because = "they differ"
