@@ -31,10 +31,11 @@ from pathlib import Path
 
 from benchmarks.engines import COLUMNS, ENGINES, PACKAGE, RELATED, files_of
 from benchmarks.equivalent import EQUIVALENT
-from benchmarks.mutation import Mutant, mutants
 from benchmarks.mutation_c import c_mutants
 from tests.tools.ways import INTERRUPT, NEXT
 
+from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.source import mutants
 from rvmon.execute.command import run
 from rvmon.execute.interrupt import interrupted_by_sigterm
 from rvmon.monitor.engines.registry import EXPLAINING as SWITCHABLE
@@ -47,6 +48,12 @@ THOROUGH = 10_000
 
 LAWS = "tests/rvmon/laws"
 """What holds of all engines is tested there."""
+
+KINDS = (
+    *("comparison", "and/or", "dropped operand", "dropped not", "off by one", "operator"),
+    *("constant", "swapped branches", "negated condition", "function", "dropped statement"),
+)
+"""The changes of Python code that are tried."""
 
 MORE = 4
 """Times the pairs of the first try: for the engines that are tried last."""
@@ -153,7 +160,8 @@ def _changes(files: Sequence[Path], options: argparse.Namespace) -> Iterator[Mut
     executed = _executed_lines([file for file in files if file.suffix == ".py"], options)
     newer = None if options.since is None else _newer_lines(options.since)
     for file in files:
-        for mutant in mutants(file, executed[file]) if file in executed else c_mutants(file):
+        python = file in executed
+        for mutant in mutants(file, executed[file], KINDS) if python else c_mutants(file):
             if newer is None or mutant.line in newer.get(file, ()):
                 yield mutant
 

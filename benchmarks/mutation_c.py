@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.mutation import Mutant
+from rvmon.cdv.mutation.mutant import Mutant
 
 _SWAPS = (
     ("comparison", r"(?<= )(<|<=|>|>=|==|!=)(?= )", ("<", "<=", ">", ">=", "==", "!=")),

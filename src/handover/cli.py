@@ -19,10 +19,12 @@ from rvmon.cli.campaign import (
     add_campaign_options,
     add_closing_options,
     add_judging_options,
+    add_mutate_options,
     add_replay_options,
     add_shrink_options,
     close_holes,
     judged_by,
+    mutate_code,
     names_of,
 )
 from rvmon.cli.numbers import positive
@@ -50,6 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_close(commands)
     _add_replay(commands)
     _add_shrink(commands)
+    _add_mutate(commands)
     return parser
 
 
@@ -142,6 +145,18 @@ def _add_shrink(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser.set_defaults(run=_shrink)
 
 
+def _add_mutate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = commands.add_parser(
+        "mutate",
+        help="which small wrong changes of the robot's code do tests see?",
+        description="Change the correct robot's code, one small thing at a time, play suites of "
+        "tests on each change, and show what kills it, or which question a survivor asks.",
+        epilog="example: handover mutate --strategy directed --out out/mutants",
+    )
+    add_mutate_options(parser)
+    parser.set_defaults(run=_mutate)
+
+
 def _run(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
     from rvmon.cli.campaign_run import conduct, show
@@ -215,6 +230,12 @@ def _shrink(arguments: argparse.Namespace) -> int:
     return shrink_file(
         handover_campaign(), arguments.test, robot, arguments.requirement, arguments.out
     )
+
+
+def _mutate(arguments: argparse.Namespace) -> int:
+    from handover.campaign.campaign import handover_campaign
+
+    return mutate_code(handover_campaign(("correct",)), "correct", arguments)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,10 @@ import ast
 import pytest
 from benchmarks.engines import ENGINES, files_of
 from benchmarks.equivalent import EQUIVALENT
-from benchmarks.mutation import mutants
+from benchmarks.mutants import KINDS
 from benchmarks.mutation_c import c_mutants
+
+from rvmon.cdv.mutation.source import mutants
 
 PYTHON = '''\
 LIMIT = 3
@@ -45,7 +47,7 @@ def test_python_changes(tmp_path):
     """All kinds of change are found inside functions; annotations and checks are left alone."""
     path = tmp_path / "m.py"
     path.write_text(PYTHON, encoding="utf-8")
-    found = list(mutants(path, lines(PYTHON)))
+    found = list(mutants(path, lines(PYTHON), KINDS))
     assert {one.kind for one in found} == {
         "and/or",
         "comparison",
@@ -64,7 +66,7 @@ def test_python_changes(tmp_path):
         assert "größer" in one.source or one.line == 9
         assert "strict=True" in one.source
         assert "a: int | None" in one.source
-    assert not list(mutants(path, {1, 2, 3}))
+    assert not list(mutants(path, {1, 2, 3}, KINDS))
 
 
 def test_c_changes(tmp_path):
@@ -98,6 +100,6 @@ def test_what_is_equivalent_can_still_be_changed():
     possible = set()
     for file in {file for engine in ENGINES for file in files_of(engine)}:
         source = file.read_text(encoding="utf-8")
-        made = mutants(file, lines(source)) if file.suffix == ".py" else c_mutants(file)
+        made = mutants(file, lines(source), KINDS) if file.suffix == ".py" else c_mutants(file)
         possible |= {one.change for one in made}
     assert EQUIVALENT.keys() - possible == set()

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from handover.robot import behaviour, handover
 from handover.robot.handover import STATES
 from handover.robot.layout import COMMON, code_blocks
 from rvmon.cdv import Block, Code
 
 _BEFORE_THE_TEST = "__init__"
 """The one function that runs before any step of the robot can be measured."""
+
+
+_EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 
 
 def robot_code() -> Code:
@@ -25,4 +31,9 @@ def robot_code() -> Code:
         [Block(state, path, frozenset(own)) for state, own in lines.items()],
         marked=True,
         kind="state",
+        constants={
+            path: [name for name in vars(handover) if name.isupper()],
+            str(behaviour.__file__): ["CORRECT"],
+        },
+        equivalent=_EQUIVALENT,
     )

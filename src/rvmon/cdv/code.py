@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rvmon.errors import RvmonError, UnknownNameError
@@ -38,12 +38,17 @@ class Code:
         marked: only what runs within `observer.code()` is measured, so that a simulation around the
             code under test is not slowed down; else all of `play` is.
         kind: the word for a block, in the singular.
+        constants: by path of a file, names at its top whose values are the code's numbers: they are
+            mutated as its functions are, and not measured.
+        equivalent: a TOML file of mutants that change no behaviour, each with the argument.
     """
 
     blocks: Sequence[Block]
     branches: bool = True
     marked: bool = False
     kind: str = "block"
+    constants: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    equivalent: str | Path | None = None
 
     def __post_init__(self) -> None:
         """See that each block can be told from the others.

@@ -1,4 +1,4 @@
-"""The command line of a campaign of tests: `run` plays all, `replay` one.
+"""The command line of a campaign of tests: `run` plays all, `replay` one, `mutate` mutants of code.
 
 `shrink` makes one smaller, `close` makes its own. Exit codes: 0 all went as expected (a replay: no
 requirement failed; `close`: all is covered that can be, too; a test that is shrunk fails), 1 it did
@@ -14,7 +14,7 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cli import guarded
-from rvmon.cli.numbers import duration, positive
+from rvmon.cli.numbers import duration, number_or_folder, positive
 from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
 from rvmon.report.folder import refuse_no_file, write_file
@@ -100,6 +100,17 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the test's)"
     )
     smaller.set_defaults(run=_shrink)
+    mutate = commands.add_parser(
+        "mutate",
+        help="which small wrong changes of the code, and of requirements, do tests see?",
+        description="Change one small thing at a time, play the tests of each strategy, and show "
+        "what kills the mutant, or which question a survivor asks.",
+    )
+    add_mutate_options(mutate)
+    mutate.add_argument(
+        "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
+    )
+    mutate.set_defaults(run=_mutate)
     return parser
 
 
@@ -172,6 +183,43 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--expected", action="store_true", help="exit with 0 if all came out as the test expects"
+    )
+    add_judging_options(parser)
+
+
+def add_mutate_options(parser: argparse.ArgumentParser) -> None:
+    """Declare which mutants are played by which tests, and where results go."""
+    parser.add_argument(
+        "--strategy", metavar="NAMES", help="suites: the tests of each of these (default: all)"
+    )
+    parser.add_argument(
+        "--tests",
+        metavar="N|DIR",
+        type=number_or_folder,
+        default=100,
+        help="of each random strategy (100); or a folder of tests, which is the suite",
+    )
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the tests (1)")
+    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+    parser.add_argument(
+        "--of",
+        choices=("code", "spec", "both"),
+        default="both",
+        help="mutants of the code, of its requirements, or %(default)s (default)",
+    )
+    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has this")
+    parser.add_argument(
+        "--all", action="store_true", help="play all tests, also after a requirement failed"
+    )
+    parser.add_argument(
+        "--held-out", action="store_true", help="show also single mutants that are held out"
+    )
+    parser.add_argument("--list", action="store_true", help="list the mutants, and play nothing")
+    parser.add_argument(
+        "--strict", action="store_true", help="exit with 1 unless all mutants are killed"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there"
     )
     add_judging_options(parser)
 
@@ -326,3 +374,18 @@ def _shrink(arguments: argparse.Namespace) -> int:
         arguments.requirement,
         arguments.out,
     )
+
+
+def mutate_code(campaign: Campaign, robot: str, arguments: argparse.Namespace) -> int:
+    """Play suites on mutants, as the options of `add_mutate_options` say; return an exit code."""
+    from rvmon.cli.campaign_mutate import mutate
+
+    campaign = judged_by(campaign, arguments.spec)
+    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+    return mutate(campaign, robot, strategies, arguments)
+
+
+def _mutate(arguments: argparse.Namespace) -> int:
+    robots = tuple(arguments.campaign.robots)
+    robot = names_of(arguments.robot, robots, "robot")[0]
+    return mutate_code(arguments.campaign, robot, arguments)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from fractions import Fraction
+from pathlib import Path
 
 from rvmon.errors import TraceError
 from rvmon.trace.time import TICKS_PER_UNIT, ticks_of_seconds, ticks_of_text
@@ -22,6 +23,22 @@ def positive(text: str) -> int:
     if number < 1:
         raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, not {text}")
     return number
+
+
+def number_or_folder(text: str) -> int | Path:
+    """Read how many tests there are to be, or where they are.
+
+    Raises:
+        argparse.ArgumentTypeError: it is neither.
+
+    >>> number_or_folder("3")
+    3
+    """
+    if text.isascii() and text.isdigit():
+        return positive(text)
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"expected a number, or a folder of tests, not {text}")
+    return Path(text)
 
 
 def duration(text: str) -> float:

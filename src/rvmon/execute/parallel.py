@@ -41,6 +41,7 @@ def execute(
     what: str = "task",
     instead: Callable[[_Task, Ended], _Result] | None = None,
     timeout_s: float | None = None,
+    fresh: bool = False,
 ) -> Generator[_Result, None, None]:
     """Do tasks, shared among processes; the results come in the order of the tasks.
 
@@ -59,6 +60,7 @@ def execute(
             same, by other processes.
         timeout_s: with `instead`, seconds after which the process of a task is ended; that it
             begins may take a minute more.
+        fresh: with several processes or `instead`, each task has a process of its own.
 
     Raises:
         WorkerLostError: a process was ended from outside, and there is no `instead`; the task that
@@ -71,7 +73,7 @@ def execute(
     [1, 2, 3]
     """
     if jobs > 1 or instead is not None:
-        pool = _Pool(tasks, begin, jobs, what, instead, timeout_s)
+        pool = _Pool(tasks, begin, jobs, what, instead, timeout_s, fresh)
         try:
             yield from pool.results()
         finally:
@@ -116,6 +118,7 @@ class _Pool:
         what: str,
         instead: Callable[[Any, Ended], Any] | None,
         timeout_s: float | None,
+        fresh: bool,
     ) -> None:
         import multiprocessing
 
@@ -125,6 +128,7 @@ class _Pool:
         self._what = what
         self._instead = instead
         self._timeout_s = timeout_s
+        self._fresh = fresh
         self._context = multiprocessing.get_context()
         self._workers: list[_Worker] = []
         self._taken = 0
@@ -234,7 +238,10 @@ class _Pool:
             self._fail(number, pickle.loads(result))  # noqa: S301 - as above
         else:
             self._done[number] = result
-        if is_last:
+        if is_last and self._fresh:
+            worker.process.kill()
+            self._dismiss(worker)
+        elif is_last:
             done = worker.given - len(worker.tasks)
             worker.size = done if worker.tasks else min(2 * done, MOST_TASKS)
             self._give_back(worker)
@@ -260,9 +267,7 @@ class _Pool:
 
     def _lose(self, worker: _Worker, *, timed_out: bool) -> None:
         """Do without a worker that was ended, and without a result of the task that it had."""
-        self._workers.remove(worker)
-        worker.connection.close()
-        worker.process.join()
+        self._dismiss(worker)
         number, task = worker.tasks.popleft()
         if self._instead is None:
             message = (
@@ -276,6 +281,12 @@ class _Pool:
         ended = Ended(timed_out, why, time.monotonic() - worker.since)
         result = self._instead(pickle.loads(task), ended)  # noqa: S301 - packed here
         self._done[number] = pickle.dumps(result)
+
+    def _dismiss(self, worker: _Worker) -> None:
+        """Do without a worker that ends."""
+        self._workers.remove(worker)
+        worker.connection.close()
+        worker.process.join()
 
     def _give_back(self, worker: _Worker) -> None:
         """What a worker has is for others."""

@@ -100,6 +100,19 @@ def test_work_begins_once_in_each_process(tmp_path, jobs):
     assert 1 <= len(begun) <= jobs
 
 
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_each_task_can_have_a_process_of_its_own(jobs):
+    """Nothing that one leaves behind is there for the next; what was lost is replaced."""
+
+    def told(number):
+        return os._exit(3) if number == 2 else os.getpid()
+
+    instead = {"instead": lambda _, ended: ended.why}
+    found = list(execute(range(6), lambda: told, jobs=jobs, fresh=True, **instead))
+    assert found[2] == "its process ended, with exit code 3"
+    assert len({*found, os.getpid()}) == 7
+
+
 @JOBS
 def test_an_error_comes_in_its_turn(jobs):
     """The results before it are given out, and it is what the task raised."""

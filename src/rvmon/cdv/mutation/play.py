@@ -1,0 +1,195 @@
+"""Play a suite on mutants, each in a process of its own; what a mutant does there is its result."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from functools import partial
+from types import FrameType
+
+from rvmon.cdv.checker import Checker
+from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.plant import plant
+from rvmon.cdv.mutation.record import Recorded, Recorder, difference
+from rvmon.cdv.mutation.suite import Progress, Suite
+from rvmon.cdv.mutation.tried import Finding, How, Tried
+from rvmon.cdv.play import run_of, system_of
+from rvmon.cdv.system import Observer
+from rvmon.diagnostics.text_file import text_of_file
+from rvmon.errors import RvmonError
+from rvmon.execute import parallel
+from rvmon.execute.ended import Ended
+from rvmon.verdict.verdict import Verdict
+
+MOST_MEMORY = 2 << 30
+"""Bytes that a mutant may take beyond what its process begins with."""
+
+LEAST_CPU_S = 0.5
+TIMES_CPU = 10
+"""A test hangs after so many seconds of processor time, and so many times what it takes else."""
+
+HANGS = "it computes without an end: its time, or its memory, was all"
+"""Said of both: an endless loop that also collects something may come first to either."""
+
+PATIENCE_S = 60.0
+"""Seconds of wall time, beside those that the suite may compute, until a mutant is ended."""
+
+
+def play_mutants(
+    suite: Suite,
+    mutants: Sequence[Mutant],
+    *,
+    jobs: int,
+    every: bool = False,
+    progress: Progress | None = None,
+) -> list[Tried]:
+    """Play the tests that run the changed line, on each mutant.
+
+    A mutant that hangs, crashes, or takes too much memory harms no other: it has a process of its
+    own, with limits, which is ended with it. What it writes to files is not held back.
+
+    Args:
+        suite: that was played on the code as it is.
+        mutants: of that code.
+        jobs: processes.
+        every: play all these tests; else until a requirement fails.
+        progress: told as mutants are done.
+
+    Returns:
+        What became of each, in their order; it does not depend on `jobs`.
+    """
+    _load_what_runs_need(suite)
+    sources = {one.path: text_of_file(one.path) for one in mutants}
+    tasks = [(one, suite.reaching(one)) for one in mutants]
+    found: list[Tried] = []
+    longest = sum(_most_cpu_s(one) for one in suite.recorded.values())
+    with closing(
+        parallel.execute(
+            (task for task in tasks if task[1]),
+            partial(_begin, suite, {str(path): text for path, text in sources.items()}, every),
+            jobs=jobs,
+            what="mutant",
+            instead=_ended,
+            timeout_s=PATIENCE_S + longest,
+            fresh=True,
+        )
+    ) as results:
+        for number, (mutant, reaching) in enumerate(tasks, start=1):
+            found.append(next(results) if reaching else Tried(mutant, 0))
+            if progress is not None:
+                progress(number)
+    return found
+
+
+_Task = tuple[Mutant, Sequence[str]]
+
+
+def _load_what_runs_need(suite: Suite) -> None:
+    """Play the quickest test here, so that not each process loads the same modules anew."""
+    quickest = min(suite.recorded, key=lambda name: suite.recorded[name].cpu_s)
+    run_of(system_of(suite.name, suite.robot), suite.tests[quickest], Observer(()))
+    suite.spec.monitor()
+
+
+def _begin(suite: Suite, sources: dict[str, str], every: bool) -> Callable[[_Task], Tried]:
+    _limit()
+    return partial(_tried, suite, sources, every)
+
+
+def _tried(suite: Suite, sources: dict[str, str], every: bool, task: _Task) -> Tried:
+    mutant, reaching = task
+    try:
+        plant(mutant, sources[str(mutant.path)])
+    except RvmonError as error:
+        return Tried(mutant, len(reaching), invalid=str(error))
+    findings: list[Finding] = []
+    first = None
+    played = 0
+    recorder = Recorder(system_of(suite.name, suite.robot), Checker(suite.spec))
+    for name in reaching:
+        played += 1
+        was = suite.recorded[name]
+        try:
+            with _at_most(_most_cpu_s(was)):
+                now = recorder.play(suite.tests[name])
+        except _Overtime:
+            findings.append(Finding(name, How.HUNG, (HANGS,)))
+            continue
+        finding = _finding(suite, name, was, now)
+        if finding is not None:
+            findings.append(finding)
+            if finding.how is How.REQUIREMENT and not every:
+                break
+        elif first is None:
+            first = difference(name, was, now)
+    return Tried(mutant, len(reaching), played, tuple(findings), first)
+
+
+def _finding(suite: Suite, name: str, was: Recorded, now: Recorded) -> Finding | None:
+    failed = tuple(
+        requirement
+        for requirement, verdict in now.verdicts.items()
+        if verdict is Verdict.FAIL and was.verdicts[requirement] is not Verdict.FAIL
+    )
+    if failed:
+        return Finding(name, How.REQUIREMENT, failed)
+    if now.run.error is not None:
+        if now.run.error.startswith(MemoryError.__name__):
+            return Finding(name, How.HUNG, (HANGS,))
+        return Finding(name, How.CRASHED, (now.run.error,))
+    wrong = tuple(
+        requirement
+        for requirement, expected in suite.tests[name].expected.items()
+        if was.verdicts[requirement].value == expected != now.verdicts[requirement].value
+    )
+    return Finding(name, How.ANSWER, wrong) if wrong else None
+
+
+def _most_cpu_s(was: Recorded) -> float:
+    return LEAST_CPU_S + TIMES_CPU * was.cpu_s
+
+
+def _ended(task: _Task, ended: Ended) -> Tried:
+    how = How.HUNG if ended.timed_out else How.LOST
+    mutant, reaching = task
+    return Tried(mutant, len(reaching), 0, (Finding("", how, (ended.why,)),))
+
+
+class _Overtime(BaseException):
+    """A test computes too long; no `except Exception` of the code under test is to catch it."""
+
+
+@contextmanager
+def _at_most(cpu_s: float) -> Iterator[None]:
+    """Interrupt what takes more processor time: how busy the machine is makes no difference."""
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def interrupt(_: int, __: FrameType | None) -> None:
+        raise _Overtime
+
+    signal.signal(signal.SIGPROF, interrupt)
+    signal.setitimer(signal.ITIMER_PROF, cpu_s)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+
+
+def _limit() -> None:
+    """Bound the memory of this process, and let it say nothing on the terminal."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.__stdout__, sys.__stderr__):
+        if stream is not None:
+            os.dup2(nowhere, stream.fileno())
+    if sys.platform == "linux":
+        import resource
+
+        with open("/proc/self/statm", encoding="ascii") as file:
+            pages = int(file.read().split()[0])
+        most = pages * resource.getpagesize() + MOST_MEMORY
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))

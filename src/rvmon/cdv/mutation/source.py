@@ -1,0 +1,125 @@
+"""The mutants of a Python file, found in its syntax tree."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.operators import OPERATORS, Operator
+from rvmon.cdv.mutation.scope import Scope, Strings
+from rvmon.diagnostics.text_file import text_of_file
+from rvmon.errors import RvmonError
+
+
+def mutants(
+    path: Path,
+    lines: Collection[int],
+    operators: Collection[str] = (),
+    *,
+    constants: Collection[str] = (),
+) -> Iterator[Mutant]:
+    r"""All changes that are tried in a file: inside functions, on given lines only.
+
+    Args:
+        path: the file, which is read and not run.
+        lines: those where functions are changed; a change where no test goes could not be seen.
+        operators: names of those that are applied; default: all.
+        constants: names at the file's top whose values are changed as well.
+
+    Raises:
+        RvmonError: it cannot be read, or is no Python.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "near.py")
+    ...     _ = path.write_text("def near(metres):\n    return metres < 2.0\n")
+    ...     [one.after for one in mutants(path, {2}, ["comparison", "number"])]
+    ['metres <= 2.0', 'return metres < (2.2)', 'return metres < (1.8)']
+    """
+    try:
+        source = text_of_file(path)
+        tree = ast.parse(source, filename=str(path))
+    except OSError as error:
+        raise RvmonError(f"{path}: {error.strerror}") from None
+    except (SyntaxError, ValueError) as error:
+        raise RvmonError(f"{path}: not Python: {error}") from None
+    chosen = [one for one in OPERATORS if not operators or one.name in operators]
+    strings = Strings(tree)
+    ordinals: Counter[tuple[str, str]] = Counter()
+    for name, body in _scopes(tree, "", constants):
+        scope = Scope(body, strings)
+        is_constant = name in constants
+        for node in (node for statement in body for node in _executed(statement)):
+            if not isinstance(node, ast.expr if is_constant else ast.expr | ast.stmt):
+                continue
+            if is_constant or node.lineno in lines:
+                for kind, before, after, text in _changes(source, node, scope, chosen):
+                    ordinals[name, kind] += 1
+                    yield Mutant(
+                        path, node.lineno, kind, before, after, text, name, ordinals[name, kind]
+                    )
+
+
+def _scopes(
+    tree: ast.AST, prefix: str, constants: Collection[str]
+) -> Iterator[tuple[str, list[ast.stmt]]]:
+    """Functions by their qualified names, each met by itself, and named constants."""
+    for node in ast.iter_child_nodes(tree):
+        match node:
+            case ast.FunctionDef(name=name, body=body) | ast.AsyncFunctionDef(name=name, body=body):
+                yield f"{prefix}{name}", body
+                yield from _scopes(node, f"{prefix}{name}.<locals>.", ())
+            case ast.ClassDef(name=name):
+                yield from _scopes(node, f"{prefix}{name}.", ())
+            case ast.Assign(targets=[ast.Name(id=name)]) if name in constants:
+                yield name, [node]
+            case _:
+                yield from _scopes(node, prefix, ())
+
+
+def _executed(node: ast.AST) -> Iterator[ast.AST]:
+    """The node and all below it that can matter, but for functions: they are met by themselves.
+
+    Annotations do not matter, nor whether `zip` looks at lengths that are equal.
+    """
+    yield node
+    for name, field in ast.iter_fields(node):
+        if name in ("annotation", "returns") or getattr(node, "arg", "") == "strict":
+            continue
+        for child in field if isinstance(field, list) else [field]:
+            if isinstance(child, ast.AST) and not isinstance(
+                child, ast.FunctionDef | ast.AsyncFunctionDef
+            ):
+                yield from _executed(child)
+
+
+def _changes(
+    source: str, node: ast.AST, scope: Scope, operators: Collection[Operator]
+) -> Iterator[tuple[str, str, str, str]]:
+    """Kind, the code before and after, and the file after, of all changes to a node."""
+    for operator in operators:
+        for target, text in operator.changes(node, scope):
+            changed = _replaced(source, target, text)
+            before, after = ast.unparse(target), ast.unparse(ast.parse(text))
+            if before == after:
+                continue
+            if isinstance(target, ast.Constant | ast.Set):
+                # A constant says nothing by itself.
+                before, after = (_line(code, target.lineno) for code in (source, changed))
+            yield operator.name, before, after, changed
+
+
+def _line(source: str, number: int) -> str:
+    return source.splitlines()[number - 1].strip()
+
+
+def _replaced(source: str, node: ast.expr | ast.stmt, text: str) -> str:
+    """The source with the node's characters replaced; its columns count bytes."""
+    lines = source.encode().splitlines(keepends=True)
+    end_line, end_column = node.end_lineno or node.lineno, node.end_col_offset or 0
+    before = b"".join(lines[: node.lineno - 1]) + lines[node.lineno - 1][: node.col_offset]
+    after = lines[end_line - 1][end_column:] + b"".join(lines[end_line:])
+    return (before + text.encode() + after).decode()

@@ -1,0 +1,189 @@
+"""Mutants of requirements, judged on the recorded runs of a suite."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from rvmon.analysis.implied import starts_with
+from rvmon.analysis.subject import Subject
+from rvmon.analysis.together import Aim, Together
+from rvmon.cdv.checker import Checker
+from rvmon.cdv.mutation.mutant import third_of
+from rvmon.cdv.mutation.record import Recorded
+from rvmon.cdv.mutation.spec_operators import changes
+from rvmon.cdv.mutation.tried import Score
+from rvmon.formula.horizon import horizon
+from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.session import Spec
+from rvmon.spec.checked.formula import BoundAtom
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.spec.checked.tense import is_pulse
+from rvmon.spec.print.printer import format_formula
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class SpecMutant:
+    """One change of one requirement.
+
+    Attributes:
+        requirement: as it was.
+        kind: of change: the name of an operator.
+        ordinal: which it is of the changes of this kind to this requirement, from 1.
+        changed: the requirement as it is.
+    """
+
+    requirement: Requirement
+    kind: str
+    ordinal: int
+    changed: Requirement
+
+    @property
+    def identity(self) -> str:
+        """What it is known by: requirement, kind and ordinal."""
+        return f"{self.requirement.id}:{self.kind}:{self.ordinal}".replace(" ", "-")
+
+    @property
+    def third(self) -> str:
+        """The third that it is in, which follows from its identity."""
+        return third_of(self.identity)
+
+    @property
+    def brief(self) -> str:
+        """The change."""
+        return f"{self.before} => {self.after}"
+
+    @property
+    def before(self) -> str:
+        """The requirement as it was, as text of the language."""
+        return _text(self.requirement)
+
+    @property
+    def after(self) -> str:
+        """The requirement as it is."""
+        return _text(self.changed)
+
+
+@dataclass(frozen=True, slots=True)
+class SpecTried:
+    """What runs say of a mutant of a requirement.
+
+    Attributes:
+        mutant: the change.
+        test: the first whose recorded run is judged otherwise; empty: none is.
+        was: the verdict on that run by the requirement as it was.
+        now: by the mutant.
+        proved: whether the analysis proved it equivalent; only asked of what no run tells apart.
+    """
+
+    mutant: SpecMutant
+    test: str = ""
+    was: Verdict | None = None
+    now: Verdict | None = None
+    proved: bool = False
+
+
+def spec_scored(tried: Iterable[SpecTried]) -> Score:
+    """Count mutants of requirements."""
+    counted = list(tried)
+    killed = sum(bool(one.test) for one in counted)
+    return Score(len(counted), sum(one.proved for one in counted), killed, killed, 0)
+
+
+def spec_mutants(spec: CheckedSpec) -> list[SpecMutant]:
+    r"""All mutants of the requirements of a specification, each different from all others.
+
+    >>> from rvmon import loads
+    >>> spec = loads("event a, b\nrequirement R upon a then within 3 s b").checked
+    >>> [one.after for one in spec_mutants(spec) if one.kind == "no deadline"]
+    ['upon a then eventually b']
+    """
+    return [mutant for one in spec.requirements.values() for mutant in _of_requirement(one)]
+
+
+def _of_requirement(requirement: Requirement) -> Iterator[SpecMutant]:
+    known = {_text(requirement)}
+    ordinals: Counter[str] = Counter()
+    for kind, changed in _changed(requirement):
+        text = _text(changed)
+        ordinals[kind] += 1
+        if text not in known:
+            known.add(text)
+            yield SpecMutant(requirement, kind, ordinals[kind], changed)
+
+
+def _changed(requirement: Requirement) -> Iterator[tuple[str, Requirement]]:
+    if not isinstance(requirement.trigger, BoundAtom):
+        for kind, trigger in changes(requirement.trigger):
+            yield kind, replace(requirement, trigger=trigger, pulse=is_pulse(trigger))
+    for kind, consequent in changes(requirement.consequent):
+        yield kind, replace(requirement, consequent=consequent)
+
+
+def _text(requirement: Requirement) -> str:
+    trigger, owed = format_formula(requirement.trigger), format_formula(requirement.consequent)
+    return f"{requirement.mode} {trigger} then {owed}"
+
+
+def try_spec_mutants(
+    spec: Spec, mutants: Sequence[SpecMutant], recorded: Mapping[str, Recorded]
+) -> list[SpecTried]:
+    """Judge recorded runs by mutants of requirements: which get another verdict?
+
+    Args:
+        spec: as it is.
+        mutants: of its requirements.
+        recorded: by test, with the verdicts of the specification.
+
+    Returns:
+        What became of each; of what no run tells apart it is tried to prove that none can.
+    """
+    named = {one.identity: one for one in mutants}
+    every = replace(
+        spec.checked,
+        requirements={name: replace(one.changed, id=name) for name, one in named.items()},
+        properties={},
+    )
+    checker = Checker(Spec(every))
+    killed: dict[str, SpecTried] = {}
+    for test, run in recorded.items():
+        checker.begin()
+        for t_ns, values in run.samples:
+            checker.observe(t_ns, values)
+        verdicts = checker.finish(run.run.end_ns).verdicts
+        for name, mutant in named.items():
+            was = run.verdicts[mutant.requirement.id]
+            if verdicts[name] is not was and name not in killed:
+                killed[name] = SpecTried(mutant, test, was, verdicts[name])
+    together = Together(spec.checked)
+    return [
+        killed.get(name) or SpecTried(mutant, proved=_is_equivalent(spec.checked, mutant, together))
+        for name, mutant in named.items()
+    ]
+
+
+def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) -> bool:
+    """Whether it is proved that, with known values, neither can fail where the other is met.
+
+    Both have to be decided within a bounded time: what is open for ever is not met, and fails not.
+    """
+    pair = {"before": mutant.requirement, "after": mutant.changed}
+    compiled = CompiledSpec(
+        replace(spec, requirements={name: replace(one, id=name) for name, one in pair.items()})
+    ).requirements
+    if any(
+        horizon(one.obligation.owed) is None or one.automaton is None for one in compiled.values()
+    ):
+        return False
+    before, after = (
+        Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
+        for one in compiled.values()
+    )
+    fails_alone = Aim(frozenset({0}), frozenset({1}))
+    return all(
+        starts_with(together, other, one)
+        and together.can_reach([other, one], [0, 0], fails_alone) is False
+        for other, one in ((before, after), (after, before))
+    )

@@ -1,0 +1,140 @@
+"""Mutants for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
+from rvmon.cdv.mutation.question import TITLES, question
+from rvmon.cdv.mutation.report import MutationReport, SuiteTried
+from rvmon.cdv.mutation.spec_mutants import SpecMutant
+from rvmon.cdv.mutation.tried import How, Tried
+from rvmon.report.coverage_summary import counted
+from rvmon.report.percent import percent_text
+from rvmon.report.plain_table import plain_table
+
+HEAD = (
+    *("suite", "third", "mutants", "equivalent", "killed", "by a requirement", "not run"),
+    *("score", "score by requirements"),
+)
+
+SPEC_HEAD = ("suite", "third", "mutants", "proved equivalent", "killed", "score")
+
+SPEC_TITLE = (
+    "No recorded run is judged otherwise: is a stimulus missing, or does the requirement say more "
+    "than matters?"
+)
+
+
+def report_text(report: MutationReport, *, most: int | None = None) -> str:
+    """Scores, what killed, and the survivors of each suite as questions.
+
+    Args:
+        report: what is shown.
+        most: survivors of each kind that are listed; `None`: all.
+    """
+    lines = []
+    if any(suite.tried for suite in report.suites.values()):
+        lines += ["Mutants of the code", "", plain_table([HEAD, *score_rows(report)])]
+        for name, suite in report.suites.items():
+            lines += [f"{name}: {_killers(suite)}.", *_left_out(suite), ""]
+    if any(suite.spec_tried for suite in report.suites.values()):
+        lines += ["Mutants of the requirements", ""]
+        lines += [plain_table([SPEC_HEAD, *spec_score_rows(report)])]
+    for name in report.suites:
+        for title, blocks in _survivors(report, name):
+            lines += [f"{name}: {counted(len(blocks), 'survivor')}. {title}", ""]
+            for block in blocks[:most]:
+                lines += [*block, ""]
+            if most is not None and len(blocks) > most:
+                lines += [f"  … and {len(blocks) - most} more", ""]
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[list[str]]]]:
+    """What survives, by what may be missing: a heading, and the lines of each."""
+    for kind, survivors in report.survivors(suite).items():
+        yield TITLES[kind], [list(survivor_lines(one, report)) for one in survivors]
+    if spec_survivors := report.spec_survivors(suite):
+        blocks = [
+            [f"  {one.mutant.identity}", *_difference(one.mutant.before, one.mutant.after)]
+            for one in spec_survivors
+        ]
+        yield SPEC_TITLE, blocks
+
+
+def score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
+    """The scores of each suite, of each third and of all."""
+    for name in report.suites:
+        for third, score in report.scores(name).items():
+            yield (
+                *(name, third, str(score.mutants), str(score.equivalent), str(score.killed)),
+                *(str(score.by_requirement), str(score.unreached)),
+                *(percent_text(part, score.rest) for part in (score.killed, score.by_requirement)),
+            )
+            name = ""
+
+
+def survivor_lines(one: Tried, report: MutationReport) -> Iterator[str]:
+    """A survivor: its place, the change, the question."""
+    mutant = one.mutant
+    yield f"  {mutant.path.name}:{mutant.line}  {mutant.identity}"
+    yield from _difference(mutant.before, mutant.after)
+    yield f"    {question(one, report.reading)}"
+
+
+def spec_score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
+    """The scores on mutants of requirements, likewise."""
+    for name in report.suites:
+        for third, score in report.spec_scores(name).items():
+            counts = (score.mutants, score.equivalent, score.killed)
+            yield name, third, *map(str, counts), percent_text(score.killed, score.rest)
+            name = ""
+
+
+def _difference(before: str, after: str) -> Iterator[str]:
+    for sign, code in (("-", before), ("+", after)):
+        for line in code.splitlines():
+            yield f"    {sign} {line}"
+
+
+def _killers(suite: SuiteTried) -> str:
+    """How many are killed by what first comes of: a requirement, an answer, a crash and so on."""
+    counts = dict.fromkeys(How, 0)
+    for one in suite.tried:
+        if one.killed:
+            found = {finding.how for finding in one.findings}
+            counts[next(how for how in How if how in found)] += 1
+    told = ", ".join(f"{count} {_SAID[how]}" for how, count in counts.items() if count)
+    invalid = sum(bool(one.invalid) for one in suite.tried)
+    rest = f"; {invalid} cannot be planted" if invalid else ""
+    return f"{counted(suite.tests, 'test')}, {told or 'nothing killed'}{rest}"
+
+
+_SAID = {
+    How.REQUIREMENT: "killed by a requirement that fails",
+    How.ANSWER: "by a known answer only",
+    How.CRASHED: "by a crash",
+    How.HUNG: "hung",
+    How.LOST: "lost",
+}
+
+
+def _left_out(suite: SuiteTried) -> Iterator[str]:
+    for name, why in suite.left_out.items():
+        yield f"  left out: {name}: {why}"
+
+
+def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:
+    """The mutants one by one, without playing them.
+
+    Args:
+        mutants: all there are.
+        held_out: list also those that are held out.
+    """
+    shown = [one for one in mutants if held_out or one.third != HELD_OUT]
+    rows = [("third", "mutant", "change")]
+    rows += [(one.third, one.identity, one.brief) for one in shown]
+    hidden = len(mutants) - len(shown)
+    told = f", {hidden} of them held out and not listed" if hidden else ""
+    return plain_table(rows) + f"{len(mutants)} mutants{told}\n"

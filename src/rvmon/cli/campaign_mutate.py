@@ -1,0 +1,147 @@
+"""The command `mutate` of a campaign: which small wrong changes do its tests see?"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.cdv.abstract_test import Test
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.documents import to_json
+from rvmon.cdv.files import load
+from rvmon.cdv.plan import plan
+from rvmon.cli.progress import bar
+from rvmon.cli.say import say, say_json, warn
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.report.folder import made
+from rvmon.writing import write_whole
+
+if TYPE_CHECKING:
+    from rvmon.cdv.mutation.mutant import Mutant
+    from rvmon.cdv.mutation.report import MutationReport
+    from rvmon.cdv.mutation.spec_mutants import SpecMutant
+
+MOST_LISTED = 10
+"""Survivors of a kind that the terminal shows; files have all."""
+
+
+def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments: Namespace) -> int:
+    """Play suites on mutants of a robot's code, show and keep the scores, return an exit code.
+
+    Args:
+        campaign: that the tests are of.
+        robot: its name.
+        strategies: each makes a suite, unless a folder is one.
+        arguments: those of `add_mutate_options`.
+    """
+    from rvmon.cdv.mutation.page import mutation_page
+    from rvmon.cdv.mutation.text import list_text, report_text
+
+    found = _mutants(campaign, robot, arguments)
+    if arguments.list:
+        say(list_text([*found.code, *found.spec], held_out=arguments.held_out), end="")
+        return 0
+    folder = made(arguments.out) if arguments.out else None
+    report = _reported(campaign, robot, strategies, found, arguments)
+    if arguments.format == "json":
+        say_json(to_json(report.document()).decode().removesuffix("\n"))
+    else:
+        is_short = folder is not None or sys.stdout.isatty()
+        say(report_text(report, most=MOST_LISTED if is_short else None))
+        say(f"{len(found.code) + len(found.spec)} mutants in {report.seconds:.1f} s.")
+    if folder is not None:
+        write_whole(folder / "mutation.txt", report_text(report))
+        write_whole(folder / "mutation.json", to_json(report.document()))
+        write_whole(folder / "mutation.html", mutation_page(report))
+    wrong = report.contradictions()
+    for what in wrong:
+        warn(what)
+    return int(bool(wrong) or (arguments.strict and report.survives))
+
+
+@dataclass(frozen=True, slots=True)
+class _Mutants:
+    code: list[Mutant]
+    spec: list[SpecMutant]
+    equivalent: dict[str, str]
+
+
+def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
+    """The mutants that are asked for."""
+    from rvmon.cdv.mutation.equivalent import equivalents
+    from rvmon.cdv.mutation.find import code_mutants
+    from rvmon.cdv.mutation.spec_mutants import spec_mutants
+    from rvmon.cdv.mutation.suite import mutated_code, mutated_spec
+
+    code: list[Mutant] = []
+    spec: list[SpecMutant] = []
+    equivalent: dict[str, str] = {}
+    if arguments.of != "spec":
+        mutated = mutated_code(campaign)
+        code = code_mutants(mutated)
+        if mutated.equivalent is not None:
+            equivalent = equivalents(mutated.equivalent, code)
+        code = [one for one in code if arguments.only in one.identity]
+    if arguments.of != "code":
+        spec = spec_mutants(mutated_spec(campaign, robot).checked)
+        spec = [one for one in spec if arguments.only in one.identity]
+    if not code and not spec:
+        raise UnknownNameError(f"no mutant has `{arguments.only}` in its name: --list lists all")
+    return _Mutants(code, spec, equivalent)
+
+
+def _reported(
+    campaign: Campaign,
+    robot: str,
+    strategies: Sequence[str],
+    found: _Mutants,
+    arguments: Namespace,
+) -> MutationReport:
+    """What each suite sees of the mutants."""
+    from rvmon.cdv.mutation.play import play_mutants
+    from rvmon.cdv.mutation.question import readers
+    from rvmon.cdv.mutation.report import MutationReport, SuiteTried
+    from rvmon.cdv.mutation.spec_mutants import try_spec_mutants
+    from rvmon.cdv.mutation.suite import mutated_spec, record_suite
+
+    jobs = arguments.jobs or os.cpu_count() or 1
+    begun = time.perf_counter()
+    spec = mutated_spec(campaign, robot)
+    suites = {}
+    for name, tests in _suites(campaign, strategies, arguments).items():
+        with bar(f"{name}: tests", len(tests)) as tell:
+            suite = record_suite(campaign, robot, tests, jobs=jobs, progress=tell)
+        with bar(f"{name}: mutants", len(found.code)) as tell:
+            tried = play_mutants(suite, found.code, jobs=jobs, every=arguments.all, progress=tell)
+        spec_tried = try_spec_mutants(spec, found.spec, suite.recorded)
+        suites[name] = SuiteTried(len(suite.tests), suite.left_out, tuple(tried), tuple(spec_tried))
+    return MutationReport(
+        campaign.name,
+        campaign.robots[robot].title or robot,
+        suites,
+        found.equivalent,
+        readers(spec.checked),
+        shows_held_out=arguments.held_out,
+        seconds=time.perf_counter() - begun,
+    )
+
+
+def _suites(
+    campaign: Campaign, strategies: Sequence[str], arguments: Namespace
+) -> dict[str, Sequence[Test]]:
+    """The tests of each suite, by its name."""
+    tests = arguments.tests
+    if isinstance(tests, Path):
+        if arguments.strategy is not None:
+            raise RvmonError(f"--tests {tests} is a suite by itself: omit --strategy")
+        paths = sorted(tests.glob("*.json"))
+        if not paths:
+            raise RvmonError(f"no test in {tests}: name a folder of .json files")
+        return {tests.name: [load(path, campaign.test) for path in paths]}
+    return dict(plan(campaign, strategies, tests=tests, seed=arguments.seed).tests)

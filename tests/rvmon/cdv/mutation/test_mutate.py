@@ -1,0 +1,114 @@
+"""The command `mutate` as a person uses it."""
+
+import json
+import multiprocessing
+import re
+from dataclasses import replace
+
+import pytest
+
+from rvmon.cdv.files import save
+from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cli.campaign import main
+
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(
+        multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
+    ),
+]
+
+
+def equivalent(campaign, folder, part):
+    """The campaign, in which mutants with this in their name are said to be equivalent."""
+    path = folder / "equivalent.toml"
+    lines = [
+        f"{json.dumps(one.identity)} = {json.dumps(one.brief)}"
+        for one in code_mutants(campaign.code)
+        if part in one.identity
+    ]
+    assert lines
+    path.write_text("\n".join(['[all]\nbecause = "nobody sees it"\n[all.mutants]', *lines]))
+    return replace(campaign, code=replace(campaign.code, equivalent=path))
+
+
+def test_a_suite_is_scored(campaign, tmp_path, capsys):
+    """Text, data and page have one score; survivors are questions."""
+    out = tmp_path / "out"
+    command = ["mutate", "--only", "Lift.note", "--jobs", "1", "--held-out", "--out", str(out)]
+    assert main(campaign, command) == 0
+    told = capsys.readouterr().out
+    suite = json.loads((out / "mutation.json").read_text())["suites"]["rides"]
+    score = suite["scores"]["all"]
+    assert score["mutants"] == len(suite["mutants"]) == 1
+    assert re.search(r"all +1 +0 +0 ", told)
+    assert "3 tests run it, and nothing that is recorded differs" in told
+    assert (out / "mutation.txt").read_text() in told
+    assert "nothing that is recorded differs" in (out / "mutation.html").read_text()
+
+
+def test_a_folder_of_tests_is_a_suite(campaign, tmp_path, capsys):
+    """It is called as the folder is."""
+    folder = tmp_path / "closed"
+    folder.mkdir()
+    for test in campaign.strategies["rides"](2, 1):
+        save(test, folder)
+    command = ["mutate", "--tests", str(folder), "--of", "spec", "--format", "json"]
+    assert main(campaign, command) == 0
+    suites = json.loads(capsys.readouterr().out)["suites"]
+    assert suites["closed"]["tests"] == 2
+    assert suites["closed"]["spec_scores"]["all"]["killed"] > 0
+
+
+def test_mutants_are_listed_without_those_held_out(campaign, capsys):
+    """Nothing is played."""
+    assert main(campaign, ["mutate", "--list"]) == 0
+    told = capsys.readouterr().out
+    assert "Lift.ride:dropped-statement:1" in told
+    assert "L1:bound:1" in told
+    assert re.search(r"\d+ mutants, \d+ of them held out and not listed", told)
+    assert not re.search("^held out", told, re.MULTILINE)
+
+
+def test_what_is_said_to_be_equivalent_leaves_the_score(campaign, tmp_path):
+    """With --strict, all else has to be killed."""
+    known = equivalent(campaign, tmp_path, "Lift.note")
+    command = ["mutate", "--of", "code", "--only", "note", "--jobs", "1", "--strict"]
+    assert main(campaign, command) == 1
+    assert main(known, command) == 0
+
+
+def test_an_equivalent_mutant_that_is_killed_fails(campaign, tmp_path, capsys):
+    """Its argument is wrong."""
+    name = "Lift.ride:dropped-statement"
+    known = equivalent(campaign, tmp_path, name)
+    assert main(known, ["mutate", "--of", "code", "--only", name, "--jobs", "1"]) == 1
+    assert (
+        f"lift:{name}:5 is said to be equivalent, and requirement (L1)" in capsys.readouterr().err
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--tests", "0"], "at least 1"),
+        (["--tests", "nowhere"], "a number, or a folder of tests, not nowhere"),
+        (["--tests", ".", "--strategy", "rides"], "a suite by itself: omit --strategy"),
+        (["--only", "nothing"], "no mutant has `nothing` in its name"),
+        (["--strategy", "walks"], "no strategy `walks`"),
+        (["--robot", "base"], "no robot `base`"),
+    ],
+)
+def test_what_is_wrong_is_told(campaign, capsys, arguments, message):
+    """With what is expected instead."""
+    assert main(campaign, ["mutate", *arguments]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_campaign_without_code_or_requirements_is_refused(campaign, capsys):
+    """It says what is missing."""
+    assert main(replace(campaign, code=None), ["mutate"]) == 2
+    assert "names no code" in capsys.readouterr().err
+    robots = {"lift": replace(campaign.robots["lift"], spec=None)}
+    assert main(replace(campaign, robots=robots), ["mutate"]) == 2
+    assert "has no requirements" in capsys.readouterr().err

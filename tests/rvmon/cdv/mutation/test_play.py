@@ -1,0 +1,148 @@
+"""What becomes of mutants: killed and by what, or alive, and nothing of it stays."""
+
+import multiprocessing
+from functools import partial
+
+import pytest
+from tests.rvmon.cdv.mutation.conftest import lift_of
+
+from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.plant import plant
+from rvmon.cdv.mutation.question import Missing, missing
+from rvmon.cdv.mutation.suite import record_suite
+from rvmon.cdv.mutation.tried import How, scored
+from rvmon.errors import RvmonError
+from rvmon.execute import parallel
+
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(
+        multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
+    ),
+]
+
+
+DOOR = 'told.append(("door", True))'
+REFUSED = 'told.append(("refused", True))'
+TOLD = 'told.append(("floor", floor))'
+
+
+def test_a_requirement_that_fails_kills(tried, changed):
+    """The test and the requirement are named, and no further test is played."""
+    (one,) = tried([changed("Lift.ride", DOOR, "pass")], tests=3)
+    assert one.killed_by_requirement
+    assert (one.reaching, one.played) == (3, 1)
+    assert [(found.test, found.how, found.what) for found in one.findings] == [
+        ("second", How.REQUIREMENT, ("L1",))
+    ]
+
+
+def test_all_tests_are_played_if_that_is_asked_for(tried, changed):
+    """Then each test that kills is told; one whose requirement fails anyway does not."""
+    (one,) = tried([changed("Lift.ride", DOOR, "pass")], tests=3, every=True)
+    assert [found.test for found in one.findings] == ["second", "third"]
+
+
+def test_a_known_answer_kills_where_no_requirement_fails(tried, changed):
+    """It is told apart from those."""
+    (one,) = tried([changed("Lift.ride", "return told", "return told[:-1] and told[:0]")])
+    assert [found.how for found in one.findings] == [How.ANSWER]
+    assert one.killed
+    assert not one.killed_by_requirement
+
+
+@pytest.mark.parametrize(
+    ("line", "how"),
+    [
+        ("self.nothing", How.CRASHED),
+        ("while True: pass", How.HUNG),
+        ("eaten = [0] * 10**10", How.HUNG),
+        ("import os; os._exit(3)", How.LOST),
+        ("import os; os.kill(os.getpid(), 9)", How.LOST),
+    ],
+)
+def test_what_a_mutant_does_is_its_result(tried, changed, line, how):
+    """One that raises, computes for ever, eats memory or ends its process harms nobody."""
+    fine = changed("Lift.ride", DOOR, "pass")
+    one, other = tried([changed("Lift.ride", "self.note(to)", line), fine])
+    assert [found.how for found in one.findings] == [how]
+    assert other.killed_by_requirement
+
+
+def test_a_mutant_that_no_test_runs_is_not_played(tried, changed):
+    """It asks for a stimulus; once there is one, for the requirement that is missing."""
+    mutant = changed("Lift.ride", REFUSED, "pass")
+    (unreached,) = tried([mutant])
+    assert missing(unreached) is Missing.STIMULUS
+    assert unreached.played == 0
+    (differs,) = tried([mutant], tests=3)
+    assert missing(differs) is Missing.REQUIREMENT
+    found = differs.difference
+    assert (found.test, found.t_ns, found.name) == ("beyond", 3 * 10**9, "refused")
+
+
+def test_what_is_not_recorded_asks_for_an_observation(tried, changed):
+    """It runs, and nothing differs."""
+    (one,) = tried([changed("Lift.note", "self.noted = to", "self.noted = 0")])
+    assert missing(one) is Missing.OBSERVATION
+
+
+def test_a_constant_is_changed_with_what_is_made_of_it(tried, changed):
+    """Whatever uses it, wherever it was worked out."""
+    top, floors = tried(
+        [changed("TOP", "TOP = 3", "TOP = 1"), changed("FLOORS", "range(TOP)", "range(1)")]
+    )
+    assert top.difference.name == "floor"
+    assert floors.difference.name == "floor"
+
+
+def test_what_cannot_be_planted_counts_nowhere(tried, changed):
+    """A function that needs another closure is not the same with other code."""
+    (one,) = tried([changed("Lift.note", "self.noted = to", "super().__init__()")])
+    assert "cannot be changed" in one.invalid
+    assert scored([one]).mutants == 0
+
+
+def ride_later(source):
+    """Plants what it is given, and only then loads the lift."""
+
+    def ride(mutant):
+        plant(mutant, source)
+        return lift_of(mutant.path).Lift().ride(1)
+
+    return ride
+
+
+def test_a_file_that_is_loaded_later_is_loaded_with_the_change(changed):
+    """As of a system that imports what it plays when it plays."""
+    mutant = changed("Lift.ride", DOOR, "pass")
+    source = mutant.path.read_text()
+    (told,) = parallel.execute(
+        [mutant], partial(ride_later, source), jobs=1, instead=lambda *_: None, fresh=True
+    )
+    assert told == [("floor", 1)]
+
+
+def test_the_code_as_it_is_differs_nowhere(tried, changed):
+    """A mutant that changes nothing is played as the code is."""
+    (one,) = tried([changed("Lift.ride", DOOR, f"{DOOR}  # as it is")])
+    assert not one.killed
+    assert one.difference is None
+
+
+def test_results_do_not_depend_on_processes(campaign, tried):
+    """Nor does one mutant on another, and scores add up."""
+    mutants = code_mutants(campaign.code)[::8]
+    found = tried(mutants, jobs=2, tests=2)
+    assert found == tried(mutants, jobs=1, tests=2)
+    alive = [one.mutant.identity for one in found if not one.killed]
+    score = scored(found, alive[:1])
+    assert (score.mutants, score.killed) == (len(found), len(found) - len(alive))
+    assert score.rest == len(found) - 1
+    assert 0 < score.by_requirement <= score.killed
+
+
+def test_a_suite_that_says_nothing_is_refused(campaign):
+    """There has to be a test, and it has to end without the mutant."""
+    with pytest.raises(RvmonError, match="no test for this robot"):
+        record_suite(campaign, "lift", [], jobs=1)

@@ -1,0 +1,138 @@
+"""What a person reads of mutants: scores, questions, equivalents; and what is held out."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rvmon.cdv.mutation.equivalent import equivalents
+from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
+from rvmon.cdv.mutation.page import mutation_page
+from rvmon.cdv.mutation.question import readers
+from rvmon.cdv.mutation.report import MutationReport, SuiteTried
+from rvmon.cdv.mutation.text import report_text
+from rvmon.cdv.mutation.tried import Difference, Finding, How, Tried
+from rvmon.errors import RvmonError
+from rvmon.loading import loads
+
+SPEC = loads("event go, stop\nrequirement R1\n  upon go\n  then within 3 s stop\n").checked
+
+KILLED = Finding("t", How.REQUIREMENT, ("R1",))
+
+
+def mutant(number, before="a < b", after="a <= b"):
+    return Mutant(Path("m.py"), number, "comparison", before, after, "", "f", number)
+
+
+MUTANTS = [mutant(number) for number in range(1, 20)]
+SHOWN = [one for one in MUTANTS if one.third != HELD_OUT]
+HIDDEN = [one for one in MUTANTS if one.third == HELD_OUT]
+
+
+def report(*tried, equivalent=(), shows=False):
+    suite = SuiteTried(3, {}, tried)
+    known = {one.identity: "it cannot matter" for one in equivalent}
+    return MutationReport("c", "robot", {"s": suite}, known, readers(SPEC), shows_held_out=shows)
+
+
+@pytest.mark.parametrize(
+    ("tried", "asked"),
+    [
+        (Tried(SHOWN[0], 0), "no test runs it"),
+        (Tried(SHOWN[0], 2, 2), "2 tests run it, and nothing that is recorded differs"),
+        (
+            Tried(SHOWN[0], 2, 2, (), Difference("t", 10**9, "stop", "True", "")),
+            "in `t` the run differs at 1 s in `stop` (True → none), which R1 reads",
+        ),
+        (
+            Tried(SHOWN[0], 2, 2, (), Difference("t", 5, "go", "", "True", (("R1", "P", "I"),))),
+            "which R1 reads; otherwise judged, but not failed: R1 P → I",
+        ),
+        (
+            Tried(SHOWN[0], 2, 2, (), Difference("t", 10**9, "", "", "")),
+            "in `t` the run ends at 1 s, and no requirement fails",
+        ),
+    ],
+)
+def test_questions(tried, asked):
+    """A survivor is shown with its place, the change and the question."""
+    text = report_text(report(tried))
+    assert f"m.py:{tried.mutant.line}" in text
+    assert "- a < b" in text
+    assert "+ a <= b" in text
+    assert asked in text
+    assert "a &lt;= b" in mutation_page(report(tried))
+
+
+def test_what_is_held_out_is_counted_and_not_shown():
+    """Neither as text, nor as data, nor on the page, unless that is asked for."""
+    alive = [Tried(one, 2, 2) for one in MUTANTS]
+    hidden = report(*alive)
+    shown = report(*alive, shows=True)
+    assert hidden.scores("s") == shown.scores("s")
+    assert hidden.scores("s")[HELD_OUT].mutants == len(HIDDEN)
+    for form in (report_text, mutation_page, lambda one: json.dumps(one.document())):
+        for one in HIDDEN:
+            assert f"{one.identity}<" not in form(hidden).replace("\n", "<").replace('"', "<")
+            assert one.identity in form(shown)
+
+
+def test_what_is_killed_by_a_requirement_counts_apart():
+    """A known answer, a crash or a hang kills as well."""
+    killed = [
+        Tried(SHOWN[0], 1, 1, (KILLED,)),
+        Tried(SHOWN[1], 1, 1, (Finding("t", How.HUNG, ()),)),
+    ]
+    score = report(*killed, Tried(SHOWN[2], 1, 1)).scores("s")["all"]
+    assert (score.mutants, score.killed, score.by_requirement) == (3, 2, 1)
+
+
+def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
+    """And counts in the score; one that survives is no survivor, and leaves the score."""
+    found = report(Tried(SHOWN[0], 1, 1), Tried(SHOWN[1], 1, 1, (KILLED,)), equivalent=SHOWN[:2])
+    assert found.survivors("s") == {}
+    assert found.contradictions() == [
+        f"{SHOWN[1].identity} is said to be equivalent, and requirement (R1) in t kills it"
+    ]
+    assert found.scores("s")["all"].rest == 1
+
+
+def test_an_equivalent_mutant_that_makes_a_run_differ_is_a_contradiction():
+    """Whether or not a requirement speaks of it."""
+    differs = Difference("t", 10**9, "stop", "True", "")
+    (told,) = report(Tried(SHOWN[0], 1, 1, (), differs), equivalent=SHOWN[:1]).contradictions()
+    assert told.endswith("in `t` the run differs at 1 s in `stop` (True → none), which R1 reads")
+
+
+ENTRY = """
+[boundary]
+because = "they differ"
+mutants."m:f:comparison:1" = "a < b => a <= b"
+"""
+
+
+def test_equivalents_are_read(tmp_path):
+    """Each with the argument."""
+    path = tmp_path / "equivalent.toml"
+    path.write_text(ENTRY)
+    assert equivalents(path, MUTANTS) == {"m:f:comparison:1": "they differ"}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[", "not TOML"),
+        (ENTRY.replace("because", "why"), "`boundary` is to have an argument"),
+        (ENTRY.replace("they differ", " "), "is to have an argument"),
+        (f"{ENTRY}\nelse = 1", "is to have an argument"),
+        (ENTRY.replace(":1", ":99"), "no mutant `m:f:comparison:99`"),
+        (ENTRY.replace("a <= b", "a > b"), "is by now another change, a < b => a <= b"),
+        ("boundary = 3", "is to have an argument"),
+    ],
+)
+def test_equivalents_that_are_wrong_are_refused(tmp_path, text, message):
+    """With the file, and what is to be mended."""
+    path = tmp_path / "equivalent.toml"
+    path.write_text(text)
+    with pytest.raises(RvmonError, match=message):
+        equivalents(path, MUTANTS)
