@@ -144,3 +144,17 @@ def test_reports_as_json_say_what_was_captured():
     found = json.loads(spec.evaluate(trace, engine="c").to_json())
     captured = [one["captured"] for one in found["requirements"]["R2"]["attempts"]]
     assert captured == [{"a": 1.5, "m": "red"}, {"a": 2.0, "m": "red"}]
+
+
+def test_what_came_since_the_last_tick_belongs_to_the_instance_that_begins_at_the_next():
+    """The trigger comes first, then the value of `for each`, both before a tick of the clock."""
+    spec = rvmon.loads(
+        "spec s\ntime sampled every 3 ns\nevent h\nevent g(k: int)\n"
+        "requirement R\n  upon h\n  then true\n  for each key in g.k\n"
+    )
+    monitor = spec.monitor(engine="c")
+    monitor.step_ns(10, {"h": True})
+    decided = [*monitor.step_ns(11, {"g": {"k": -2}}), *monitor.step_ns(15, {})]
+    assert [(one.triggered, one.captured, one.verdict) for one in decided] == [
+        (12, {"key": -2}, "P")
+    ]
