@@ -149,6 +149,10 @@ def of_c(one: CompiledRequirement) -> Refusal | None:
     if one.spec.max_delay is not None:
         mend = "leave out `max delay`, or use the engine `auto`"
         return Refusal("has samples that come late (`max delay`)", mend, "python")
+    # C has only the latest values, which may be newer than the last tick.
+    if one.obligation.trigger is None and one.requirement.captures and one.gap not in (None, 1):
+        reason = "captures values `upon end`, which may be newer than the last tick of its clock"
+        return Refusal(reason, "use the engine `auto`", "python")
     return None
 
 
