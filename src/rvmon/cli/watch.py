@@ -97,6 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Judge until the stream ends or somebody ends it, and return the exit code."""
     from rvmon.cli.watch_output import output_named
 
+    arguments.made = _age(arguments.spec)  # before it is read: no change is missed
     spec = _loaded(arguments)
     shown = output_named(arguments.format, failures_only=arguments.failures)
     watch = next((one for start, one in _DOORS if arguments.source.startswith(start)), _watch_lines)
@@ -238,15 +239,14 @@ def _follow(
     feeding: threading.Thread | None = None,
 ) -> None:
     """Show how it stands, and take changes of the specification up, while anything comes."""
-    made = _age(arguments.spec)
     try:
         while feeding is None or feeding.is_alive():
             if feeding is None:
                 time.sleep(_TURN)
             else:
                 feeding.join(_TURN)
-            if (age := _age(arguments.spec)) != made and age is not None:
-                made = age
+            if (age := _age(arguments.spec)) != arguments.made and age is not None:
+                arguments.made = age
                 try:
                     live.replace_spec(_loaded(arguments))
                     shown.note(f"{arguments.spec} has changed: judged by it from here on")

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 
 import pytest
 
@@ -91,6 +92,8 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
         text=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )
+    alarm = threading.Timer(60, process.kill)  # or a line that never comes is waited for
+    alarm.start()
     with process:
         process.stdin.write('{"closed": true}\n{"knock": true, "closed": false}\n')
         process.stdin.flush()
@@ -98,13 +101,12 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
         for text, said in ((SPEC + "requirement", "RV001"), (SPEC + "\n", "has changed")):
             (door / "new.rv").write_text(text)
             os.replace("new.rv", "door.rv")
-            while said not in process.stdout.readline():
-                pass
+            assert any(said in line for line in iter(process.stdout.readline, ""))
         process.stdin.write('{"knock": true, "closed": false}\n')
         process.stdin.flush()
-        while "D1#1" not in process.stdout.readline():
-            pass
+        assert any("D1#1" in line for line in iter(process.stdout.readline, ""))
         process.send_signal(signal.SIGINT)
         rest = process.stdout.read()
+    alarm.cancel()
     assert "run 2" in rest
     assert process.returncode == 0
