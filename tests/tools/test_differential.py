@@ -355,7 +355,7 @@ def test_show() -> None:
         "signal x : real stale after 2 ns",
         "event g(k: int)",
         "  upon e",
-        "  then (F[0 ns, 3 ns] p)",
+        "  then within 3 ns p",
         "sources: e, p",
         "sample     0  {'p': False, 'e': True}",
         "advance    4",

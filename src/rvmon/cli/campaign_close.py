@@ -21,7 +21,7 @@ from rvmon.cdv.plan import Plan
 from rvmon.cdv.program import typed
 from rvmon.cli.campaign_run import specs_of, written
 from rvmon.cli.progress import bar
-from rvmon.cli.say import say_json, warn
+from rvmon.cli.say import say, say_json, warn
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
 from rvmon.writing import write_whole
@@ -78,7 +78,7 @@ def conduct_closing(
         print_closed(closed, Terminal() if sys.stdout.isatty() else Terminal(width=TEXT_COLUMNS))
         if folder is not None:
             replayed = typed(campaign.program, ["run", *others, "--suite", folder / TESTS])
-            print(f"Play the suite again: {replayed}")
+            say(f"Play the suite again: {replayed}")
     return closed, conducted.judged(strict=False).wrong
 
 

@@ -316,8 +316,12 @@ class Monitor:
     def _verdicts(self) -> Mapping[str, Verdict]:
         if self._report is not None:
             return self._report.verdicts
-        found = self._kept.verdicts(self._names)
+        found = self._verdicts_so_far()
         return found if self._torn is None else not_passed(found)
+
+    def _verdicts_so_far(self) -> Mapping[str, Verdict]:
+        """What was decided by now; the engine C counts otherwise."""
+        return self._kept.verdicts(self._names)
 
     def _end(self, t: int | None) -> int | None:
         """The last instant of the trace; `None` if there was no sample."""

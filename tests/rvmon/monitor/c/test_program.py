@@ -126,7 +126,6 @@ def test_what_is_chosen_and_overridden_counts(folder, capfd, by_arrays):
     [
         ["--until", "3"],
         ["x.csv"],
-        ["--robustness"],
         ["--map", "parts=other"],
         ["--time", "t:ms"],
         ["--nan", "no-update"],
