@@ -5,11 +5,11 @@ import io
 import json
 
 import pytest
-from rvmon.timed.language.elaborate import chosen_queries
 
 from handover.campaign.closing import UNREACHABLE, query_of
 from handover.cli import main
 from handover.model import handover_network
+from rvmon.timed.language.elaborate import chosen_queries
 
 pytestmark = pytest.mark.campaign
 
