@@ -13,6 +13,7 @@ import time
 from dataclasses import replace
 
 import pytest
+from tests.tools.shared_folder import shared_folder
 
 from handover.campaign.campaign import handover_campaign
 from handover.campaign.spread import spread, spread_text
@@ -32,10 +33,12 @@ ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory):
     """The files of a small demo."""
-    folder = tmp_path_factory.mktemp("demo")
-    words = ["demo", "--tests", "3", "--conform", "1", "--jobs", "1", "--out", str(folder)]
-    assert main(words) == 0
-    return folder
+
+    def make(folder):
+        words = ["demo", "--tests", "3", "--conform", "1", "--jobs", "1", "--out", str(folder)]
+        assert main(words) == 0
+
+    return shared_folder(tmp_path_factory, "demo", make)
 
 
 def test_the_page_has_what_the_model_says(demo):

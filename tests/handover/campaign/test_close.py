@@ -5,6 +5,7 @@ import io
 import json
 
 import pytest
+from tests.tools.shared_folder import shared_folder
 
 from handover.campaign.closing import UNREACHABLE, query_of
 from handover.cli import main
@@ -17,11 +18,15 @@ pytestmark = pytest.mark.campaign
 @pytest.fixture(scope="module")
 def closed(tmp_path_factory):
     """A folder with a suite of a few tests, the exit code and what was printed."""
-    folder = tmp_path_factory.mktemp("closed")
-    told = io.StringIO()
-    with contextlib.redirect_stdout(told):
-        code = main(["close", "--tests", "8", "--jobs", "1", "--out", str(folder)])
-    return folder, code, told.getvalue()
+
+    def make(folder):
+        told = io.StringIO()
+        with contextlib.redirect_stdout(told):
+            code = main(["close", "--tests", "8", "--jobs", "1", "--out", str(folder / "out")])
+        (folder / "told.json").write_text(json.dumps([code, told.getvalue()]))
+
+    folder = shared_folder(tmp_path_factory, "closed", make)
+    return folder / "out", *json.loads((folder / "told.json").read_text())
 
 
 def test_the_model_leads_to_all_outcomes_at_once(closed):
