@@ -12,6 +12,7 @@ from handover.world.measures import (
     gripper_opening,
     hand_offset,
     location_is_ok,
+    tool_point,
     tool_speed,
 )
 from handover.world.recorder import SampleValue
@@ -52,4 +53,13 @@ class Truth:
             "true_pressure": self._human.shares_piece(),
             "true_location": location_is_ok(scene),
             "tool_speed": round(tool_speed(scene), 3),
+        }
+
+    def places(self) -> dict[str, SampleValue]:
+        """Where the piece is, and how far behind it and above it the grip is: m, to 1 mm."""
+        piece, grip = self._scene.piece.position, tool_point(self._scene)
+        return {
+            "piece_x": round(piece.x, 3),
+            "grip_behind": round(piece.x - grip[0], 3),
+            "grip_above": round(grip[1] - piece.y, 3),
         }

@@ -68,6 +68,8 @@ class World:
         self._planned_until = 0
         self._at_rest = False
         self._jump = jump
+        self._hidden = scene_faults.hidden
+        self._rng = rng
         self._hand_in_plane = scene_faults.hand_in_plane
         self._film = Film(self.scene) if record_poses else None
         self.bus.tap(self._record)
@@ -99,14 +101,16 @@ class World:
             self.recorder.event(now, "fully_read")
         return reading
 
-    def piece(self) -> tuple[float, float]:
-        """Where the robot's camera sees the piece, (x, z) in metres."""
+    def piece(self) -> tuple[float, float] | None:
+        """Where the robot's camera sees the piece, (x, z) in metres; `None`: it is hidden."""
+        if self._hidden > 0 and self._rng.random() < self._hidden:
+            self._note("piece_hidden")
+            return None
         return seen_piece(self.scene)
 
     def hand_distance(self) -> float | None:
         """Metres between the mass centres of hand and gripper, as it is sensed."""
-        offset = self.sensors.hand_offset()
-        return None if offset is None else math.hypot(*offset)
+        return self._measure_hand(self.schedule.now_ns)
 
     @property
     def stepped_s(self) -> float:
@@ -176,9 +180,11 @@ class World:
         """Record what was commanded or read, with what was so at that instant."""
         now = self.schedule.now_ns
         self._measure_truth(now)
+        for signal, value in self._truth.places().items():
+            self.recorder.signal(now, signal, value)
         self.recorder.event(now, name)
 
-    def _measure_hand(self, t_ns: int) -> None:
+    def _measure_hand(self, t_ns: int) -> float | None:
         """Publish how far the hand is from the gripper, to 0.1 mm."""
         offset = self.sensors.hand_offset()
         x, z = (None, None) if offset is None else (round(offset[0], 4), round(offset[1], 4))
@@ -186,6 +192,7 @@ class World:
         self.recorder.refresh(t_ns, "hand_distance", distance)
         self.recorder.signal(t_ns, "hand_offset_x", x)
         self.recorder.signal(t_ns, "hand_offset_z", z)
+        return distance
 
     def _record(self, topic: str, value: Value) -> None:
         now = self.schedule.now_ns

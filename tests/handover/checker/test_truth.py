@@ -82,7 +82,7 @@ class IgnoresLocation(HandoverRobot):
     def decide(self):
         next_state = yield from super().decide()
         reading = self.reading
-        return "release" if reading and reading.gaze and reading.pressure else next_state
+        return "release" if reading.gaze and reading.pressure else next_state
 
 
 class OpensOnTheWay(HandoverRobot):
