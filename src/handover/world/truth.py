@@ -31,15 +31,18 @@ class Truth:
         self._scene = scene
         self._human = human
         self._peak = 0.0
+        self._shown = (-1, 0.0)
 
     def step(self) -> None:
         """Keep the greatest force on the hand between two measurements."""
         self._peak = max(self._peak, self._human.hand_force())
 
-    def measure(self) -> dict[str, SampleValue]:
-        """All signals now: lengths in m, to 1 mm, forces in N, speeds in m/s."""
+    def measure(self, t_ns: int) -> dict[str, SampleValue]:
+        """All signals at an instant: lengths in m, to 1 mm, forces in N, speeds in m/s."""
         self.step()
-        peak, self._peak = self._peak, 0.0
+        shown_ns, shown = self._shown
+        peak = max(self._peak, shown if shown_ns == t_ns else 0.0)
+        self._shown, self._peak = (t_ns, peak), 0.0
         scene = self._scene
         grip = gripper_force(scene)
         return {

@@ -68,6 +68,7 @@ class World:
         self._planned_until = 0
         self._at_rest = False
         self._jump = jump
+        self._hand_seen: tuple[int, float | None] = (-1, None)
         self._hidden = scene_faults.hidden
         self._rng = rng
         self._hand_in_plane = scene_faults.hand_in_plane
@@ -170,7 +171,7 @@ class World:
             self._film.take(t_ns)
 
     def _measure_truth(self, t_ns: int) -> None:
-        truth = self._truth.measure()
+        truth = self._truth.measure(t_ns)
         if self._at_rest:
             truth["tool_speed"] = 0.0
         for name, value in truth.items():
@@ -185,13 +186,17 @@ class World:
         self.recorder.event(now, name)
 
     def _measure_hand(self, t_ns: int) -> float | None:
-        """Publish how far the hand is from the gripper, to 0.1 mm."""
+        """Publish how far the hand is from the gripper, to 0.1 mm, once at an instant."""
+        seen_ns, distance = self._hand_seen
+        if seen_ns == t_ns:
+            return distance
         offset = self.sensors.hand_offset()
         x, z = (None, None) if offset is None else (round(offset[0], 4), round(offset[1], 4))
         distance = None if offset is None else round(math.hypot(*offset), 4)
         self.recorder.refresh(t_ns, "hand_distance", distance)
         self.recorder.signal(t_ns, "hand_offset_x", x)
         self.recorder.signal(t_ns, "hand_offset_z", z)
+        self._hand_seen = (t_ns, distance)
         return distance
 
     def _record(self, topic: str, value: Value) -> None:

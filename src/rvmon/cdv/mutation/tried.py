@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
-from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
+
+if TYPE_CHECKING:
+    from rvmon.cdv.mutation.record import Recorded
 
 
 class How(StrEnum):
@@ -68,6 +72,7 @@ class Tried:
         findings: what kills it, in the order of the suite.
         difference: the first in a run that no finding is about.
         invalid: why it cannot be planted; empty if it can.
+        failing: the first test by which a requirement fails, and its run, if runs are kept.
     """
 
     mutant: Mutant
@@ -76,6 +81,7 @@ class Tried:
     findings: tuple[Finding, ...] = ()
     difference: Difference | None = None
     invalid: str = ""
+    failing: tuple[str, Recorded] | None = None
 
     @property
     def killed(self) -> bool:
@@ -110,6 +116,15 @@ class Score:
     def rest(self) -> int:
         """The mutants that are not equivalent."""
         return self.mutants - self.equivalent
+
+
+def failing_runs(tried: Iterable[Tried]) -> dict[str, Recorded]:
+    """The runs that were kept of mutants which are not held out, by test and mutant."""
+    return {
+        f"{one.failing[0]} with {one.mutant.identity}": one.failing[1]
+        for one in tried
+        if one.failing is not None and one.mutant.third != HELD_OUT
+    }
 
 
 def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
