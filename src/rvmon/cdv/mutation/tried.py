@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -81,7 +81,7 @@ class Tried:
     findings: tuple[Finding, ...] = ()
     difference: Difference | None = None
     invalid: str = ""
-    failing: tuple[str, Recorded] | None = None
+    failing: tuple[str, Recorded] | None = field(default=None, compare=False)
 
     @property
     def killed(self) -> bool:
