@@ -129,6 +129,7 @@ class SaysMore(HandoverRobot):
         steps = super().reset()
         wait_s = next(steps)
         self.node.publish("robot_gripper", True)
+        self.node.publish("sensed")
         yield wait_s
         return (yield from steps)
 
@@ -192,7 +193,7 @@ PLANTED = {
     "grips-high": (GripsHigh, "released", "T34 T35"),
     "holds-out-anything": (HoldsOutAnything, "piece-out-of-sight", "T36"),
     "tries-again": (TriesAgain, "no-path-to-piece", "T38"),
-    "says-more": (SaysMore, "released", "T40 T44 T46"),
+    "says-more": (SaysMore, "released", "T40 T44 T46 T57"),
     "closes-longer": (other(grip_pause_s=0.6), "released", "T41"),
     "announces-longer": (other(announce_pause_s=0.06), "released", "T42"),
     "decides-sooner": (other(decide_s=0.05), "released", "T43"),
