@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
 
 if TYPE_CHECKING:
-    from rvmon.cdv.mutation.record import Recorded
+    from rvmon.cdv.mutation.record import Difference, Recorded
 
 
 class How(StrEnum):
@@ -38,27 +38,6 @@ class Finding:
     test: str
     how: How
     what: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Difference:
-    """Where a run first differs from that of the code as it is.
-
-    Attributes:
-        test: that was played.
-        t_ns: the instant; of a difference at the end of the run, that.
-        name: the signal or event; `state`: of the robot; empty: the run's end itself.
-        was: its value; empty: none.
-        now: its value with the change; empty: none.
-        verdicts: requirements that are judged otherwise, none of them F: verdicts before and after.
-    """
-
-    test: str
-    t_ns: int
-    name: str
-    was: str
-    now: str
-    verdicts: tuple[tuple[str, str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
