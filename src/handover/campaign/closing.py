@@ -90,7 +90,6 @@ def query_of(group: str, item: str) -> str:
 
 
 _ONLY_LEGACY = "only the legacy robot does so"
-_IN_SIGHT = "the world's camera always sees the piece"
 _HELD = "a hand that holds the piece is near it: with pressure right, location is right"
 _NO_DELAY = "the robot takes time from what it is told to what it does about it"
 _POLLS = "the robot gives up after many polls, never at the first"
@@ -105,10 +104,6 @@ UNREACHABLE = tuple(
             ("", "elapsed = self.node.now() - self.informed_at"),
             ("statements of common", "self.node.subscribe(HUMAN_SIGNALS)"),
             ("branches of common", "self.node.subscribe(HUMAN_SIGNALS)"),
-        ],
-        _IN_SIGHT: [("", 'return self.give_up("no piece in sight")')],
-        "there is no way to `decide` but with a reading": [
-            ("", 'self.outcome = "not released: nothing was sensed"')
         ],
         _HELD: [
             ("situation", "yes × yes × no × kept"),

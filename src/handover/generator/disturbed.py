@@ -35,6 +35,10 @@ P_PLANNER: Final = 0.12
 PLAN_FAILURE: Final = (0.2, 0.8)
 """Sampling planners find no path in time now and then; at 0.8 half of the tasks end by it."""
 
+P_HIDDEN: Final = 0.08
+HIDDEN: Final = (0.2, 0.8)
+"""Of looks for the piece, past a person who moves about it; as often in vain as plans are."""
+
 P_IN_PLANE: Final = 0.5
 """The hand beside the gripper as often as in front of it: the plane says neither."""
 
@@ -82,4 +86,5 @@ def _scene_faults(rng: random.Random) -> SceneFaults:
         friction=GREASY if slippery else SceneFaults().friction,
         plan_failure=round(rng.uniform(*PLAN_FAILURE), 2) if planner else 0.0,
         hand_in_plane=rng.random() < P_IN_PLANE,
+        hidden=round(rng.uniform(*HIDDEN), 2) if rng.random() < P_HIDDEN else 0.0,
     )

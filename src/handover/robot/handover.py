@@ -55,7 +55,7 @@ class HandoverRobot:
 
     Attributes:
         state: the state that the robot is in.
-        outcome: why the task ended, once it has.
+        reading: of the sensors, what it decides by, once it has sensed.
     """
 
     def __init__(
@@ -72,11 +72,10 @@ class HandoverRobot:
         self.sensors = sensors
         self.behaviour = behaviour
         self.state = "reset"
-        self.outcome = ""
         self.entered = 0.0
         self.polls = 0
         self.informed_at = 0.0
-        self.reading: Reading | None = None
+        self.reading: Reading
 
     def run(self) -> Steps[None]:
         """Go through the states until the task is done."""
@@ -93,9 +92,7 @@ class HandoverRobot:
     def reset(self) -> Steps[str]:
         """Forget the last task, open the gripper and go to the start pose."""
         self.polls = 0
-        self.outcome = ""
         self.informed_at = 0.0
-        self.reading = None
         self.node.publish("robot_reset")
         self.node.publish("robot_gripper", False)
         self.node.publish("pressure_e1", False)
@@ -116,21 +113,21 @@ class HandoverRobot:
                 self.polls = 0
             return "move"
         if self.polls >= self.behaviour.poll_limit:
-            return self.give_up("nobody activated the robot")
+            return self.give_up("nobody_came")
         return "receive_activation"
 
     def move(self) -> Steps[str]:
         """Fetch the piece and hold it out to the human."""
         found = self.sensors.piece()
         if found is None:
-            return self.give_up("no piece in sight")
+            return self.give_up("no_piece")
         x, z = found
         for height in APPROACH_HEIGHTS:
             arrived = yield from self.go_to(x, z + GRIP_ABOVE_CENTRE + height)
             if not arrived:
-                return self.give_up("no path to the piece")
+                return self.give_up("no_path_to_piece")
         if self.behaviour.minds_hand and self.hand_is_close():
-            return self.give_up("a hand is in the grip")
+            return self.give_up("hand_in_grip")
         self.gripper.close()
         yield self.behaviour.grip_pause_s
         self.node.publish("grip_closed")
@@ -142,10 +139,10 @@ class HandoverRobot:
         x, z = HANDOVER_POINT
         arrived = yield from self.go_to(x, z)
         if not arrived:
-            return self.give_up("no path to the human")
+            return self.give_up("no_path_to_person")
         yield self.behaviour.settle_s
         if self.behaviour.checks_grip and not self.has_piece():
-            return self.give_up("the piece did not come along")
+            return self.give_up("piece_left_behind")
         return "send_signal"
 
     def send_signal(self) -> Steps[str]:
@@ -162,7 +159,7 @@ class HandoverRobot:
         if signal in self.behaviour.readiness:
             return "sense"
         if self.polls >= self.behaviour.poll_limit:
-            return self.give_up("the human never was ready")
+            return self.give_up("never_ready")
         return "receive_readiness"
 
     def sense(self) -> Steps[str]:
@@ -176,7 +173,7 @@ class HandoverRobot:
             limit = self.node.params["timeout_time"]
             elapsed = self.node.now() - self.informed_at
         if elapsed > limit - CLOCK_TOLERANCE_S:
-            return self.give_up("the sensors gave no full reading in time")
+            return self.give_up("never_sensed")
         reading = self.sensors.sense()
         missing = None in (reading.gaze, reading.pressure, reading.location)
         if missing and not self.behaviour.undefined_is_bad:
@@ -190,19 +187,17 @@ class HandoverRobot:
         self.node.publish("decide")
         yield self.behaviour.decide_s
         reading = self.reading
-        ready = reading is not None and all((reading.gaze, reading.pressure, reading.location))
+        ready = all((reading.gaze, reading.pressure, reading.location))
         self.node.publish("decided")
         self.node.publish("gpl_is_ok", ready)
         if ready:
             return "release"
-        if reading is None:
-            self.outcome = "not released: nothing was sensed"
-        elif not reading.location:
-            self.outcome = "not released: the hand is not near the piece"
+        if not reading.location:
+            self.node.publish("hand_away")
         elif not reading.pressure:
-            self.outcome = "not released: the human does not hold the piece"
+            self.node.publish("hand_empty")
         else:
-            self.outcome = "not released: the human does not look at the piece"
+            self.node.publish("looks_away")
         self.node.publish("withheld")
         return "done"
 
@@ -213,7 +208,6 @@ class HandoverRobot:
         self.node.publish("pressure_e1", False)
         self.node.publish("resetpiece")
         self.node.publish("released")
-        self.outcome = "released"
         yield self.behaviour.release_s
         return "done"
 
@@ -239,8 +233,8 @@ class HandoverRobot:
         return str(message.value)
 
     def give_up(self, reason: str) -> str:
-        """End the task without a decision."""
-        self.outcome = reason
+        """End the task without a decision, and tell why."""
+        self.node.publish(reason)
         self.node.publish("timed_out")
         return "done"
 

@@ -30,7 +30,7 @@ class IgnoresPressure(HandoverRobot):
         """Release if gaze and location are all right."""
         next_state = yield from super().decide()
         reading = self.reading
-        return "release" if reading and reading.gaze and reading.location else next_state
+        return "release" if reading.gaze and reading.location else next_state
 
 
 class ForgetsToRelease(HandoverRobot):

@@ -21,7 +21,7 @@ class Arm:
         scene: where the motors are.
         rng: draws the planner's latency.
         wake: called with the seconds for which the scene is going to move.
-        note: called with the name of each command.
+        note: called with the name of each command, and of each plan in vain.
         plan_failure: probability that there is no path, though the place is in reach.
     """
 
@@ -57,7 +57,10 @@ class Arm:
         yield self._rng.uniform(*p.PLAN_LATENCY_S)
         goal = joints_for(x, z)
         fails = self._plan_failure > 0 and self._rng.random() < self._plan_failure
-        return None if goal is None or fails else self._path_to(goal)
+        if goal is None or fails:
+            self._note("plan_failed")
+            return None
+        return self._path_to(goal)
 
     def interpolate(self, joints: Joints, duration: float) -> Trajectory:
         """A path to joint angles, in a given time and without planning."""

@@ -10,6 +10,9 @@ import pymunk
 from handover.world import parameters as p
 from handover.world.scene import Scene
 
+_BETWEEN_PADS = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
+"""On the palm, from its centre, metres."""
+
 
 def contact_force(body: pymunk.Body, other: pymunk.Body) -> float:
     """N between two bodies in the last physics step, by contact alone; 0 if they do not touch."""
@@ -99,8 +102,13 @@ def hand_offset(scene: Scene) -> tuple[float, float]:
 
 def tool_speed(scene: Scene) -> float:
     """Metres per second of the point between the pads."""
-    between_pads = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
-    return float(scene.links[2].velocity_at_local_point(between_pads).length)
+    return float(scene.links[2].velocity_at_local_point(_BETWEEN_PADS).length)
+
+
+def tool_point(scene: Scene) -> tuple[float, float]:
+    """The point between the pads, (x, z) in metres."""
+    x, z = scene.links[2].local_to_world(_BETWEEN_PADS)
+    return x, z
 
 
 def gripper_centre(scene: Scene) -> tuple[float, float]:

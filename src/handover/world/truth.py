@@ -12,6 +12,7 @@ from handover.world.measures import (
     gripper_opening,
     hand_offset,
     location_is_ok,
+    tool_point,
     tool_speed,
 )
 from handover.world.recorder import SampleValue
@@ -30,15 +31,18 @@ class Truth:
         self._scene = scene
         self._human = human
         self._peak = 0.0
+        self._shown = (-1, 0.0)
 
     def step(self) -> None:
         """Keep the greatest force on the hand between two measurements."""
         self._peak = max(self._peak, self._human.hand_force())
 
-    def measure(self) -> dict[str, SampleValue]:
-        """All signals now: lengths in m, to 1 mm, forces in N, speeds in m/s."""
+    def measure(self, t_ns: int) -> dict[str, SampleValue]:
+        """All signals at an instant: lengths in m, to 1 mm, forces in N, speeds in m/s."""
         self.step()
-        peak, self._peak = self._peak, 0.0
+        shown_ns, shown = self._shown
+        peak = max(self._peak, shown if shown_ns == t_ns else 0.0)
+        self._shown, self._peak = (t_ns, peak), 0.0
         scene = self._scene
         grip = gripper_force(scene)
         return {
@@ -52,4 +56,13 @@ class Truth:
             "true_pressure": self._human.shares_piece(),
             "true_location": location_is_ok(scene),
             "tool_speed": round(tool_speed(scene), 3),
+        }
+
+    def places(self) -> dict[str, SampleValue]:
+        """Where the piece is, and how far behind it and above it the grip is: m, to 1 mm."""
+        piece, grip = self._scene.piece.position, tool_point(self._scene)
+        return {
+            "piece_x": round(piece.x, 3),
+            "grip_behind": round(piece.x - grip[0], 3),
+            "grip_above": round(grip[1] - piece.y, 3),
         }

@@ -13,7 +13,7 @@ from handover.world.bus import Bus, Value
 from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.film import Film
 from handover.world.human import Human
-from handover.world.measures import seen_piece
+from handover.world.measures import hand_is_seen, seen_piece
 from handover.world.poses import Poses
 from handover.world.reading import Reading
 from handover.world.recorder import Recorder, SampleValue
@@ -68,7 +68,9 @@ class World:
         self._planned_until = 0
         self._at_rest = False
         self._jump = jump
-        self._hand_in_plane = scene_faults.hand_in_plane
+        self._hand_seen: tuple[int, float | None] = (-1, None)
+        self._hidden = scene_faults.hidden
+        self._rng = rng
         self._film = Film(self.scene) if record_poses else None
         self.bus.tap(self._record)
         self._wake(0.0)
@@ -99,14 +101,16 @@ class World:
             self.recorder.event(now, "fully_read")
         return reading
 
-    def piece(self) -> tuple[float, float]:
-        """Where the robot's camera sees the piece, (x, z) in metres."""
+    def piece(self) -> tuple[float, float] | None:
+        """Where the robot's camera sees the piece, (x, z) in metres; `None`: it is hidden."""
+        if self._hidden > 0 and self._rng.random() < self._hidden:
+            self._note("piece_hidden")
+            return None
         return seen_piece(self.scene)
 
     def hand_distance(self) -> float | None:
         """Metres between the mass centres of hand and gripper, as it is sensed."""
-        offset = self.sensors.hand_offset()
-        return None if offset is None else math.hypot(*offset)
+        return self._measure_hand(self.schedule.now_ns)
 
     @property
     def stepped_s(self) -> float:
@@ -132,7 +136,7 @@ class World:
             self.scene.space.step(p.STEP_NS / p.NS)
             self._step += 1
             self._stepped += 1
-            if self._hand_in_plane:
+            if hand_is_seen(self.scene):  # at the chest it touches nothing
                 self._truth.step()
             if self._step % p.WATCH_STEPS == 0 and not self._at_rest:
                 self._at_rest = self._step >= self._planned_until and self._is_still()
@@ -166,7 +170,7 @@ class World:
             self._film.take(t_ns)
 
     def _measure_truth(self, t_ns: int) -> None:
-        truth = self._truth.measure()
+        truth = self._truth.measure(t_ns)
         if self._at_rest:
             truth["tool_speed"] = 0.0
         for name, value in truth.items():
@@ -176,16 +180,23 @@ class World:
         """Record what was commanded or read, with what was so at that instant."""
         now = self.schedule.now_ns
         self._measure_truth(now)
+        for signal, value in self._truth.places().items():
+            self.recorder.signal(now, signal, value)
         self.recorder.event(now, name)
 
-    def _measure_hand(self, t_ns: int) -> None:
-        """Publish how far the hand is from the gripper, to 0.1 mm."""
+    def _measure_hand(self, t_ns: int) -> float | None:
+        """Publish how far the hand is from the gripper, to 0.1 mm, once at an instant."""
+        seen_ns, distance = self._hand_seen
+        if seen_ns == t_ns:
+            return distance
         offset = self.sensors.hand_offset()
         x, z = (None, None) if offset is None else (round(offset[0], 4), round(offset[1], 4))
         distance = None if offset is None else round(math.hypot(*offset), 4)
         self.recorder.refresh(t_ns, "hand_distance", distance)
         self.recorder.signal(t_ns, "hand_offset_x", x)
         self.recorder.signal(t_ns, "hand_offset_z", z)
+        self._hand_seen = (t_ns, distance)
+        return distance
 
     def _record(self, topic: str, value: Value) -> None:
         now = self.schedule.now_ns

@@ -109,6 +109,7 @@ def _reported(
     from rvmon.cdv.mutation.report import MutationReport, SuiteTried
     from rvmon.cdv.mutation.spec_mutants import try_spec_mutants
     from rvmon.cdv.mutation.suite import mutated_spec, record_suite
+    from rvmon.cdv.mutation.tried import failing_runs
 
     jobs = arguments.jobs or os.cpu_count() or 1
     begun = time.perf_counter()
@@ -118,8 +119,15 @@ def _reported(
         with bar(f"{name}: tests", len(tests)) as tell:
             suite = record_suite(campaign, robot, tests, jobs=jobs, progress=tell)
         with bar(f"{name}: mutants", len(found.code)) as tell:
-            tried = play_mutants(suite, found.code, jobs=jobs, every=arguments.all, progress=tell)
-        spec_tried = try_spec_mutants(spec, found.spec, suite.recorded)
+            tried = play_mutants(
+                suite,
+                found.code,
+                jobs=jobs,
+                every=arguments.all,
+                keep=bool(found.spec),
+                progress=tell,
+            )
+        spec_tried = try_spec_mutants(spec, found.spec, {**suite.recorded, **failing_runs(tried)})
         suites[name] = SuiteTried(len(suite.tests), suite.left_out, tuple(tried), tuple(spec_tried))
     return MutationReport(
         campaign.name,

@@ -82,7 +82,7 @@ class IgnoresLocation(HandoverRobot):
     def decide(self):
         next_state = yield from super().decide()
         reading = self.reading
-        return "release" if reading and reading.gaze and reading.pressure else next_state
+        return "release" if reading.gaze and reading.pressure else next_state
 
 
 class OpensOnTheWay(HandoverRobot):
@@ -106,6 +106,63 @@ class StaysSilentOnRefusal(HandoverRobot):
         return next_state if next_state == "release" else END
 
 
+class GripsHigh(HandoverRobot):
+    def go_to(self, x, z):
+        return (yield from super().go_to(x, z + 0.015))
+
+
+class HoldsOutAnything(HandoverRobot):
+    def has_piece(self):
+        return super().has_piece() or True
+
+
+class TriesAgain(HandoverRobot):
+    def go_to(self, x, z):
+        arrived = yield from super().go_to(x, z)
+        return arrived or (yield from super().go_to(x, z))
+
+
+class SaysMore(HandoverRobot):
+    """Says the opposite of its gripper and its decision, at the instants at which it says it."""
+
+    def reset(self):
+        steps = super().reset()
+        wait_s = next(steps)
+        self.node.publish("robot_gripper", True)
+        self.node.publish("sensed")
+        yield wait_s
+        return (yield from steps)
+
+    def decide(self):
+        next_state = yield from super().decide()
+        self.node.publish("gpl_is_ok", next_state != "release")
+        return next_state
+
+    def release(self):
+        steps = super().release()
+        yield next(steps)
+        wait_s = next(steps)
+        self.node.publish("pressure_e1", True)
+        yield wait_s
+        return "done"
+
+
+class GivesNoReason(HandoverRobot):
+    def give_up(self, reason):
+        self.node.publish("timed_out")
+        return "done"
+
+
+class GivesAllReasons(HandoverRobot):
+    def give_up(self, reason):
+        for one in REASONS.split():
+            self.node.publish(one)
+        return super().give_up(reason)
+
+
+REASONS = """nobody_came no_piece no_path_to_piece no_path_to_person hand_in_grip piece_left_behind
+never_ready never_sensed"""
+
 PLANTED = {
     "senses-one-poll-longer": (other(sense_limit_s=5.5), "no-posture", "T25 T26"),
     "senses-one-poll-less": (other(sense_limit_s=4.5), "no-posture", "T26"),
@@ -118,8 +175,8 @@ PLANTED = {
     "keeps-stale-signals": (other(only_fresh=False), "ready-too-early", "T20"),
     "takes-any-signal": (other(readiness=EITHER), "activates-again", "T20"),
     "starts-at-any-signal": (other(activation=EITHER), "ready-first", "T18"),
-    "checks-no-grip": (other(checks_grip=False), "piece-slips", "T13"),
-    "minds-no-hand": (mutants.MindsNoHand, "hand-in-the-grip", "R5 T33"),
+    "checks-no-grip": (other(checks_grip=False), "piece-slips", "T13 T37"),
+    "minds-no-hand": (mutants.MindsNoHand, "hand-in-the-grip", "R5 T33 T39"),
     "resets-fast": (other(reset_s=0.9), "released", "T14"),
     "gives-no-time-to-take": (other(release_s=1.9), "released", "T31"),
     "says-released": (SaysReleased, "released", "T5 T6"),
@@ -131,8 +188,19 @@ PLANTED = {
     "releases-later-on": (ReleasesLaterOn, "withheld-empty-hand", "T1 T7 T8 T29"),
     "ignores-location": (IgnoresLocation, "location-misread", "R2 T7"),
     "opens-on-the-way": (OpensOnTheWay, "never-ready", "T4"),
-    "withholds-unread": (WithholdsUnread, "released", "T10"),
+    "withholds-unread": (WithholdsUnread, "released", "T10 T47"),
     "stays-silent": (StaysSilentOnRefusal, "withheld-no-gaze", "T30"),
+    "grips-high": (GripsHigh, "released", "T34 T35"),
+    "holds-out-anything": (HoldsOutAnything, "piece-out-of-sight", "T36"),
+    "tries-again": (TriesAgain, "no-path-to-piece", "T38"),
+    "says-more": (SaysMore, "released", "T40 T44 T46 T57"),
+    "closes-longer": (other(grip_pause_s=0.6), "released", "T41"),
+    "announces-longer": (other(announce_pause_s=0.06), "released", "T42"),
+    "decides-sooner": (other(decide_s=0.05), "released", "T43"),
+    "opens-longer": (other(open_s=0.4), "released", "T45"),
+    "gives-no-reason": (GivesNoReason, "no-posture", "T48"),
+    "gives-all-reasons": (GivesAllReasons, "hand-in-the-grip", "T49 T50 T51 T52 T53 T54 T56"),
+    "sees-a-hand": (GivesAllReasons, "nobody-comes", "T55"),
     "never-decides": (mutants.NeverDecides, "withheld-no-gaze", "T11"),
     "ends-silently": (mutants.EndsSilently, "released", "T19"),
 }

@@ -46,7 +46,9 @@ TESTS = st.builds(
         loss=st.floats(0, 1),
         dropout=st.just(("gaze",)),
     ),
-    scene=st.builds(SceneFaults, st.floats(0.01, 2), st.floats(0, 1), st.booleans()),
+    scene=st.builds(
+        SceneFaults, st.floats(0.01, 2), st.floats(0, 1), st.floats(0, 1), st.booleans()
+    ),
 )
 
 

@@ -64,6 +64,7 @@ def test_disturbed_tests_show_each_deviation() -> None:
         assert sum(bool(getattr(test.faults, name)) for test in tests) > 10
     assert sum(test.scene.friction < 0.1 for test in tests) > 10
     assert sum(test.scene.plan_failure > 0 for test in tests) > 10
+    assert sum(test.scene.hidden > 0 for test in tests) > 10
     assert {test.postures for test in tests} == {"in_range", "at_limits"}
     ways = Counter(what for test in tests for what in deviations(test.actions))
     assert set(ways) == {"wrong signal", "ready early", "reaches early", "withdraws", "as it is"}

@@ -44,6 +44,7 @@ def play_mutants(
     *,
     jobs: int,
     every: bool = False,
+    keep: bool = False,
     progress: Progress | None = None,
 ) -> list[Tried]:
     """Play the tests that run the changed line, on each mutant.
@@ -56,20 +57,21 @@ def play_mutants(
         mutants: of that code.
         jobs: processes.
         every: play all these tests; else until a requirement fails.
+        keep: keep the first run in which a requirement fails.
         progress: told as mutants are done.
 
     Returns:
         What became of each, in their order; it does not depend on `jobs`.
     """
     _load_what_runs_need(suite)
-    sources = {one.path: text_of_file(one.path) for one in mutants}
+    sources = {str(one.path): text_of_file(one.path) for one in mutants}
     tasks = [(one, suite.reaching(one)) for one in mutants]
     found: list[Tried] = []
     longest = sum(_most_cpu_s(one) for one in suite.recorded.values())
     with closing(
         parallel.execute(
             (task for task in tasks if task[1]),
-            partial(_begin, suite, {str(path): text for path, text in sources.items()}, every),
+            partial(_begin, suite, sources, every, keep),
             jobs=jobs,
             what="mutant",
             instead=_ended,
@@ -94,19 +96,21 @@ def _load_what_runs_need(suite: Suite) -> None:
     suite.spec.monitor()
 
 
-def _begin(suite: Suite, sources: dict[str, str], every: bool) -> Callable[[_Task], Tried]:
+def _begin(
+    suite: Suite, sources: dict[str, str], every: bool, keep: bool
+) -> Callable[[_Task], Tried]:
     _limit()
-    return partial(_tried, suite, sources, every)
+    return partial(_tried, suite, sources, every, keep)
 
 
-def _tried(suite: Suite, sources: dict[str, str], every: bool, task: _Task) -> Tried:
+def _tried(suite: Suite, sources: dict[str, str], every: bool, keep: bool, task: _Task) -> Tried:
     mutant, reaching = task
     try:
         plant(mutant, sources[str(mutant.path)])
     except RvmonError as error:
         return Tried(mutant, len(reaching), invalid=str(error))
     findings: list[Finding] = []
-    first = None
+    first = failing = None
     played = 0
     recorder = Recorder(system_of(suite.name, suite.robot), Checker(suite.spec))
     for name in reaching:
@@ -121,11 +125,13 @@ def _tried(suite: Suite, sources: dict[str, str], every: bool, task: _Task) -> T
         finding = _finding(suite, name, was, now)
         if finding is not None:
             findings.append(finding)
-            if finding.how is How.REQUIREMENT and not every:
-                break
+            if finding.how is How.REQUIREMENT:
+                failing = failing or ((name, now) if keep else None)
+                if not every:
+                    break
         elif first is None:
             first = difference(name, was, now)
-    return Tried(mutant, len(reaching), played, tuple(findings), first)
+    return Tried(mutant, len(reaching), played, tuple(findings), first, failing=failing)
 
 
 def _finding(suite: Suite, name: str, was: Recorded, now: Recorded) -> Finding | None:

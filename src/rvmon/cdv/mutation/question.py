@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 
-from rvmon.cdv.mutation.tried import Difference, Tried
+from rvmon.cdv.mutation.record import Difference
+from rvmon.cdv.mutation.tried import Tried
 from rvmon.spec.checked.reads import names_of_requirement
 from rvmon.spec.checked.specification import CheckedSpec
 

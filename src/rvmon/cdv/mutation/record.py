@@ -10,7 +10,6 @@ from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.code import Code
 from rvmon.cdv.meter import Meter, statements_name
-from rvmon.cdv.mutation.tried import Difference
 from rvmon.cdv.play import run_of
 from rvmon.cdv.system import Observer, Run, System, Values
 from rvmon.verdict.verdict import Verdict
@@ -33,6 +32,27 @@ class Recorded:
     samples: tuple[tuple[int, Values], ...]
     lines: Mapping[str, frozenset[int]]
     cpu_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """Where a run first differs from that of the code as it is.
+
+    Attributes:
+        test: that was played.
+        t_ns: the instant; of a difference at the end of the run, that.
+        name: the signal or event; `state`: of the robot; empty: the run's end itself.
+        was: its value; empty: none.
+        now: its value with the change; empty: none.
+        verdicts: requirements that are judged otherwise, none of them F: verdicts before and after.
+    """
+
+    test: str
+    t_ns: int
+    name: str
+    was: str
+    now: str
+    verdicts: tuple[tuple[str, str, str], ...] = ()
 
 
 class Recorder:

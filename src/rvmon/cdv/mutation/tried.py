@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
-from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
+
+if TYPE_CHECKING:
+    from rvmon.cdv.mutation.record import Difference, Recorded
 
 
 class How(StrEnum):
@@ -37,27 +41,6 @@ class Finding:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
-    """Where a run first differs from that of the code as it is.
-
-    Attributes:
-        test: that was played.
-        t_ns: the instant; of a difference at the end of the run, that.
-        name: the signal or event; `state`: of the robot; empty: the run's end itself.
-        was: its value; empty: none.
-        now: its value with the change; empty: none.
-        verdicts: requirements that are judged otherwise, none of them F: verdicts before and after.
-    """
-
-    test: str
-    t_ns: int
-    name: str
-    was: str
-    now: str
-    verdicts: tuple[tuple[str, str, str], ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class Tried:
     """A mutant, and what a suite sees of it.
 
@@ -68,6 +51,7 @@ class Tried:
         findings: what kills it, in the order of the suite.
         difference: the first in a run that no finding is about.
         invalid: why it cannot be planted; empty if it can.
+        failing: the first test by which a requirement fails, and its run, if runs are kept.
     """
 
     mutant: Mutant
@@ -76,6 +60,7 @@ class Tried:
     findings: tuple[Finding, ...] = ()
     difference: Difference | None = None
     invalid: str = ""
+    failing: tuple[str, Recorded] | None = field(default=None, compare=False)
 
     @property
     def killed(self) -> bool:
@@ -110,6 +95,15 @@ class Score:
     def rest(self) -> int:
         """The mutants that are not equivalent."""
         return self.mutants - self.equivalent
+
+
+def failing_runs(tried: Iterable[Tried]) -> dict[str, Recorded]:
+    """The runs that were kept of mutants which are not held out, by test and mutant."""
+    return {
+        f"{one.failing[0]} with {one.mutant.identity}": one.failing[1]
+        for one in tried
+        if one.failing is not None and one.mutant.third != HELD_OUT
+    }
 
 
 def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:

@@ -109,10 +109,10 @@ def campaign(tmp_path):
 def tried(campaign):
     """Plays mutants: by default all of the campaign, in one process, by the first test."""
 
-    def made(mutants=None, *, tests=1, jobs=1, every=False):
+    def made(mutants=None, *, tests=1, jobs=1, **options):
         suite = record_suite(campaign, "lift", rides(tests, 1), jobs=1)
         chosen = code_mutants(campaign.code) if mutants is None else mutants
-        return play_mutants(suite, chosen, jobs=jobs, every=every)
+        return play_mutants(suite, chosen, jobs=jobs, **options)
 
     return made
 

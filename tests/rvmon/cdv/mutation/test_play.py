@@ -1,18 +1,22 @@
 """What becomes of mutants: killed and by what, or alive, and nothing of it stays."""
 
 import multiprocessing
+from dataclasses import replace
 from functools import partial
 
 import pytest
 from tests.rvmon.cdv.mutation.conftest import lift_of
 
 from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.mutant import HELD_OUT
 from rvmon.cdv.mutation.plant import plant
 from rvmon.cdv.mutation.question import Missing, missing
+from rvmon.cdv.mutation.spec_mutants import spec_mutants, try_spec_mutants
 from rvmon.cdv.mutation.suite import record_suite
-from rvmon.cdv.mutation.tried import How, scored
+from rvmon.cdv.mutation.tried import How, failing_runs, scored
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
+from rvmon.loading import load
 
 pytestmark = [
     pytest.mark.process,
@@ -128,6 +132,22 @@ def test_the_code_as_it_is_differs_nowhere(tried, changed):
     (one,) = tried([changed("Lift.ride", DOOR, f"{DOOR}  # as it is")])
     assert not one.killed
     assert one.difference is None
+
+
+def test_runs_of_faulty_code_judge_requirements(campaign, tried, changed):
+    """They tell bounds apart that the code as it is never comes near; none is held out."""
+    mutants = [
+        replace(changed("Lift.ride", TOLD, f"{TOLD}; {TOLD}"), ordinal=number)
+        for number in range(9)
+    ]
+    found = tried(mutants, keep=True)
+    runs = failing_runs(found)
+    assert {*runs} == {f"second with {one.identity}" for one in mutants if one.third != HELD_OUT}
+    assert 0 < len(runs) < len(mutants)
+    spec = load(campaign.robots["lift"].spec)
+    judged = try_spec_mutants(spec, spec_mutants(spec.checked), runs)
+    later = next(one for one in judged if one.mutant.after == "upon start then within 4 s door")
+    assert (later.test, later.was, later.now) == (next(iter(runs)), "F", "P")
 
 
 def test_results_do_not_depend_on_processes(campaign, tried):

@@ -9,9 +9,10 @@ from rvmon.cdv.mutation.equivalent import equivalents
 from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
 from rvmon.cdv.mutation.page import mutation_page
 from rvmon.cdv.mutation.question import readers
+from rvmon.cdv.mutation.record import Difference
 from rvmon.cdv.mutation.report import MutationReport, SuiteTried
 from rvmon.cdv.mutation.text import report_text
-from rvmon.cdv.mutation.tried import Difference, Finding, How, Tried
+from rvmon.cdv.mutation.tried import Finding, How, Tried
 from rvmon.errors import RvmonError
 from rvmon.loading import loads
 
