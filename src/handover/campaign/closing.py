@@ -11,6 +11,7 @@ from handover.generator.out_of_turn import out_of_turn
 from handover.model import handover_network
 from rvmon.cdv.close.witnesses import EDGES
 from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
+from rvmon.coverage.requirements import AT, JUST_BEFORE
 
 if TYPE_CHECKING:
     from handover.generator.abstract_test import AbstractTest
@@ -84,15 +85,18 @@ def query_of(group: str, item: str) -> str:
         return "E<> robot.done and timedOut and pressureRead == OK"
     if group == "ending":
         return f"E<> {_OUTCOMES[item]}"
-    if item in ("just before the deadline", "at the deadline"):
+    if item in (JUST_BEFORE, AT):
         return _CLAIMS.get(group, "")
     return ""
 
 
 _ONLY_LEGACY = "only the legacy robot does so"
 _IN_SIGHT = "the world's camera always sees the piece"
-_HELD = "a hand that holds the piece is near it: with pressure right, location is right"
 _NO_DELAY = "the robot takes time from what it is told to what it does about it"
+_SOON = "the robot reacts in a fixed time, far from the limit"
+_EXACT = "the robot waits 0.5 s between readings, 2 s after a release, and no nanosecond more or less"
+_APART = "instants that nothing ties together, of the human and of the arm's paths, do not coincide"
+_HELD = "what does not slip on the way is held: a human who moves away lets go first, and never pulls"
 _POLLS = "the robot gives up after many polls, never at the first"
 
 UNREACHABLE = tuple(
@@ -110,13 +114,6 @@ UNREACHABLE = tuple(
         "there is no way to `decide` but with a reading": [
             ("", 'self.outcome = "not released: nothing was sensed"')
         ],
-        _HELD: [
-            ("situation", "yes × yes × no × kept"),
-            ("situation", "no × yes × no × kept"),
-            ("R1", "`location_ok` decides"),
-            ("R2", "`location_ok` decides"),
-        ],
-        "readings and `sensed` are of one instant": [("R1", "`sensed` decides")],
         _NO_DELAY: [(f"`{name}` edges", "start → P") for name in ("R1", "R3", "R4")],
         _POLLS: [
             ("pairs of transitions", "reset → receive_activation → done"),

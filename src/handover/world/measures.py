@@ -11,12 +11,12 @@ from handover.world import parameters as p
 from handover.world.scene import Scene
 
 
-def contact_force(body: pymunk.Body, other: pymunk.Body) -> float:
-    """N between two bodies in the last physics step, by contact alone; 0 if they do not touch."""
+def contact_force(body: pymunk.Body, *others: pymunk.Body) -> float:
+    """N between a body and others in the last physics step, by contact alone; 0 without any."""
     impulses: list[float] = []
 
     def collect(arbiter: pymunk.Arbiter) -> None:
-        if other in arbiter.bodies:
+        if any(touching in others for touching in arbiter.bodies):
             impulses.append(arbiter.total_impulse.length)
 
     body.each_arbiter(collect)

@@ -68,7 +68,6 @@ class World:
         self._planned_until = 0
         self._at_rest = False
         self._jump = jump
-        self._hand_in_plane = scene_faults.hand_in_plane
         self._film = Film(self.scene) if record_poses else None
         self.bus.tap(self._record)
         self._wake(0.0)
@@ -132,8 +131,7 @@ class World:
             self.scene.space.step(p.STEP_NS / p.NS)
             self._step += 1
             self._stepped += 1
-            if self._hand_in_plane:
-                self._truth.step()
+            self._truth.step()
             if self._step % p.WATCH_STEPS == 0 and not self._at_rest:
                 self._at_rest = self._step >= self._planned_until and self._is_still()
                 self._watch()
