@@ -47,6 +47,7 @@ def closing() -> Closing:
     """What the campaign knows of its own holes."""
     return Closing(
         strategies=("pseudorandom", "constrained", "disturbed"),
+        written=("directed",),
         fixed=("horizon_s", "faults.noise_m"),
         biased=out_of_turn,
         model=ClosingModel(
@@ -114,7 +115,46 @@ UNREACHABLE = tuple(
         "there is no way to `decide` but with a reading": [
             ("", 'self.outcome = "not released: nothing was sensed"')
         ],
-        _NO_DELAY: [(f"`{name}` edges", "start → P") for name in ("R1", "R3", "R4")],
+        _NO_DELAY: [
+            (f"`{name}` edges", "start → P") for name in ("R1", "R3", "R4", "T11", "T19", "T27")
+        ],
+        "readings and `sensed` are of one instant; what was not read counts as bad": [
+            ("R1", "`sensed` decides"),
+            ("T5", "`fully_read` decides"),
+        ],
+        _SOON: [
+            *((name, JUST_BEFORE) for name in ("T5", "T11", "T30")),
+            *((name, AT) for name in ("T5", "T11", "T30")),
+            ("`T30` locations", "A"),
+            ("`T30` edges", "start → A"),
+            ("`T30` edges", "A → P"),
+        ],
+        _EXACT: [
+            *(("`T28` locations", place) for place in ("B", "C")),
+            *(("`T28` edges", edge) for edge in ("A → B", "A → C", "B → P")),
+            ("T28", "`always[1 ns, 499999999 ns] not sensors_read` decides"),
+            ("T28", "`eventually[1 ns, 500 ms] (sensors_read or timed_out)` decides"),
+            *(("`T31` locations", place) for place in ("B", "C")),
+            *(("`T31` edges", edge) for edge in ("A → C", "B → P", "C → P")),
+            ("T31", "`for 1999999999 ns not done` decides"),
+            ("T31", "`within 2100 ms done` decides"),
+        ],
+        _APART: [
+            ("`T23` edges", "start → P"),
+            ("`T25` edges", "start → P"),
+            ("T25", AT),
+            ("T27", AT),
+        ],
+        _HELD: [
+            ("`T5` edges", "start → P"),
+            ("T9", "`gripper_holds` decides"),
+            ("T9", "`not gripper_holds since person_holds` decides"),
+        ],
+        "three plans take 6.6 s at most": [("T19", AT)],
+        "the human's first signal is 5 s after the reset, or later": [("`T21` edges", "start → P")],
+        "who is not near does not hold: with location, pressure would be misread as well": [
+            ("T3", "`location_ok and not true_location` decides")
+        ],
         _POLLS: [
             ("pairs of transitions", "reset → receive_activation → done"),
             ("pairs of transitions", "send_signal → receive_readiness → done"),

@@ -6,6 +6,7 @@ Sensors and scene may be disturbed as well, in ways that tests of the strategy `
 from __future__ import annotations
 
 import random
+from collections.abc import Collection, Sequence
 from typing import Literal
 
 from handover.generator.abstract_test import (
@@ -26,17 +27,15 @@ _POSTURES: tuple[Literal["hgazeOk", "hlocationOk", "hpressureOk"], ...] = (
     "hpressureOk",
 )
 
-_PAUSES = ((0, 20), (60, 180), (240, 258), (315, 385))
+_PAUSES = ((0, 20), (0, 20), (60, 180), (240, 258), (315, 385))
 """Units of 0.05 s; the third is as long as the robot takes to come, the last nearly too long."""
 
 _SENSORS = {
-    "sound": SensorFaults(),
     "noisy": SensorFaults(noise_m=NOISE_M[1]),
     "late": SensorFaults(delay_s=DELAY_S[1]),
     "lossy": SensorFaults(loss=LOSS[1]),
 }
 _SCENES = {
-    "sound": SceneFaults(),
     "greasy": SceneFaults(friction=GREASY),
     "few paths": SceneFaults(plan_failure=PLAN_FAILURE[1]),
     "no path": SceneFaults(plan_failure=1.0),
@@ -64,13 +63,13 @@ def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
     turns: dict[str, list[Action]] = {turn: [] for turn in _TURNS}
     for posture in _POSTURES:
         turn = choose(f"turn of {posture}", _TURNS)
-        turns[turn].append(SetParam(posture, choose(posture, (1, 0))))
+        turns[turn].append(SetParam(posture, choose(posture, (1, 1, 1, 0))))
     before, activated, ready, after = (turns[turn] for turn in _TURNS)
     pauses = {
         what: SetParam("time", rng.randint(*choose(f"pause {what}", _PAUSES)))
         for what in ("before activating", "before being ready", "afterwards")
     }
-    is_patient = choose("waits to be informed", (True, False))
+    is_patient = choose("waits to be informed", (True, True, False))
     return AbstractTest(
         name=f"out-of-turn-{seed}",
         strategy="closed",
@@ -88,6 +87,11 @@ def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
             pauses["afterwards"],
             *_AFTERWARDS[choose("afterwards", tuple(_AFTERWARDS))],
         ),
-        faults=_SENSORS[choose("sensors", tuple(_SENSORS))],
-        scene=_SCENES[choose("scene", tuple(_SCENES))],
+        faults=_SENSORS.get(choose("sensors", _mostly_sound(_SENSORS)), SensorFaults()),
+        scene=_SCENES.get(choose("scene", _mostly_sound(_SCENES)), SceneFaults()),
     )
+
+
+def _mostly_sound(faults: Collection[str]) -> Sequence[str]:
+    """Faults, and as often none."""
+    return (*faults, *["sound"] * len(faults))
