@@ -95,9 +95,9 @@ _ONLY_LEGACY = "only the legacy robot does so"
 _IN_SIGHT = "the world's camera always sees the piece"
 _NO_DELAY = "the robot takes time from what it is told to what it does about it"
 _SOON = "the robot reacts in a fixed time, far from the limit"
-_EXACT = "the robot waits 0.5 s between readings, 2 s after a release, and no nanosecond more or less"
+_EXACT = "the robot waits 0.5 s between readings and 2 s after a release, to the nanosecond"
 _APART = "instants that nothing ties together, of the human and of the arm's paths, do not coincide"
-_HELD = "what does not slip on the way is held: a human who moves away lets go first, and never pulls"
+_HELD = "what does not slip on the way is held: a human who moves away lets go first"
 _POLLS = "the robot gives up after many polls, never at the first"
 
 UNREACHABLE = tuple(
