@@ -5,7 +5,7 @@ import io
 import json
 
 import pytest
-from rvmon.timed.language.queries import chosen_queries
+from rvmon.timed.language.elaborate import chosen_queries
 
 from handover.campaign.closing import UNREACHABLE, query_of
 from handover.cli import main
