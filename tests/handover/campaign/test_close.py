@@ -25,7 +25,7 @@ def closed(tmp_path_factory):
 
 
 def test_the_model_leads_to_all_outcomes_at_once(closed):
-    """A dozen tests shows all that random ones do not: a release, and the readings that withhold."""
+    """A dozen show all that random ones do not: a release, and the readings that withhold."""
     folder, code, told = closed
     document = json.loads((folder / "closing.json").read_text())
     met = {tuple(goal) for test in document["tests"] for goal in test["added"]}
