@@ -11,6 +11,7 @@ from handover.generator.out_of_turn import out_of_turn
 from handover.model import handover_network
 from rvmon.cdv.close.witnesses import EDGES
 from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
+from rvmon.coverage.requirements import AT, JUST_BEFORE
 
 if TYPE_CHECKING:
     from handover.generator.abstract_test import AbstractTest
@@ -46,6 +47,7 @@ def closing() -> Closing:
     """What the campaign knows of its own holes."""
     return Closing(
         strategies=("pseudorandom", "constrained", "disturbed"),
+        written=("directed",),
         fixed=("horizon_s", "faults.noise_m"),
         biased=out_of_turn,
         model=ClosingModel(
@@ -84,14 +86,17 @@ def query_of(group: str, item: str) -> str:
         return "E<> robot.done and timedOut and pressureRead == OK"
     if group == "ending":
         return f"E<> {_OUTCOMES[item]}"
-    if item in ("just before the deadline", "at the deadline"):
+    if item in (JUST_BEFORE, AT):
         return _CLAIMS.get(group, "")
     return ""
 
 
 _ONLY_LEGACY = "only the legacy robot does so"
-_HELD = "a hand that holds the piece is near it: with pressure right, location is right"
 _NO_DELAY = "the robot takes time from what it is told to what it does about it"
+_SOON = "the robot reacts in a fixed time, far from the limit"
+_EXACT = "the robot waits 0.5 s between readings and 2 s after a release, to the nanosecond"
+_APART = "instants that nothing ties together, of the human and of the arm's paths, do not coincide"
+_HELD = "what does not slip on the way is held: a human who moves away lets go first"
 _POLLS = "the robot gives up after many polls, never at the first"
 
 UNREACHABLE = tuple(
@@ -105,14 +110,46 @@ UNREACHABLE = tuple(
             ("statements of common", "self.node.subscribe(HUMAN_SIGNALS)"),
             ("branches of common", "self.node.subscribe(HUMAN_SIGNALS)"),
         ],
-        _HELD: [
-            ("situation", "yes × yes × no × kept"),
-            ("situation", "no × yes × no × kept"),
-            ("R1", "`location_ok` decides"),
-            ("R2", "`location_ok` decides"),
+        _NO_DELAY: [
+            (f"`{name}` edges", "start → P") for name in ("R1", "R3", "R4", "T11", "T19", "T27")
         ],
-        "readings and `sensed` are of one instant": [("R1", "`sensed` decides")],
-        _NO_DELAY: [(f"`{name}` edges", "start → P") for name in ("R1", "R3", "R4")],
+        "readings and `sensed` are of one instant; what was not read counts as bad": [
+            ("R1", "`sensed` decides"),
+            ("T5", "`fully_read` decides"),
+        ],
+        _SOON: [
+            *((name, JUST_BEFORE) for name in ("T5", "T11", "T30")),
+            *((name, AT) for name in ("T5", "T11", "T30")),
+            ("`T30` locations", "A"),
+            ("`T30` edges", "start → A"),
+            ("`T30` edges", "A → P"),
+        ],
+        _EXACT: [
+            *(("`T28` locations", place) for place in ("B", "C")),
+            *(("`T28` edges", edge) for edge in ("A → B", "A → C", "B → P")),
+            ("T28", "`always[1 ns, 499999999 ns] not sensors_read` decides"),
+            ("T28", "`eventually[1 ns, 500 ms] (sensors_read or timed_out)` decides"),
+            *(("`T31` locations", place) for place in ("B", "C")),
+            *(("`T31` edges", edge) for edge in ("A → C", "B → P", "C → P")),
+            ("T31", "`for 1999999999 ns not done` decides"),
+            ("T31", "`within 2100 ms done` decides"),
+        ],
+        _APART: [
+            ("`T23` edges", "start → P"),
+            ("`T25` edges", "start → P"),
+            ("T25", AT),
+            ("T27", AT),
+        ],
+        _HELD: [
+            ("`T5` edges", "start → P"),
+            ("T9", "`gripper_holds` decides"),
+            ("T9", "`not gripper_holds since person_holds` decides"),
+        ],
+        "three plans take 6.6 s at most": [("T19", AT)],
+        "the human's first signal is 5 s after the reset, or later": [("`T21` edges", "start → P")],
+        "who is not near does not hold: with location, pressure would be misread as well": [
+            ("T3", "`location_ok and not true_location` decides")
+        ],
         _POLLS: [
             ("pairs of transitions", "reset → receive_activation → done"),
             ("pairs of transitions", "send_signal → receive_readiness → done"),

@@ -1,8 +1,12 @@
-"""Tests of a human who knows the protocol and does some of it before, or after, it is time."""
+"""Tests of a human who knows the protocol and does some of it before, or after, it is time.
+
+Sensors and scene may be disturbed as well, in ways that tests of the strategy `disturbed` have.
+"""
 
 from __future__ import annotations
 
 import random
+from collections.abc import Collection, Sequence
 from typing import Literal
 
 from handover.generator.abstract_test import (
@@ -12,6 +16,8 @@ from handover.generator.abstract_test import (
     SendSignal,
     SetParam,
 )
+from handover.generator.disturbed import DELAY_S, GREASY, LOSS, NOISE_M, PLAN_FAILURE
+from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv.closing import Choose
 
 _TURNS = ("before activating", "after activating", "before being ready", "after being ready")
@@ -20,6 +26,26 @@ _POSTURES: tuple[Literal["hgazeOk", "hlocationOk", "hpressureOk"], ...] = (
     "hlocationOk",
     "hpressureOk",
 )
+
+_PAUSES = ((0, 20), (0, 20), (60, 180), (240, 258), (315, 385))
+"""Units of 0.05 s; the third is as long as the robot takes to come, the last nearly too long."""
+
+_SENSORS = {
+    "noisy": SensorFaults(noise_m=NOISE_M[1]),
+    "late": SensorFaults(delay_s=DELAY_S[1]),
+    "lossy": SensorFaults(loss=LOSS[1]),
+}
+_SCENES = {
+    "greasy": SceneFaults(friction=GREASY),
+    "few paths": SceneFaults(plan_failure=PLAN_FAILURE[1]),
+    "no path": SceneFaults(plan_failure=1.0),
+}
+_AFTERWARDS: dict[str, tuple[Action, ...]] = {
+    "stays": (),
+    "lets go": (SetParam("hpressureOk", 0),),
+    "looks away": (SetParam("hgazeOk", 0),),
+    "says it again": (SendSignal("humanIsReady"),),
+}
 
 
 def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
@@ -37,15 +63,13 @@ def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
     turns: dict[str, list[Action]] = {turn: [] for turn in _TURNS}
     for posture in _POSTURES:
         turn = choose(f"turn of {posture}", _TURNS)
-        turns[turn].append(SetParam(posture, choose(posture, (1, 0))))
+        turns[turn].append(SetParam(posture, choose(posture, (1, 1, 1, 0))))
     before, activated, ready, after = (turns[turn] for turn in _TURNS)
     pauses = {
-        what: SetParam(
-            "time", rng.randint(*choose(f"pause {what}", ((1, 20), (60, 180), (200, 300))))
-        )
-        for what in ("before activating", "before being ready")
+        what: SetParam("time", rng.randint(*choose(f"pause {what}", _PAUSES)))
+        for what in ("before activating", "before being ready", "afterwards")
     }
-    is_patient = choose("waits to be informed", (True, False))
+    is_patient = choose("waits to be informed", (True, True, False))
     return AbstractTest(
         name=f"out-of-turn-{seed}",
         strategy="closed",
@@ -60,5 +84,14 @@ def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
             *ready,
             SendSignal("humanIsReady"),
             *after,
+            pauses["afterwards"],
+            *_AFTERWARDS[choose("afterwards", tuple(_AFTERWARDS))],
         ),
+        faults=_SENSORS.get(choose("sensors", _mostly_sound(_SENSORS)), SensorFaults()),
+        scene=_SCENES.get(choose("scene", _mostly_sound(_SCENES)), SceneFaults()),
     )
+
+
+def _mostly_sound(faults: Collection[str]) -> Sequence[str]:
+    """Faults, and as often none."""
+    return (*faults, *["sound"] * len(faults))

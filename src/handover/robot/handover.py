@@ -241,10 +241,11 @@ class HandoverRobot:
     def has_piece(self) -> bool:
         """Whether the piece is seen where the gripper holds it out."""
         found = self.sensors.piece()
-        if found is None:
-            return False
         x, z = HANDOVER_POINT
-        return math.hypot(found[0] - x, found[1] + GRIP_ABOVE_CENTRE - z) < PIECE_TOLERANCE
+        return (
+            found is not None
+            and math.hypot(found[0] - x, found[1] + GRIP_ABOVE_CENTRE - z) < PIECE_TOLERANCE
+        )
 
     def hand_is_close(self) -> bool:
         """Whether a hand is seen so near that the gripper would close on it."""

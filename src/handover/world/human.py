@@ -86,13 +86,12 @@ class Human:
 
     def holding_force(self) -> float:
         """N between hand and piece, by grasp and by touch."""
-        grasp = 0.0 if self._grasp is None else self._grasp.force()
-        return grasp + contact_force(self._scene.hand, self._scene.piece)
+        return self._grasp_force() + contact_force(self._scene.hand, self._scene.piece)
 
     def hand_force(self) -> float:
         """N between the hand and all that is the robot's or that the robot holds."""
-        parts = (self._scene.links[2], *self._scene.fingers)
-        return self.holding_force() + sum(contact_force(self._scene.hand, one) for one in parts)
+        parts = (self._scene.piece, self._scene.links[2], *self._scene.fingers)
+        return self._grasp_force() + contact_force(self._scene.hand, *parts)
 
     def holds(self) -> bool:
         """Whether the hand has taken hold of the piece."""
@@ -101,6 +100,9 @@ class Human:
     def shares_piece(self) -> bool:
         """Whether robot and human both hold the piece, by the forces between them and it."""
         return min(gripper_force(self._scene), self.holding_force()) >= p.PRESSURE_MIN
+
+    def _grasp_force(self) -> float:
+        return 0.0 if self._grasp is None else self._grasp.force()
 
     def _start_to_look(self, offset: float, distance: float, angle: float) -> None:
         piece_x, piece_z = seen_piece(self._scene)

@@ -14,12 +14,12 @@ _BETWEEN_PADS = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
 """On the palm, from its centre, metres."""
 
 
-def contact_force(body: pymunk.Body, other: pymunk.Body) -> float:
-    """N between two bodies in the last physics step, by contact alone; 0 if they do not touch."""
+def contact_force(body: pymunk.Body, *others: pymunk.Body) -> float:
+    """N between a body and others in the last physics step, by contact alone; 0 without any."""
     impulses: list[float] = []
 
     def collect(arbiter: pymunk.Arbiter) -> None:
-        if other in arbiter.bodies:
+        if any(touching in others for touching in arbiter.bodies):
             impulses.append(arbiter.total_impulse.length)
 
     body.each_arbiter(collect)

@@ -79,6 +79,8 @@ class Closing:
     Attributes:
         strategies: those that tests are drawn from; default: all. Tests with a planted fault are
             passed over.
+        written: strategies whose tests people have written: each is played once, before any is
+            made by chance.
         fixed: fields of tests that are never changed, such as `horizon_s` or `faults.noise_m`.
         biased: makes a test whose choices are drawn by what is given to it, with a seed for the
             rest: so they can be biased towards what is open.
@@ -87,6 +89,7 @@ class Closing:
     """
 
     strategies: Sequence[str] = ()
+    written: Sequence[str] = ()
     fixed: Collection[str] = ()
     biased: Callable[[Choose, int], Test] | None = None
     model: ClosingModel | None = None

@@ -15,9 +15,10 @@ from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.documents import to_json
 from rvmon.cdv.examples import choose_examples
 from rvmon.cdv.execute import execute
+from rvmon.cdv.files import TestError
 from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign
 from rvmon.cdv.outcome import Results
-from rvmon.cdv.plan import plan, plan_of_folder
+from rvmon.cdv.plan import Plan, plan, plan_of_folder
 from rvmon.cdv.program import typed
 from rvmon.cdv.run_share import Decision
 from rvmon.cdv.summarise import summarise
@@ -77,6 +78,9 @@ def conduct(
         strategies: that make tests.
         arguments: those of `add_campaign_options`.
         words: the command that runs it again, and its other options.
+
+    Raises:
+        TestError: there is nothing to be played.
     """
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
@@ -90,6 +94,8 @@ def conduct(
     for name in campaign.robots if folder is not None else ():
         coverage_model(campaign, name)
     planned = len(chosen.jobs())
+    if not planned:
+        _refuse_nothing(chosen)
     command, *others = words
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
     if arguments.suite is not None:
@@ -111,6 +117,20 @@ def conduct(
     elif kept is not None:
         kept.path.unlink(missing_ok=True)
     return conducted
+
+
+def _refuse_nothing(chosen: Plan) -> None:
+    """Say why no test is to be played.
+
+    Raises:
+        TestError: always.
+    """
+    tests = [test for several in chosen.tests.values() for test in several]
+    robots = " and ".join(chosen.campaign.robots)
+    written_for = " and ".join(sorted({test.robot for test in tests if test.robot is not None}))
+    made_by = ", ".join(f"`{name}`" for name in chosen.tests)
+    why = f"all of {made_by} are for the robot {written_for}" if tests else f"{made_by} makes none"
+    raise TestError(f"no test for the robot {robots}: {why}: choose another robot or strategy")
 
 
 def specs_of(campaign: Campaign) -> dict[str, Spec]:

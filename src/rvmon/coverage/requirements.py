@@ -50,9 +50,9 @@ MOST_LOCATIONS = 50
 """Larger automata are not shown: nobody would look at what of them was seen."""
 
 
-def _item(name: str) -> Item:
+def _item(name: str, *, by_failure: bool = False) -> Item:
     """An item; no run should show what only a failure does, so that has no goal."""
-    fails = name in (AFTER, FAILURE) or name.endswith(edge_name(("", FAILURE)))
+    fails = by_failure or name in (AFTER, FAILURE) or name.endswith(edge_name(("", FAILURE)))
     return Item(name, BinKind.IGNORE if fails else BinKind.GOAL)
 
 
@@ -102,13 +102,16 @@ class WatchedRequirement:
     def groups(self) -> Iterator[Group]:
         """What may be hit."""
         name = self.requirement.id
-        items = [TRIGGERED, PASSED, *(decides(one.part) for one in self.variants)]
+        items = [_item(TRIGGERED), _item(PASSED)]
+        items += [_item(decides(one.part), by_failure=one.by_failure) for one in self.variants]
         if self.deadline is not None:
-            items += [JUST_BEFORE, AT, AFTER]
-        yield group_of(name, Subject.REQUIREMENT, [*map(_item, items)])
+            items += map(_item, (JUST_BEFORE, AT, AFTER))
+        yield group_of(name, Subject.REQUIREMENT, items)
         if self.graph is not None:
-            places = [place.name for place in self.graph.places]
             edges = dict.fromkeys(map(edge_name, _steps(self.graph)))
+            # What is owed for ever is met by the end of the run alone: no edge leads to `P`.
+            entered = {self.graph.places[0].name, *(one.target for one in self.graph.edges)}
+            places = [place.name for place in self.graph.places if place.name in entered]
             yield group_of(locations_of(name), Subject.STATES, [*map(_item, places)])
             yield group_of(edges_of(name), Subject.TRANSITIONS, [*map(_item, edges)])
 

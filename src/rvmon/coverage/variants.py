@@ -5,13 +5,34 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from enum import Enum, auto
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import Requirement
-from rvmon.spec.checked.tense import is_pulse
+from rvmon.spec.checked.tense import has_future, is_pulse, is_timeless
 from rvmon.spec.print.printer import format_formula
 
 _CONNECTIVES = (BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES)
+
+
+_EITHER_WAY = (BinaryOp.IFF, BinaryOp.XOR, UnaryOp.RISE, UnaryOp.FALL)
+"""What may become true as well as false where an operand does."""
+
+
+class _Change(Enum):
+    """What a formula is without a part: implied by what it was, implying it, or neither."""
+
+    WEAKER = auto()
+    STRONGER = auto()
+    OTHER = auto()
+
+    def within(self, op: UnaryOp | BinaryOp, side: str = "") -> _Change:
+        """The same of what an operator makes of it."""
+        if op in _EITHER_WAY or self is _Change.OTHER:
+            return _Change.OTHER
+        if op is UnaryOp.NOT or (op is BinaryOp.IMPLIES and side == "left"):
+            return _Change.STRONGER if self is _Change.WEAKER else _Change.WEAKER
+        return self
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,46 +42,63 @@ class Variant:
     Attributes:
         part: the operand, as text; the same twice is numbered.
         requirement: without it.
+        by_failure: whether, of values that are known, only a failure can tell the two apart.
     """
 
     part: str
     requirement: Requirement
+    by_failure: bool
 
 
 def variants_of(requirement: Requirement) -> list[Variant]:
     """All variants of a requirement: of its trigger first, then of what it owes."""
+    owed = requirement.consequent
+    is_steady = _is_steady(owed)
     changed = [
-        (part, replace(requirement, trigger=without, pulse=is_pulse(without)))
-        for part, without in _without_one(requirement.trigger)
+        (part, replace(requirement, trigger=without, pulse=is_pulse(without)), False)
+        for part, without, _ in _without_one(requirement.trigger)
     ]
     changed += [
-        (part, replace(requirement, consequent=without))
-        for part, without in _without_one(requirement.consequent)
+        (part, replace(requirement, consequent=without), is_steady and change is _Change.WEAKER)
+        for part, without, change in _without_one(owed)
     ]
     found: list[Variant] = []
     counts: Counter[str] = Counter()
-    for part, other in changed:
+    for part, other, by_failure in changed:
         text = format_formula(part)
         counts[text] += 1
         name = text if counts[text] == 1 else f"{text} ({counts[text]})"
-        found.append(Variant(name, replace(other, property="", ctl=None)))
+        found.append(Variant(name, replace(other, property="", ctl=None), by_failure))
     return found
 
 
-def _without_one(formula: Formula) -> Iterator[tuple[Formula, Formula]]:
-    """Each operand of a connective in a formula, and the formula without it."""
+def _is_steady(owed: Formula) -> bool:
+    """Whether all that meets a formula does so at the same instant.
+
+    It is that of the trigger, or the last one of `always`, if nothing that was can settle it. Then
+    what meets it passes no sooner where less is owed.
+    """
+    if isinstance(owed, Unary) and owed.op is UnaryOp.ALWAYS:
+        return is_timeless(owed.operand)
+    return not has_future(owed)
+
+
+def _without_one(formula: Formula) -> Iterator[tuple[Formula, Formula, _Change]]:
+    """Each operand of a connective in a formula, the formula without it, and how that differs."""
     match formula:
         case Binary(op=op, left=left, right=right):
             for side, operand in (("left", left), ("right", right)):
                 # Of a chain, the operands are the links, not what they are joined to.
                 chained = isinstance(operand, Binary) and operand.op is op
                 if op in _CONNECTIVES and not chained:
-                    yield operand, _rest(formula, side)
-                for part, without in _without_one(operand):
-                    yield part, _with(formula, side, without)
-        case Unary(operand=operand):
-            for part, without in _without_one(operand):
-                yield part, replace(formula, operand=without)
+                    change = _Change.WEAKER if op is BinaryOp.AND else _Change.STRONGER
+                    yield operand, _rest(formula, side), change
+                for part, without, change in _without_one(operand):
+                    outer = change.within(op, side)
+                    yield part, _with(formula, side, without), outer
+        case Unary(op=op, operand=operand):
+            for part, without, change in _without_one(operand):
+                yield part, replace(formula, operand=without), change.within(op)
         case _:
             return
 

@@ -19,10 +19,13 @@ ZERO = "·"
 """A count of nothing, so that the others stand out."""
 
 WIDTH = 4
-"""Characters of a column of counts."""
+"""Characters of a column of counts, at least: two more than the longest has."""
 
 WIDE = 7
 """The same with intervals."""
+
+ABREAST = 14
+"""Characters of a verdict's columns, of all groups that fit into 80."""
 
 
 def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None = None) -> Group:
@@ -36,19 +39,35 @@ def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None
     from rich.console import Group
     from rich.text import Text
 
-    abreast = 2 if table.shows_intervals else 3  # so many fit into 80 columns
+    beside = beside or {}
+    width = _width(table, *beside.values())
+    abreast = max(1, ABREAST // width)
     grids = [
-        _grid(table, beside or {}, table.groups[first : first + abreast], with_checked=not first)
+        _grid(table, beside, table.groups[first : first + abreast], width, with_checked=not first)
         for first in range(0, len(table.groups), abreast)
     ]
     notes = (Text(note, style="dim") for note in table.notes)
     return Group(Text(table.title, style="bold"), *grids, *notes)
 
 
+def _width(table: VerdictTable, *others: VerdictTable) -> int:
+    """Characters of a column of counts: no two counts run together."""
+    counts = (
+        count
+        for one in (table, *others)
+        for group in one.groups
+        for by_verdict in group.counts.values()
+        for count in by_verdict.values()
+    )
+    longest = len(str(max(counts, default=0)))
+    return max(WIDE if table.shows_intervals else WIDTH, longest + 2)
+
+
 def _grid(
     table: VerdictTable,
     beside: Mapping[str, VerdictTable],
     groups: Sequence[RunGroup],
+    width: int,
     *,
     with_checked: bool,
 ) -> Table:
@@ -67,7 +86,6 @@ def _grid(
     has_checked = with_checked and any(one.checked for one in (table, *others.values()))
     if has_checked:
         grid.add_column(Text("model\nchecking"), justify="center")
-    width = WIDE if table.shows_intervals else WIDTH
     letters = "".join(f"{verdict.value:>{width}}" for verdict in Verdict)
     for group in groups:
         runs = f"{group.name} ({group.runs})"

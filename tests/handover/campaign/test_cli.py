@@ -125,6 +125,13 @@ def test_the_page_and_the_terminal_count_the_same_physics(tmp_path, capsys):
     assert f"{told[1]} s of physics" in page
 
 
+def test_a_strategy_of_another_robot_is_refused(capsys):
+    """Nothing would be played: place, cause, mend, and exit code 2."""
+    assert main(["run", "--legacy", "--strategy", "disturbed", "--tests", "2"]) == 2
+    told = " ".join(capsys.readouterr().err.split())
+    assert "no test for the robot legacy: all of `disturbed` are for the robot correct" in told
+
+
 def test_what_an_earlier_campaign_left_is_told(tmp_path, capsys):
     """Its files stay and are counted; what this one writes over is not among them."""
     run = ["run", "--strategy", "pseudorandom", "--jobs", "1", "--out", str(tmp_path)]

@@ -22,7 +22,7 @@ def closed(tmp_path_factory):
     def make(folder):
         told = io.StringIO()
         with contextlib.redirect_stdout(told):
-            code = main(["close", "--tests", "8", "--jobs", "1", "--out", str(folder / "out")])
+            code = main(["close", "--tests", "12", "--jobs", "1", "--out", str(folder / "out")])
         (folder / "told.json").write_text(json.dumps([code, told.getvalue()]))
 
     folder = shared_folder(tmp_path_factory, "closed", make)
@@ -30,14 +30,14 @@ def closed(tmp_path_factory):
 
 
 def test_the_model_leads_to_all_outcomes_at_once(closed):
-    """Eight tests show all that random ones do not: a release, and the readings that withhold."""
+    """A dozen show all that random ones do not: a release, and the readings that withhold."""
     folder, code, told = closed
     document = json.loads((folder / "closing.json").read_text())
     met = {tuple(goal) for test in document["tests"] for goal in test["added"]}
     assert {("R1", "passed"), ("situation", "no × no × no × kept"), ("ending", "gave_up")} <= met
     assert code == 1
-    assert "8 tests" in told
-    assert document["ended"] == "after 8 tests"
+    assert "12 tests" in told
+    assert document["ended"] == "after 12 tests"
     assert len(document["open"]) == document["goals"] - document["met"]
 
 

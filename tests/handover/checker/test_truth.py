@@ -168,6 +168,7 @@ PLANTED = {
     "senses-one-poll-less": (other(sense_limit_s=4.5), "no-posture", "T26"),
     "reads-sooner": (other(sense_poll_s=0.4), "no-posture", "T28"),
     "reads-later": (other(sense_poll_s=0.6), "released", "T27"),
+    "reads-later-again": (other(sense_poll_s=0.6), "no-posture", "T28"),
     "keeps-its-polls": (other(shared_polls=True), "never-ready", "T24"),
     "polls-once-more": (other(poll_limit=201), "never-ready", "T23 T24"),
     "polls-once-more-at-first": (other(poll_limit=201), "nobody-comes", "T21 T22"),

@@ -1,7 +1,10 @@
 """What runs show of requirements."""
 
+import random
+
 from rvmon import loads
 from rvmon.coverage.hits import score
+from rvmon.spec.checked.goals import BinKind
 
 ANSWER = """signal a, b, c : bool
 requirement R
@@ -60,6 +63,58 @@ requirement R
     }
     never_c = [(0, {"a": False, "b": True, "c": False}), (1, {"a": True}), (5, {})]
     assert seen(text, never_c) == {"`c` decides": 1}
+
+
+FORMS = """signal a, b, c : bool
+requirement A1
+  upon rise(a)
+  then immediately (b and not (a and c) or once[0 s, 2 s] (b and c))
+requirement A2
+  upon rise(a)
+  then always (b and (a -> c) and not (a xor b and c))
+requirement A3
+  upon rise(a)
+  then always[1 s, 3 s] not (b or c)
+requirement A4
+  upon a and b
+  then always[0 s, 2 s] once[0 s, 3 s] (b and c)
+"""
+
+
+def test_parts_that_only_a_failure_tells_are_no_goals():
+    """No run without a failure shows one, and runs with failures show each."""
+    rng = random.Random(1)
+    spec = loads(FORMS)
+    groups = spec.coverage_model.model.groups
+    quiet = {
+        (name, item.name)
+        for name in spec.requirements
+        for item in groups[name].items.values()
+        if item.name.endswith("decides") and item.kind is BinKind.IGNORE
+    }
+    assert {
+        name: [part for of, part in sorted(quiet) if of == name] for name in spec.requirements
+    } == {
+        "A1": ["`b (2)` decides", "`b` decides", "`c (2)` decides", "`not (a and c)` decides"],
+        "A2": ["`a -> c` decides", "`b` decides", "`not (a xor b and c)` decides"],
+        "A3": ["`b` decides", "`c` decides"],
+        "A4": [],
+    }
+    missing = set(quiet)
+    for _ in range(300):
+        samples = [(t, {n: rng.random() < 0.5 for n in "abc"}) for t in range(rng.randint(1, 8))]
+        hits = spec.coverage_model.of(spec.recording(samples), None)
+        verdicts = spec.evaluate(samples).verdicts
+        shown = {(name, item) for name, item in quiet if item in hits.get(name, {})}
+        assert all(verdicts[name] == "F" for name, _ in shown)
+        missing -= shown
+    assert missing == {("A1", "`not (a and c)` decides"), ("A2", "`a -> c` decides")}  # others do
+
+
+def test_the_end_of_what_is_owed_for_ever_is_no_location():
+    """No edge leads to `P`, as only the end of the run meets it."""
+    spec = loads("signal a, b : bool\nrequirement R\n  upon a\n  then always not b\n")
+    assert [*spec.coverage_model.model.groups["`R` locations"].items] == ["start", "A", "F"]
 
 
 def test_automata():

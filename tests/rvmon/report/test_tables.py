@@ -97,6 +97,14 @@ def test_text_fits_into_80_columns(groups):
     assert all(name in shown for name in names)
 
 
+def test_wide_counts_stay_apart():
+    """Counts of campaigns of any size do not run together."""
+    rows = {"R1": counts(1680, 123308, 0, 7)}
+    wide = VerdictTable("wide", {"R1": ""}, tuple(RunGroup(n, 124995, rows) for n in "abc"))
+    for line in as_text(table_text(wide)).splitlines():
+        assert not line.startswith("R1") or line.split() == ["R1", "1680", "123308", "·", "7"]
+
+
 def test_latex_has_the_same_number_of_columns_in_every_row():
     """Rows of counts and their head agree with the column specification."""
     rows = [line for line in table_latex(OURS).splitlines() if line.endswith(r"\\")]

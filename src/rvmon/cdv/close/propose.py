@@ -7,7 +7,7 @@ import random
 from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import count
+from itertools import chain, count
 from typing import TypeVar
 
 from msgspec import structs
@@ -90,6 +90,7 @@ class Proposer:
         self._rng = random.Random(f"close/{seed}")  # noqa: S311 - repeatable, not secret
         self._learned = Learned()
         self._mutator = Mutator(campaign.test, campaign.closing.fixed, self._learned)
+        self._written = _of_strategies(campaign, campaign.closing.written, robot, 1, seed)
         self._streams = {
             name: _stream(campaign, name, robot, self._rng.getrandbits(32)) for name in strategies
         }
@@ -162,8 +163,11 @@ class Proposer:
         return Proposal(self._named(made, name, origin), origin, goal, (), answer)
 
     def _by_chance(self, goal: Goal) -> Proposal | None:
-        """A changed test, a biased one, or another of a strategy; `None` if none can be made."""
+        """A written test, then changed, biased and drawn ones; `None` if none can be made."""
         drawn: list[Draw] = []
+        written = next(self._written, None)
+        if written is not None:
+            return self._taken(written, goal, drawn)
         ways = [*(["draw"] if self._streams else []), *(["change"] if self._tests else [])]
         ways += ["bias"] if self._campaign.closing.biased is not None else []
         way = self._learned.choose(self._rng, "way", ways, drawn) if ways else ""
@@ -205,10 +209,14 @@ class Proposer:
             name = self._learned.choose(self._rng, "strategy", [*self._streams], drawn)
             new = next(self._streams[name], None)
             if new is not None:
-                origin = f"{new.name} of {name}"
-                return Proposal(self._named(new, self._name(), origin), origin, goal, drawn)
+                return self._taken(new, goal, drawn)
             del self._streams[name]
         return None
+
+    def _taken(self, test: Test, goal: Goal, drawn: Sequence[Draw]) -> Proposal:
+        """A test of a strategy as it is."""
+        origin = f"{test.name} of {test.strategy}"
+        return Proposal(self._named(test, self._name(), origin), origin, goal, drawn)
 
     def _nearest(self, goal: Goal) -> list[Played]:
         """The tests that met most of what a goal needs; any of those that are equally near."""
@@ -255,9 +263,18 @@ def _stream(campaign: Campaign, strategy: str, robot: str, seed: int) -> Iterato
     """The tests of a strategy, as long as it makes others than before."""
     before: Sequence[Test] = ()
     for number in count(seed):
-        made = plan(campaign, [strategy], tests=DRAWN, seed=number).tests[strategy]
-        usable = [one for one in made if one.mutation is None and one.robot in (None, robot)]
+        usable = [*_of_strategies(campaign, [strategy], robot, DRAWN, number)]
         if not usable or usable == before:
             return
         yield from usable
         before = usable
+
+
+def _of_strategies(
+    campaign: Campaign, strategies: Sequence[str], robot: str, tests: int, seed: int
+) -> Iterator[Test]:
+    """The tests of strategies that are for a robot without a planted fault."""
+    made = plan(campaign, strategies, tests=tests, seed=seed).tests if strategies else {}
+    for test in chain.from_iterable(made.values()):
+        if test.mutation is None and test.robot in (None, robot):
+            yield test

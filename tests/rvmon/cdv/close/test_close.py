@@ -247,6 +247,20 @@ def test_choices_are_biased_towards_what_is_open(dials):
     assert any(one.origin.startswith("choices biased towards") for one in closed.tests)
 
 
+def test_written_tests_come_first(dials):
+    """Each is played once, before any is made by chance."""
+
+    def written(count, seed):
+        return [Dials(name=f"w{n}", strategy="written", seed=1, left=n) for n in (2, 1)]
+
+    campaign = dials(written=("written",))
+    campaign = replace(campaign, strategies={**campaign.strategies, "written": written})
+    closed = close(campaign, "machine", strategies=("still",), jobs=1)
+    origins = [one.origin for one in closed.tests]
+    assert origins[:2] == ["w2 of written", "w1 of written"]
+    assert not any(origin.endswith("of written") for origin in origins[2:])
+
+
 def test_nonsense_of_a_campaign_is_told(dials):
     """A function that fails, one that makes no test, a query that is none."""
 
