@@ -79,17 +79,25 @@ def _header(summary: CampaignSummary, presentation: Presentation) -> ET.Element:
             {"class": "partial", "role": "alert"},
             f"Partial: {summary.cut_short} after {summary.finished} of {summary.planned} tests.",
         )
-    requirements = next(iter(summary.robots.values())).requirements
-    listed: list[Child] = []
-    for name, text in requirements.items():
-        listed += [e("dt", None, name), e("dd", None, text)]
+    robots_of: dict[tuple[str, str], list[str]] = {}
+    for robot in summary.robots.values():
+        for requirement in robot.requirements.items():
+            robots_of.setdefault(requirement, []).append(robot.title.lower())
+    common = [one for one, of in robots_of.items() if len(of) == len(summary.robots)]
+    others = [one for one in robots_of if one not in common]
+    more = None
+    if others:
+        whose = " and ".join(dict.fromkeys(of for one in others for of in robots_of[one]))
+        more = e(
+            "details", None, e("summary", None, f"{len(others)} more of {whose}"), _list(others)
+        )
     return e(
         "header",
         None,
         e(
             "h1",
             None,
-            f"{summary.finished} {presentation.tests}, {len(requirements)} requirements",
+            f"{summary.finished} {presentation.tests}, {len(robots_of)} requirements",
         ),
         e(
             "p",
@@ -98,8 +106,16 @@ def _header(summary: CampaignSummary, presentation: Presentation) -> ET.Element:
             f"in {summary.seconds:.1f} s",
         ),
         partial,
-        e("dl", {"class": "facts"}, *listed),
+        _list(common),
+        more,
     )
+
+
+def _list(requirements: Sequence[tuple[str, str]]) -> ET.Element:
+    listed: list[Child] = []
+    for name, text in requirements:
+        listed += [e("dt", None, name), e("dd", None, text)]
+    return e("dl", {"class": "facts"}, *listed)
 
 
 def _verdicts(
