@@ -94,7 +94,7 @@ def query_of(group: str, item: str) -> str:
 _ONLY_LEGACY = "only the legacy robot does so"
 _NO_DELAY = "the robot takes time from what it is told to what it does about it"
 _SOON = "the robot reacts in a fixed time, far from the limit"
-_EXACT = "the robot waits 0.5 s between readings and 2 s after a release, to the nanosecond"
+_EXACT = "the robot waits for what it does and says to the nanosecond"
 _APART = "instants that nothing ties together, of the human and of the arm's paths, do not coincide"
 _HELD = "what does not slip on the way is held: a human who moves away lets go first"
 _POLLS = "the robot gives up after many polls, never at the first"
@@ -116,6 +116,8 @@ UNREACHABLE = tuple(
         "readings and `sensed` are of one instant; what was not read counts as bad": [
             ("R1", "`sensed` decides"),
             ("T5", "`fully_read` decides"),
+            ("T57", "`fully_read` decides"),
+            ("T57", "`sensed` decides"),
         ],
         _SOON: [
             *((name, JUST_BEFORE) for name in ("T5", "T11", "T30")),
@@ -133,6 +135,38 @@ UNREACHABLE = tuple(
             *(("`T31` edges", edge) for edge in ("A → C", "B → P", "C → P")),
             ("T31", "`for 1999999999 ns not done` decides"),
             ("T31", "`within 2100 ms done` decides"),
+            *(
+                (f"`{name}` {kind}", item)
+                for name in ("T41", "T43", "T45")
+                for kind, item in (
+                    ("locations", "B"),
+                    ("locations", "C"),
+                    ("edges", "A → C"),
+                    ("edges", "B → P"),
+                )
+            ),
+            ("T41", "`for 499999999 ns not grip_closed` decides"),
+            ("T41", "`within 500 ms grip_closed` decides"),
+            ("T43", "`for 99999999 ns not decided` decides"),
+            ("T43", "`within 100 ms decided` decides"),
+            ("T45", "`for 299999999 ns not released` decides"),
+            ("T45", "`within 300 ms released` decides"),
+            ("`T42` locations", "C"),
+            *(("`T42` edges", edge) for edge in ("A → C", "A → P", "B → C")),
+            *(
+                ("T42", f"`{part}` decides")
+                for part in (
+                    "for 49999999 ns (robot_gripper and not pressure_e1)",
+                    "robot_gripper",
+                    "not pressure_e1",
+                    "always[50 ms, 99999999 ns] (robot_gripper and pressure_e1)",
+                    "robot_gripper (2)",
+                    "pressure_e1",
+                    "eventually[100 ms, 100 ms] (not robot_gripper and pressure_e1)",
+                    "not robot_gripper",
+                    "pressure_e1 (2)",
+                )
+            ),
         ],
         _APART: [
             ("`T23` edges", "start → P"),
