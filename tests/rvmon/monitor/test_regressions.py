@@ -295,3 +295,18 @@ def test_a_network_learns_of_an_until_in_order(seed):
     rng = random.Random(seed)
     told = [Sample(t, {"x": rng.uniform(0, 5), "y": rng.uniform(0, 4)}) for t in range(90)]
     assert not disagreements(Case(spec.checked, tuple(told)), Maker("network"), online=False)
+
+
+@pytest.mark.parametrize("engine", ["automaton", "network", "auto"])
+def test_time_that_passes_without_a_sample_hides_no_further_attempt(engine):
+    """A failure that time brings after `advance` is followed by the next attempt, as without."""
+    spec = rvmon.loads(
+        "spec s\nsignal r : bool\n"
+        "requirement R\n  whenever true\n  then eventually[3 ns, 3 ns] G r\n"
+    )
+    monitor = spec.monitor(engine=engine)
+    monitor.step_ns(-3, {"r": False})
+    monitor.advance_ns(5)
+    monitor.step_ns(7, {})
+    attempts = monitor.finish_ns().attempts
+    assert [(one.triggered, one.decided) for one in attempts] == [(-3, 1), (2, 6), (7, None)]

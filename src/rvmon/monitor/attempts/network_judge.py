@@ -352,6 +352,9 @@ class NetworkJudge(AttemptJudge):
                 self._foresee()
             else:
                 self.due = self._bound(Network.next_news)
+        if limit % 2 == 0 and self._is_waited_for and not self.plan.looks_back:
+            # What is next was worked out without the letter of the instant that time has come to.
+            self.due = min(self.due, max(self.sleeps, limit // 2 + 1))
 
     @property
     def next_due(self) -> int:
