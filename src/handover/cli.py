@@ -11,6 +11,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli import guarded
@@ -27,7 +28,11 @@ from rvmon.cli.campaign import (
     mutate_code,
     names_of,
 )
+from rvmon.cli.evidence import add_evidence
 from rvmon.cli.numbers import positive
+
+if TYPE_CHECKING:
+    from rvmon.cdv import Campaign
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -53,6 +58,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_replay(commands)
     _add_shrink(commands)
     _add_mutate(commands)
+    add_evidence(commands, _campaign)
     return parser
 
 
@@ -230,6 +236,12 @@ def _shrink(arguments: argparse.Namespace) -> int:
     return shrink_file(
         handover_campaign(), arguments.test, robot, arguments.requirement, arguments.out
     )
+
+
+def _campaign() -> Campaign:
+    from handover.campaign.campaign import handover_campaign
+
+    return handover_campaign()
 
 
 def _mutate(arguments: argparse.Namespace) -> int:

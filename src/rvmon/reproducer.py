@@ -10,7 +10,7 @@ import os
 import tomllib
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
@@ -98,9 +98,7 @@ def write_case(out: str, case: Case) -> None:
         names: dict[str, str] = {}
         files: list[tuple[str, Path]] = []
         for part, main, others in _parts(case):
-            paths = [Path(os.path.abspath(one)) for one in (main, *others)]
-            root = Path(os.path.commonpath([path.parent for path in paths]))
-            found = [(f"{part}/{path.relative_to(root).as_posix()}", path) for path in paths]
+            found = files_under(part, main, others)
             names[part] = found[0][0]
             files += [pair for name, path in found for pair in _files_at(name, path)]
         described = msgspec.json.format(msgspec.json.encode(msgspec.structs.replace(case, **names)))
@@ -119,22 +117,38 @@ def write_case(out: str, case: Case) -> None:
 
 def _parts(case: Case) -> Iterator[tuple[str, str, list[str]]]:
     """Folder in the reproducer, file, and the files that it names."""
-    source = Source(case.spec, text_of_file(case.spec))
-    read = load_files(source, Path(case.spec).parent, Findings())
-    # What rvmon brings along itself is no file here.
-    yield (
-        "spec",
-        case.spec,
-        [one.source.name for one in read[1:] if os.path.isfile(one.source.name)],
-    )
+    yield "spec", case.spec, imported_files(case.spec)
     yield "recording", case.recording, []
     if case.binding is not None:
-        folder = Path(case.binding).parent
-        yield "binding", case.binding, [str(folder / one) for one in _definitions(case.binding)]
+        yield "binding", case.binding, definition_files(case.binding)
+
+
+def files_under(part: str, main: str, others: Sequence[str]) -> list[tuple[str, Path]]:
+    """A file and those that it names, each with its place in an archive; the file comes first.
+
+    Args:
+        part: folder of the archive; in it they lie to each other as they do here.
+        main: path of the file.
+        others: paths of those that it names.
+    """
+    paths = [Path(os.path.abspath(one)) for one in (main, *others)]
+    root = Path(os.path.commonpath([path.parent for path in paths]))
+    return [(f"{part}/{path.relative_to(root).as_posix()}", path) for path in paths]
+
+
+def imported_files(spec: str) -> list[str]:
+    """The files that a specification imports; what rvmon brings along itself is none."""
+    read = load_files(Source(spec, text_of_file(spec)), Path(spec).parent, Findings())
+    return [one.source.name for one in read[1:] if os.path.isfile(one.source.name)]
+
+
+def definition_files(binding: str) -> list[str]:
+    """The files of definitions that a binding names."""
+    return [str(Path(binding).parent / one) for one in _definitions(binding)]
 
 
 def _definitions(binding: str) -> list[str]:
-    """The files that a binding names."""
+    """The files that a binding names, as it does."""
     return list(tomllib.loads(text_of_file(binding)).get("definitions", []))
 
 
@@ -192,14 +206,14 @@ def opened_case(path: str) -> Iterator[Case]:
             raise RvmonError(f"{path}: {error}") from None
         # Specifications may import what lies in their project: here that is this folder.
         (folder / "pyproject.toml").touch()
-        placed = {
-            part: str(_placed(folder, name))
+        places = {
+            part: str(placed(folder, name))
             for part in ("spec", "recording", "binding")
             if (name := getattr(case, part)) is not None
         }
-        case = msgspec.structs.replace(case, **placed)
+        case = msgspec.structs.replace(case, **places)
         if case.binding is not None:
-            _expect_definitions_inside(folder, case.binding)
+            expect_definitions_inside(folder, case.binding)
         yield case
 
 
@@ -227,7 +241,7 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
         raise RvmonError(f"holds more than {MOST_FILES} files, and is no reproducer")
     left = MOST_BYTES
     for entry in entries:
-        target = _placed(folder, entry.filename)
+        target = placed(folder, entry.filename)
         target.parent.mkdir(parents=True, exist_ok=True)
         with packed.open(entry) as file, target.open("xb") as made:
             # What an entry says of its size need not be true.
@@ -238,8 +252,12 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
                 made.write(block)
 
 
-def _placed(folder: Path, name: str) -> Path:
-    """Where a name in the reproducer lies.
+def placed(folder: Path, name: str) -> Path:
+    """Where a name in an archive lies.
+
+    Args:
+        folder: that the archive is unpacked to.
+        name: in it.
 
     Raises:
         RvmonError: elsewhere.
@@ -250,8 +268,12 @@ def _placed(folder: Path, name: str) -> Path:
     return folder / path
 
 
-def _expect_definitions_inside(folder: Path, binding: str) -> None:
-    """See that the files which a binding names lie in the reproducer.
+def expect_definitions_inside(folder: Path, binding: str) -> None:
+    """See that the files which a binding names lie in its archive.
+
+    Args:
+        folder: that the archive was unpacked to.
+        binding: path of the binding.
 
     Raises:
         RvmonError: one does not.

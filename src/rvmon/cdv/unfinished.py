@@ -141,14 +141,14 @@ def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
     said = [
         [(job.robot, msgspec.to_builtins(job.test)) for job in plan.jobs()],
         {robot: to_plain(spec.checked) for robot, spec in specs.items()},
-        [list(_stamps(path)) for path in (Path(rvmon.__file__).parent, *_sources(campaign))],
+        [list(_stamps(path)) for path in (Path(rvmon.__file__).parent, *sources_of(campaign))],
         [sys.version, *map(_version, (*_PACKAGES, *campaign.packages))],
     ]
     return hashlib.sha256(json.dumps(said).encode()).hexdigest()
 
 
-def _sources(campaign: Campaign) -> list[Path]:
-    """What is named, and the files in which tests, strategies and systems are defined."""
+def sources_of(campaign: Campaign) -> list[Path]:
+    """What outcomes of a campaign depend on: files and folders that it names, or is defined in."""
     makers = (
         campaign.test,
         *campaign.strategies.values(),

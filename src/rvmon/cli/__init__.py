@@ -41,6 +41,7 @@ COMMANDS = {
     "prepare": "compile ahead what the engine c runs",
     "cross": "a recording, judged by every engine and installed peer: do they agree?",
     "compare": "what has changed between two files of verdicts",
+    "evidence": "whether evidence that was kept still holds",
     "cover": "what tests have covered, what is missing, and what each test is good for",
     "verify": "model-check a network of timed automata",
     "conform": "hold recorded runs against a network of timed automata",

@@ -6,12 +6,17 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rvmon.cli.options import constants_of, ids_of
+from rvmon.cli.reading import allowed_names, reading_spec
+from rvmon.loading import load
 from rvmon.readers.recording import FileRecording
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.verdict.illegal import IllegalHit
 
 if TYPE_CHECKING:
+    import argparse
+
     from rvmon.coverage.hits import Hits
     from rvmon.coverage.monitor import CoverageMonitor
     from rvmon.verdict.report import Report
@@ -41,6 +46,28 @@ class Options:
     robustness: bool = False
     allow_missing: bool | tuple[str, ...] = False
     coverage: bool = False
+
+
+def spec_and_options(
+    arguments: argparse.Namespace, name: str | None = None
+) -> tuple[Spec, Options]:
+    """What judges, and how.
+
+    Args:
+        arguments: those of `rvmon run`.
+        name: what messages call the specification; default its path.
+    """
+    loaded = load(arguments.spec, name=name, const=constants_of(arguments.const))
+    spec = reading_spec(loaded, arguments)
+    return spec, Options(
+        ids_of(arguments.only, spec),
+        arguments.engine,
+        arguments.until,
+        arguments.strict_columns,
+        arguments.robustness,
+        allowed_names(arguments.allow_missing),
+        arguments.coverage is not None,
+    )
 
 
 class Beside:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cli import guarded
+from rvmon.cli.evidence import add_evidence
 from rvmon.cli.numbers import duration, number_or_folder, positive
 from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
@@ -111,6 +112,7 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
     )
     mutate.set_defaults(run=_mutate)
+    add_evidence(commands, lambda: campaign)
     return parser
 
 
@@ -121,6 +123,9 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'"
+    )
+    parser.add_argument(
+        "--evidence", metavar="FILE", help="keep tests, verdicts and what judged in one archive"
     )
     add_playing_options(parser)
 

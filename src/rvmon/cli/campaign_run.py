@@ -27,6 +27,7 @@ from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.text import print_summary
 from rvmon.cdv.unfinished import unfinished
 from rvmon.cdv.write_pages import write_pages
+from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say_json, warn
 from rvmon.loading import load
@@ -96,12 +97,14 @@ def conduct(
     planned = len(chosen.jobs())
     if not planned:
         _refuse_nothing(chosen)
+    texts = None if arguments.evidence is None else begun(campaign, arguments.evidence)
     command, *others = words
     amount = ["--tests", arguments.tests, "--seed", arguments.seed]
     if arguments.suite is not None:
         amount = ["--suite", arguments.suite]
     amount += ["--shrink"] if arguments.shrink else []
-    again = typed(campaign.program, [command, *amount, *others, "--out", arguments.out])
+    same = [command, *amount, *others]
+    again = typed(campaign.program, [*same, "--out", arguments.out])
     kept = None
     if folder is not None:
         kept = unfinished(folder, chosen, specs, again)
@@ -110,6 +113,8 @@ def conduct(
     with bar("tests", planned) as tell:
         results = execute(chosen, jobs=arguments.jobs, kept=kept, progress=tell)
     conducted = written(results, specs, folder, arguments, again)
+    if texts is not None:
+        write_campaign(arguments.evidence, texts, results, conducted.summary, specs, same)
     if folder is not None and (remark := left_over(folder, before)):
         warn(remark)
     if kept is not None and results.cut_short:

@@ -14,15 +14,12 @@ from rvmon.cli.options import (
     add_const,
     add_format,
     add_only,
-    constants_of,
     ids_of,
     refuse_over,
 )
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
-    allowed_names,
-    reading_spec,
     reading_words,
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
@@ -38,6 +35,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.cli.beside import Options
     from rvmon.cli.judging import Judged
+    from rvmon.cli.run_evidence import Begun
     from rvmon.reproducer import Case
     from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
@@ -120,6 +118,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--report", metavar="DIR", help="write a page per recording to look at")
     parser.add_argument("--junit", metavar="FILE", help="write JUnit XML for CI")
     parser.add_argument(
+        "--evidence",
+        metavar="FILE",
+        help="keep what was judged, by what, and the verdicts, in one archive; "
+        "`rvmon evidence verify FILE` sees whether it holds",
+    )
+    parser.add_argument(
         "--strict", action="store_true", help="exit with 1 also if a requirement is I or NT"
     )
     parser.add_argument(
@@ -147,25 +151,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
-    from rvmon.cli.beside import Options
-    from rvmon.loading import load
+    from rvmon.cli.beside import spec_and_options
     from rvmon.readers.found import found_recordings
 
-    known_as = None if case is None else shown_name(case.spec)
-    loaded = load(arguments.spec, name=known_as, const=constants_of(arguments.const))
-    spec = reading_spec(loaded, arguments)
+    spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
     _show_warnings(spec)
     traces = list(found_recordings(arguments.traces))
     _refuse_places(arguments, traces, spec)
-    options = Options(
-        ids_of(arguments.only, spec),
-        arguments.engine,
-        arguments.until,
-        arguments.strict_columns,
-        arguments.robustness,
-        allowed_names(arguments.allow_missing),
-        arguments.coverage is not None,
-    )
+    before = _evidence_begun(arguments, traces, case)
     must_trigger = ids_of(arguments.require_triggered or None, spec)
     known = _known_failures(arguments, spec)
     judged = _judged(arguments, traces, spec, options, case)
@@ -173,6 +166,10 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     reports = [one.report for one in judged if one.report is not None]
     _show_known(known, reports)
     write_files(arguments, spec, judged, known, given if case else "")
+    if before is not None:
+        from rvmon.cli.run_evidence import write_run
+
+        write_run(arguments, spec, judged, before)
     if case is not None:
         compare_expected(judged[0], case)
     if len(reports) < len(judged):
@@ -185,6 +182,19 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
             warn(f"{name} was triggered in no recording")
         failed |= bool(silent)
     return int(failed)
+
+
+def _evidence_begun(
+    arguments: argparse.Namespace, traces: Sequence[str], case: Case | None
+) -> Begun | None:
+    """What evidence says of the inputs, if it is asked for."""
+    if arguments.evidence is None:
+        return None
+    if case is not None:
+        raise RvmonError("--evidence is of recordings, not of a reproducer")
+    from rvmon.cli.run_evidence import begun
+
+    return begun(arguments, traces)
 
 
 def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
@@ -230,8 +240,9 @@ def _judged(
 
 def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: Spec) -> None:
     """Say before anything is judged that a result has no place to go to."""
-    if arguments.junit:
-        refuse_no_file(arguments.junit)
+    for file in (arguments.junit, arguments.evidence):
+        if file:
+            refuse_no_file(file)
     if arguments.resume and arguments.out is None:
         raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
     if arguments.out is not None:
@@ -239,7 +250,8 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
-    files = [arguments.out, arguments.junit, arguments.coverage, arguments.mcap]
+    names = ("out", "junit", "coverage", "mcap", "evidence")
+    files = [getattr(arguments, name) for name in names]
     if arguments.mcap is not None:
         from rvmon.export.verdicts_mcap import layout_path, refuse_mcap
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
     from rvmon.trace.sample import Sample
+    from rvmon.verdict.rows import VerdictRow
 
 
 def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
@@ -26,18 +27,21 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
     """
     import rvmon
     from rvmon.results import write
-    from rvmon.verdict.rows import VerdictRow, broken_rows
     from rvmon.verdict.verdict import LAW
 
-    def rows() -> Iterator[VerdictRow]:
-        for one in judged:
-            if one.report is not None:
-                yield from one.report.rows()
-            else:
-                yield from broken_rows(one.trace, one.error, one.before)
-
     about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
-    write.write_results(path, rows(), about)
+    write.write_results(path, rows_of(judged), about)
+
+
+def rows_of(judged: Iterable[Judged]) -> Iterator[VerdictRow]:
+    """The verdicts on recordings as rows."""
+    from rvmon.verdict.rows import broken_rows
+
+    for one in judged:
+        if one.report is not None:
+            yield from one.report.rows()
+        else:
+            yield from broken_rows(one.trace, one.error, one.before)
 
 
 def write_files(

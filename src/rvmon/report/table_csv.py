@@ -34,7 +34,7 @@ def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str
         for group in table.groups:
             for requirement, counts in group.counts.items():
                 figures = [counts.get(verdict, 0) for verdict in Verdict]
-                names = map(_plain, (name, group.name, requirement))
+                names = map(plain, (name, group.name, requirement))
                 shares = (
                     _bounds(figures, group.runs) if table.shows_intervals else [""] * len(bounds)
                 )
@@ -48,7 +48,7 @@ def _bounds(counts: Sequence[int], runs: int) -> list[str]:
     return [f"{bound:.4f}" for count in counts for bound in interval(count, runs)]
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """A name that no spreadsheet takes for a formula: before such a one stands an apostrophe."""
     # Written out, a TAB or an end of line is neither the start of a formula nor the end of a row.
     text = shown_line(name)

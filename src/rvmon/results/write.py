@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import sqlite3
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -57,14 +57,20 @@ def write_results(path: str | Path, rows: Iterable[VerdictRow], about: Mapping[s
         raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 
 
-def _csv(rows: Iterable[VerdictRow], _: Mapping[str, str]) -> bytes:
+def csv_bytes(rows: Iterable[VerdictRow], _: Mapping[str, str] | None = None) -> bytes:
+    """Verdicts as a file in CSV."""
+    place = VerdictRow._fields.index("in_doubt")
+    truths = ("false", "true")
+    told = ([*row[:place], truths[row.in_doubt], *row[place + 1 :]] for row in rows)
+    return csv_table(VerdictRow._fields, told)
+
+
+def csv_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
+    """Rows as a file in CSV, UTF-8, below the names of their columns."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(VerdictRow._fields)
-    place = VerdictRow._fields.index("in_doubt")
-    for row in rows:
-        truth = "true" if row.in_doubt else "false"
-        writer.writerow([*row[:place], truth, *row[place + 1 :]])
+    writer.writerow(columns)
+    writer.writerows(rows)
     return text.getvalue().encode("utf-8")
 
 
@@ -109,7 +115,7 @@ def _duckdb(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> bytes:
 _Written = Callable[[Iterable[VerdictRow], Mapping[str, str]], bytes]
 
 _FORMS: dict[str, tuple[_Written, tuple[str, ...]]] = {
-    ".csv": (_csv, ()),
+    ".csv": (csv_bytes, ()),
     ".parquet": (_parquet, ("pyarrow",)),
     ".sqlite": (_sqlite, ()),
     ".db": (_sqlite, ()),
