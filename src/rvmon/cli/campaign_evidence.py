@@ -73,14 +73,14 @@ def write_campaign(
     about = About(
         name=campaign.name,
         packages=dict(package_versions(campaign.packages)),
-        programs={"rvmon": own_program()} | program_of(campaign),
+        programs={"rvmon": own_program(), campaign.name: program_of(campaign)},
         specs=before.specs,
         command=[campaign.program or Path(sys.argv[0]).name, *map(str, words)],
         timeout_s=campaign.timeout_s,
         planted={name: test.mutation for name, test in jobs.items() if test.mutation is not None},
     )
-    table = campaign.presentation.document(summary)
-    table.pop("seconds", None)
+    table = {**campaign.presentation.document(summary)}
+    table.pop("seconds", None)  # those that it took
     covered = {
         robot: (
             coverage_model(campaign, robot),
@@ -102,10 +102,10 @@ def write_campaign(
     write_evidence(path, about, entries, specs, rows)
 
 
-def program_of(campaign: Campaign) -> dict[str, Stamp]:
+def program_of(campaign: Campaign) -> Stamp:
     """The stamp of what a campaign tests, and tests with."""
     paths = sources_of(campaign)
-    return {campaign.name: stamp_of_files(Path(paths[0]).parent if paths else Path(), paths)}
+    return stamp_of_files(paths[0].parent, paths)
 
 
 def _rows(job: Job, outcome: Outcome) -> Iterator[VerdictRow]:

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.cli.say import say, warn
+from rvmon.verdict.rows import VerdictRow
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign
     from rvmon.evidence.about import Stamp
     from rvmon.evidence.keep import Kept
     from rvmon.evidence.matrix import Row
-    from rvmon.verdict.rows import VerdictRow
 
 SAMPLE = 10
 """Recordings, or tests, that are judged again unless something else is said."""
 
-Again = Callable[["Kept", Sequence[str], int], Iterable["VerdictRow"]]
+Again = Callable[["Kept", Sequence[str], int], Iterable[VerdictRow]]
 """Judges recordings, or plays tests, again, on so many processes."""
 
 
@@ -89,57 +89,53 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _verified(kept: Kept, arguments: argparse.Namespace) -> tuple[list[str], list[str]]:
     """What differs, and what could not be checked."""
+    from rvmon.cli.options import constants_of
     from rvmon.cli.run_evidence import judged_again
     from rvmon.evidence.about import own_program
-    from rvmon.evidence.keep import VERDICTS
-    from rvmon.evidence.matrix import rows_by_item
     from rvmon.loading import load
     from rvmon.verdict.verdict import LAW
 
-    about = kept.about
-    say(f"{arguments.file}: {about.name}, rvmon {about.rvmon}, law {about.law}")
+    about, items = kept.about, kept.items
+    say(f"{arguments.file}: {about.name}, judged by rvmon {about.rvmon}, law {about.law}")
     say(f"SHA-256 of the file: {kept.sha256}")
+    differ, unchecked = _recordings(about.recordings)
+    there = [item for item in items if item not in differ and item not in unchecked]
+    differ = [f"{name} is not the recording that was judged" for name in differ]
+    unchecked = [f"{name} is not there, or cannot be read" for name in unchecked]
+    is_same = about.programs.get("rvmon") == own_program()
     if about.law != LAW:
-        return [], [f"verdicts: they are of law {about.law}, and this rvmon has law {LAW}"]
-    programs = {"rvmon": own_program()}
-    again: Again | None = judged_again
-    if about.judging is None:
-        again = None
-        if arguments.made is not None:
-            from rvmon.cli.campaign_evidence import played_again, program_of, with_robots
-
-            campaign = with_robots(arguments.made(), kept)
-            again, programs = partial(played_again, campaign), programs | program_of(campaign)
-    changed = [name for name, now in programs.items() if about.programs.get(name) != now]
-    items = rows_by_item(kept.entries[VERDICTS])
-    if changed:
-        say(f"made by another {' and '.join(changed)}: reasons may be put otherwise")
-    else:
-        from rvmon.cli.options import constants_of
-
+        unchecked.append(f"verdicts, which are of law {about.law}: this rvmon has law {LAW}")
+        return differ, unchecked
+    if is_same:
         const = constants_of(about.judging.const if about.judging else ())
         kept.expect_matrix({name: load(path, const=const) for name, path in kept.specs.items()})
-    say(f"as it was written: {len(kept.entries):,} entries, {len(items):,} recordings or tests")
-    differ, gone = _other_recordings(about.recordings)
-    if again is None:
-        program = f"{about.command[0]} evidence verify {arguments.file}"
-        return differ, [f"tests: what played them plays them again: `{program}`"]
-    there = sorted(item for item in items if item not in differ and item not in gone)
+    else:
+        unchecked.append("the matrix and the words of reasons: another rvmon wrote them")
+    again: Again = judged_again
+    if about.judging is None:
+        if arguments.made is None:
+            program = f"{(about.command or ['it'])[0]} evidence verify {arguments.file}"
+            return differ, [*unchecked, f"tests: the program that played them does: `{program}`"]
+        from rvmon.cli.campaign_evidence import played_again, program_of, with_robots
+
+        campaign = with_robots(arguments.made(), kept)
+        again = partial(played_again, campaign)
+        if about.programs.get(campaign.name) != program_of(campaign):
+            say(f"{campaign.name} has changed since: its tests are played as it is now")
     size = len(there) if arguments.sample is None else min(arguments.sample, len(there))
-    chosen = random.Random(arguments.seed).sample(there, size)  # noqa: S311 - no secret
+    chosen = random.Random(arguments.seed).sample(sorted(there), size)  # noqa: S311 - no secret
     now = _as_kept(again(kept, chosen, arguments.jobs))
-    passed_over = ("reason", "error") if changed else ()
+    columns = [one for one in VerdictRow._fields if is_same or one not in ("reason", "error")]
     found = [
         line
         for item in chosen
-        for line in _differences(item, items[item], now.get(item, []), passed_over)
+        for line in _differences(item, items[item], now.get(item, []), columns)
     ]
     say(f"judged again: {size:,} of {len(items):,}, {len(found):,} differences")
-    others = [f"{name} is not what was judged" for name in differ]
-    return [*others, *found], [f"{name} is not there" for name in gone]
+    return [*differ, *found], unchecked
 
 
-def _other_recordings(recordings: Mapping[str, Stamp]) -> tuple[list[str], list[str]]:
+def _recordings(recordings: Mapping[str, Stamp]) -> tuple[list[str], list[str]]:
     """Recordings that are others now, and those that are gone."""
     from rvmon.evidence.about import stamp_of
     from rvmon.readers.places import is_address
@@ -168,7 +164,7 @@ def _as_kept(rows: Iterable[VerdictRow]) -> dict[str, list[Row]]:
 
 
 def _differences(
-    item: str, before: Sequence[Row], now: Sequence[Row], passed_over: Sequence[str]
+    item: str, before: Sequence[Row], now: Sequence[Row], columns: Sequence[str]
 ) -> Iterator[str]:
     """What is judged otherwise of a recording or a test, a sentence for each attempt."""
     was, found = _by_attempt(before), _by_attempt(now)
@@ -177,10 +173,10 @@ def _differences(
         if old is None or new is None:
             yield f"{name} in {item} {'was not there before' if old is None else 'is gone'}"
             continue
-        columns = sorted(old.keys() - {*passed_over}, key=lambda column: column != "verdict")
-        other = [column for column in columns if old[column] != new.get(column)]
+        other = [column for column in columns if old[column] != new[column]]
         if other:
-            yield f"{name} in {item}: {other[0]} was {old[other[0]]}, is {new.get(other[0])}"
+            column = "verdict" if "verdict" in other else other[0]
+            yield f"{name} in {item}: {column} was {old[column]}, is {new[column]}"
 
 
 def _by_attempt(rows: Sequence[Row]) -> dict[str, Row]:

@@ -130,7 +130,7 @@ def package_versions(further: Iterable[str] = ()) -> Mapping[str, str]:
     needs: list[str] = []
     with suppress(PackageNotFoundError):
         needs = [one for one in requires("rvmon") or () if "'dev'" not in one]
-    names = {name[0] for one in needs if (name := re.match(r"[\w.-]+", one))} | {*further}
+    names = {re.split(r"[^\w.-]", one)[0] for one in needs} | {*further}
     found: dict[str, str] = {}
     for name in sorted(names - {"rvmon"}):
         with suppress(PackageNotFoundError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from rvmon.coverage.model import Model
 from rvmon.errors import RvmonError
 from rvmon.evidence.about import FORMAT, About
 from rvmon.evidence.archive import TamperedError, pack, unpack
-from rvmon.evidence.matrix import matrix_csv, matrix_page, rows_by_item, trace_matrix
+from rvmon.evidence.matrix import Row, matrix_csv, matrix_page, rows_by_item, trace_matrix
 from rvmon.reproducer import (
     definition_files,
     expect_definitions_inside,
@@ -160,13 +161,33 @@ class Kept:
         expect_definitions_inside(self.folder, path)
         return path
 
+    @property
+    def items(self) -> dict[str, list[Row]]:
+        """The verdicts by recording; of a campaign by robot and test.
+
+        Raises:
+            TamperedError: they are none, or of other recordings.
+        """
+        try:
+            found = rows_by_item(self.entries[VERDICTS])
+        except (ValueError, csv.Error) as error:
+            raise TamperedError(f"{VERDICTS} holds no verdicts: {error}") from None
+        other = found.keys() - self.about.recordings.keys()
+        if self.about.judging is not None and other:
+            raise TamperedError(f"{VERDICTS} is of other recordings: {', '.join(sorted(other))}")
+        return found
+
     def expect_matrix(self, specs: Mapping[str, Spec]) -> None:
         """See that the matrix follows from requirements and verdicts.
 
         Raises:
             TamperedError: it does not.
         """
-        for name, body in _matrix(self.about, specs, self.entries[VERDICTS]).items():
+        try:
+            derived = _matrix(self.about, specs, self.entries[VERDICTS])
+        except ValueError as error:
+            raise TamperedError(f"{VERDICTS} holds no verdicts: {error}") from None
+        for name, body in derived.items():
             if self.entries.get(name) != body:
                 raise TamperedError(f"{name} does not follow from requirements and verdicts")
 
@@ -200,11 +221,14 @@ def opened_evidence(path: str) -> Iterator[Kept]:
     with TemporaryDirectory(prefix="rvmon-") as temporary:
         folder = Path(temporary, "evidence")
         folder.mkdir()
-        for name, body in entries.items():
-            if name.startswith(_FOLDERS):
-                target = placed(folder, name)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                target.write_bytes(body)
+        try:
+            for name, body in entries.items():
+                if name.startswith(_FOLDERS):
+                    target = placed(folder, name)
+                    target.parent.mkdir(parents=True, exist_ok=True)
+                    target.write_bytes(body)
+        except OSError as error:
+            raise RvmonError(f"{path}: {error.strerror or error}") from None
         # Specifications may import what lies in their project: here that is this folder.
         (folder / "pyproject.toml").touch()
         yield Kept(about, entries, folder, sha256)

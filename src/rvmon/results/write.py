@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import sqlite3
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.util import find_spec
@@ -67,11 +66,18 @@ def csv_bytes(rows: Iterable[VerdictRow], _: Mapping[str, str] | None = None) ->
 
 def csv_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
     """Rows as a file in CSV, UTF-8, below the names of their columns."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+    lines = _Lines()
+    writer = csv.writer(lines)
     writer.writerow(columns)
     writer.writerows(rows)
-    return text.getvalue().encode("utf-8")
+    return "".join(f"{line[:-2]}\n" for line in lines).encode("utf-8")
+
+
+class _Lines(list[str]):
+    """Takes lines that end in both signs: of others a writer would not quote a carriage return."""
+
+    def write(self, line: str) -> None:
+        self.append(line)
 
 
 def _parquet(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> bytes:
