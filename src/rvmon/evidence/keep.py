@@ -118,14 +118,24 @@ def write_evidence(
     """
     verdicts = csv_bytes(rows)
     told = msgspec.json.format(msgspec.json.encode(about)) + b"\n"
-    derived = _matrix(about, specs, verdicts)
+    derived = matrix_entries(about, specs, verdicts)
     try:
         write_whole(path, pack({**entries, **derived, ABOUT: told, VERDICTS: verdicts}))
     except OSError as error:
         raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 
 
-def _matrix(about: About, specs: Mapping[str, Spec], verdicts: bytes) -> dict[str, bytes]:
+def matrix_entries(about: About, specs: Mapping[str, Spec], verdicts: bytes) -> dict[str, bytes]:
+    """The entries that follow from requirements and verdicts.
+
+    Args:
+        about: what the evidence was made of.
+        specs: the requirements, by robot.
+        verdicts: as CSV.
+
+    Raises:
+        ValueError: they are none.
+    """
     checked = {robot: spec.checked for robot, spec in specs.items()}
     matrix = trace_matrix(checked, rows_by_item(verdicts), about)
     return {"matrix.csv": matrix_csv(matrix), "matrix.html": matrix_page(matrix, about)}
@@ -184,7 +194,7 @@ class Kept:
             TamperedError: it does not.
         """
         try:
-            derived = _matrix(self.about, specs, self.entries[VERDICTS])
+            derived = matrix_entries(self.about, specs, self.entries[VERDICTS])
         except ValueError as error:
             raise TamperedError(f"{VERDICTS} holds no verdicts: {error}") from None
         for name, body in derived.items():

@@ -1,0 +1,103 @@
+"""Evidence of campaigns: tests that are played again, from the archive alone."""
+
+import json
+
+import pytest
+
+from rvmon import cdv
+from rvmon.cli import campaign as cli
+from rvmon.cli import main
+from rvmon.evidence.archive import pack, unpack
+
+pytestmark = pytest.mark.process
+
+TESTS = [("low", {"level": 1.0}), ("crash", {"does": "crash"}), ("kill", {"does": "kill"})]
+
+
+class Reckless:
+    """Climbs higher than it should, whatever the test says."""
+
+    def play(self, test, observer):
+        observer(0, {"level": 9.0})
+        return cdv.Run(1_000_000_000)
+
+
+@pytest.fixture
+def made(campaign, tmp_path, monkeypatch):
+    """Plays a campaign of some of the tests, and keeps its evidence in `e.zip`."""
+    monkeypatch.chdir(tmp_path)
+
+    def kept(count):
+        toys = campaign(*TESTS[:count])
+        assert cli.main(toys, ["run", "--jobs", "1", "--evidence", "e.zip"]) == (count > 1)
+        return toys
+
+    return kept
+
+
+def verify(capsys, campaign, *words):
+    """The exit code of verifying, and what it says."""
+    capsys.readouterr()
+    verified = ["evidence", "verify", "e.zip", *words]
+    code = main(verified) if campaign is None else cli.main(campaign, verified)
+    told = capsys.readouterr()
+    return code, told.out + told.err
+
+
+def test_the_same_campaign_gives_the_same_bytes(made, tmp_path):
+    """Whatever the number of processes, and where its pages go."""
+    kept = made(2)
+    assert cli.main(kept, ["run", "--jobs", "2", "--out", "o", "--evidence", "f.zip"]) == 1
+    assert (tmp_path / "e.zip").read_bytes() == (tmp_path / "f.zip").read_bytes()
+
+
+def test_it_holds_where_its_requirements_are_gone(made, tmp_path, capsys):
+    """Tests and requirements come from the archive; what crashed or was lost does so again."""
+    kept = made(3)
+    (tmp_path / "toy.rv").write_text("spec other\n")
+    code, told = verify(capsys, kept, "--sample", "all", "--jobs", "2")
+    assert "judged again: 3 of 3, 0 differences" in told
+    assert (code, told.splitlines()[-1]) == (0, "It holds.")
+    entries, _ = unpack("e.zip")
+    assert {f"tests/{name}.json" for name, _ in TESTS} <= entries.keys()
+    assert b"toy/crash,T1,,,P" in entries["verdicts.csv"]
+    assert b"crashed: ZeroDivisionError" in entries["verdicts.csv"]
+    assert "seconds" not in json.loads(entries["table.json"])
+    assert json.loads(entries["coverage.json"])["toy"]["groups"]
+
+
+def test_another_robot_is_found(made, spec, campaign, capsys):
+    """What differs is named, and that the program has changed is no excuse."""
+    made(1)
+    other = campaign(*TESTS, robots={"toy": cdv.Robot(Reckless, spec)})
+    code, told = verify(capsys, other, "--sample", "all")
+    assert code == 1
+    assert "T1 in toy/low: verdict was P, is F" in told
+    assert "toys has changed since" in told
+
+
+def test_only_its_own_program_plays_tests(made, campaign, capsys):
+    """`rvmon` checks the rest and says who does; another campaign says that it is none of it."""
+    made(1)
+    code, told = verify(capsys, None)
+    assert (code, "evidence verify e.zip`" in told) == (2, True)
+    code, told = verify(capsys, campaign(robots={"other": cdv.Robot(Reckless, None)}))
+    assert (code, "has no robot toy" in told) == (2, True)
+
+
+def test_a_test_that_is_none_is_refused(made, capsys):
+    """Tests are data: what is no test of the campaign is not played."""
+    kept = made(1)
+    entries, _ = unpack("e.zip")
+    with open("e.zip", "wb") as file:
+        file.write(pack({**entries, "tests/low.json": b'{"name": "low", "strategy": 3}'}))
+    code, told = verify(capsys, kept)
+    assert (code, "tests/low.json: not an abstract test" in told) == (2, True)
+
+
+def test_nothing_is_kept_of_what_is_not_judged(campaign, capsys, tmp_path, monkeypatch):
+    """It is said before anything is played."""
+    monkeypatch.chdir(tmp_path)
+    toys = campaign(*TESTS, robots={"toy": cdv.Robot(Reckless, None)})
+    assert cli.main(toys, ["run", "--evidence", "e.zip"]) == 2
+    assert "nothing is judged" in capsys.readouterr().err

@@ -1,0 +1,285 @@
+"""`rvmon run --evidence` and `rvmon evidence verify`: what is kept, and what is found to differ."""
+
+import csv
+import io
+import json
+import re
+import zipfile
+
+import msgspec
+import pytest
+
+import rvmon
+from rvmon.cli import main
+from rvmon.evidence.about import About
+from rvmon.evidence.archive import pack, unpack
+
+COMMON = "signal speed : real\nevent go\n"
+SPEC = """
+spec base
+import "../common.rv"
+const T = 9 s
+requirement R1 "Go slows it"
+  upon go
+  then within T speed < 1
+  source "ISO 1, 4.2"
+requirement R2
+  always speed < 9
+coverpoint fast = speed {slow: [0, 5], illegal reckless: (5, 100]}
+"""
+
+
+def forged(entries):
+    """The entries with a pass in the place of a failure, and a matrix that follows from them."""
+    from rvmon.evidence import keep
+
+    verdicts = entries["verdicts.csv"].replace(b"R1#1,1,F", b"R1#1,1,P")
+    about = msgspec.json.decode(entries["evidence.json"], type=About)
+    spec = {"": rvmon.load("specs/base.rv", const={"T": "2 s"})}
+    return {"verdicts.csv": verdicts, **keep.matrix_entries(about, spec, verdicts)}
+
+
+@pytest.fixture
+def base(tmp_path, monkeypatch):
+    """A project with a specification that imports another, and three recordings, one broken."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "specs").mkdir()
+    (tmp_path / "common.rv").write_text(COMMON)
+    (tmp_path / "specs" / "base.rv").write_text(SPEC)
+    (tmp_path / "a.csv").write_text("stamp,v,go\n0,2,\n9000,3,1\n11500,0.5,\n15000,,\n")
+    (tmp_path / "b.csv").write_text("stamp,v,go\n0,2,\n9000,6,\n11500,0.5,\n")
+    (tmp_path / "c.csv").write_text("stamp,v,go\n0,2,\n9000,six,\n")
+    return tmp_path
+
+
+TRACES = ["a.csv", "b.csv", "c.csv"]
+
+
+def run(*words, out="e.zip"):
+    """The exit code of judging, with evidence."""
+    reading = ["--time", "stamp:ms", "--map", "speed=v", "--const", "T=2 s"]
+    return main(["run", "specs/base.rv", *words, *reading, "--quiet", "--evidence", out])
+
+
+def verify(capsys, *words):
+    """The exit code of verifying, and what it says."""
+    capsys.readouterr()
+    code = main(["evidence", "verify", "e.zip", *words])
+    told = capsys.readouterr()
+    return code, told.out + told.err
+
+
+def rewritten(path, change):
+    """Change entries, and make an archive of them whose checksums are right."""
+    entries, _ = unpack(path)
+    change(entries)
+    with open(path, "wb") as file:
+        file.write(pack(entries))
+
+
+def test_the_same_run_gives_the_same_bytes(base):
+    """Whatever the number of processes, and wherever else results go."""
+    assert run(*TRACES) == 2
+    assert run(*TRACES, "--jobs", "2", "--out", "v.csv", out="f.zip") == 2
+    assert (base / "e.zip").read_bytes() == (base / "f.zip").read_bytes()
+
+
+def test_it_holds_what_verdicts_follow_from(base, capsys):
+    """Texts with imports, options, hashes, versions, verdicts, coverage, the matrix."""
+    assert run(*TRACES, "--coverage", "c.db") == 2
+    entries, _ = unpack("e.zip")
+    assert entries["spec/common.rv"] == COMMON.encode()
+    assert entries["spec/specs/base.rv"] == SPEC.encode()
+    about = json.loads(entries["evidence.json"])
+    assert about["judging"]["const"] == ["T=2 s"]
+    assert about["recordings"]["a.csv"]["bytes"] == (base / "a.csv").stat().st_size
+    assert {"numpy", "msgspec"} <= about["packages"].keys()
+    assert json.loads(entries["coverage.json"])[""]["groups"]["fast"]["reckless"]["hits"] == 1
+    rows = list(csv.DictReader(io.StringIO(entries["matrix.csv"].decode())))
+    found = [(row["requirement"], row["source"], row["by"], row["verdict"]) for row in rows]
+    assert found == [
+        ("R1", "ISO 1, 4.2", "a.csv", "F"),
+        ("R1", "ISO 1, 4.2", "b.csv", "NT"),
+        ("R1", "ISO 1, 4.2", "c.csv", ""),
+        ("R2", "", "a.csv", "P"),
+        ("R2", "", "b.csv", "P"),
+        ("R2", "", "c.csv", ""),
+        ("illegal", "", "b.csv", "F"),
+    ]
+    assert b"ISO 1, 4.2" in entries["matrix.html"]
+    code, told = verify(capsys, "--sample", "all")
+    assert "judged again: 3 of 3, 0 differences" in told
+    assert (code, told.splitlines()[-1]) == (0, "It holds.")
+
+
+def test_a_bag_with_a_binding_is_judged_again(base, capsys):
+    """A folder has a hash, and the definitions that a binding names come along."""
+    pytest.importorskip("rosbags")
+    from tests.tools.bags import DEFINITIONS, START, write_ros2
+
+    sent = [("/go", START, {})]
+    sent += [("/pick", START + t * 10**9, {"id": t, "x": 1.0 if t < 4 else 0.1}) for t in range(9)]
+    write_ros2(base / "bag", sent, "sqlite3")
+    place = "shop_msgs/msg/Pick.msg"
+    (base / place).parent.mkdir(parents=True)
+    (base / place).write_text(DEFINITIONS["shop_msgs/msg/Pick"])
+    (base / "base.toml").write_text(
+        f'definitions = ["{place}"]\n[bind.speed]\ntopic = "/pick"\nvalue = "x"\n'
+        '[bind.go]\ntopic = "/go"\n'
+    )
+    words = ["run", "specs/base.rv", "bag", "--binding", "base.toml", "--quiet"]
+    assert main([*words, "--evidence", "e.zip"]) < 2
+    (base / "base.toml").unlink()
+    assert verify(capsys)[0] == 0
+    (base / "bag" / "more").write_text("")
+    assert verify(capsys)[0] == 1
+
+
+def test_verdicts_that_were_changed_are_found_by_judging_again(base, capsys):
+    """Though the checksums and the matrix are right for them."""
+    run(*TRACES)
+    rewritten("e.zip", lambda entries: entries.update(forged(entries)))
+    code, told = verify(capsys)
+    assert code == 1
+    assert "R1#1 in a.csv: verdict was P, is F" in told
+
+
+@pytest.mark.parametrize("entry", ["matrix.csv", "matrix.html"])
+def test_a_matrix_follows_from_the_verdicts(base, capsys, entry):
+    """One that says something else is found without judging."""
+    run(*TRACES)
+    rewritten("e.zip", lambda entries: entries.update({entry: entries[entry] + b" "}))
+    code, told = verify(capsys)
+    assert (code, "does not follow" in told) == (1, True)
+
+
+def test_requirements_that_were_changed_are_found(base, capsys):
+    """The verdicts are none of theirs."""
+    run(*TRACES)
+    spec = "spec/specs/base.rv"
+    text = SPEC.replace("speed < 9", "speed < 1").encode()
+    rewritten("e.zip", lambda entries: entries.update({spec: text}))
+    code, told = verify(capsys)
+    assert code == 1
+    assert "R2#1 in a.csv" in told or "R2 in a.csv" in told
+
+
+def test_recordings_that_are_others_or_gone_are_told(base, capsys):
+    """Of another nothing is judged; one that is gone is not checked: exit codes 1 and 2."""
+    run(*TRACES)
+    kept = (base / "b.csv").read_bytes()
+    (base / "b.csv").write_bytes(kept + b"12000,1,\n")
+    code, told = verify(capsys)
+    assert code == 1
+    assert "b.csv is not the recording that was judged" in told
+    assert "judged again: 2 of 3" in told
+    (base / "b.csv").unlink()
+    code, told = verify(capsys)
+    assert (code, "b.csv is not there" in told) == (2, True)
+    (base / "b.csv").write_bytes(kept)
+    assert verify(capsys)[0] == 0
+
+
+def test_a_sample_follows_from_its_seed(base, capsys):
+    """The same seed takes the same recordings; which, is seen by what differs."""
+    run(*TRACES)
+    rewritten("e.zip", lambda entries: entries.update(forged(entries)))
+    told = {seed: verify(capsys, "--sample", "1", "--seed", str(seed)) for seed in range(4)}
+    assert all("judged again: 1 of 3" in said for _, said in told.values())
+    assert {code for code, _ in told.values()} == {0, 1}
+    assert verify(capsys, "--sample", "1", "--seed", "3") == told[3]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("law", 1, "this rvmon has law"),
+        ("programs", {}, "another rvmon"),
+    ],
+)
+def test_what_another_rvmon_made_is_not_wholly_checked(base, capsys, key, value, told):
+    """Which parts, is told."""
+    run(*TRACES)
+
+    def change(entries):
+        about = json.loads(entries["evidence.json"])
+        entries["evidence.json"] = json.dumps(about | {key: value}).encode()
+
+    rewritten("e.zip", change)
+    code, said = verify(capsys)
+    assert (code, told in said) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"evidence.json": b"{}"}, "no evidence of rvmon"),
+        ({"evidence.json": b'{"format": 9, "rvmon": "7.0"}'}, "rvmon 7.0: install"),
+        ({"spec/../../x": b""}, "leads out of it"),
+        ({"spec/x": b"", "spec/x/y": b""}, "xists"),
+        ({"verdicts.csv": b"a,b\n"}, "no verdicts"),
+        ({"verdicts.csv": b"\xff"}, "no verdicts"),
+    ],
+)
+def test_a_hostile_one_is_refused(base, capsys, change, told):
+    """Names that lead out, descriptions and verdicts that are none: a sentence, nothing written."""
+    run(*TRACES)
+    rewritten("e.zip", lambda entries: entries.update(change))
+    code, said = verify(capsys)
+    assert code in (1, 2)
+    assert told in said
+    assert not (base.parent / "x").exists()
+
+
+def test_only_what_was_judged_is_read(base, capsys):
+    """Verdicts on files that the evidence has no hash of are refused."""
+    run("a.csv")
+
+    def change(entries):
+        body = entries["verdicts.csv"]
+        entries["verdicts.csv"] = body + b"b.csv" + body.splitlines()[1].removeprefix(b"a.csv")
+
+    rewritten("e.zip", change)
+    code, told = verify(capsys)
+    assert (code, "of other recordings: b.csv" in told) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["-"], "no file that can be read"),
+        (["none.csv"], "no file that can be read"),
+        (["a.csv", "a.csv"], "named twice"),
+    ],
+)
+def test_what_has_no_hash_of_its_own_is_refused(base, capsys, words, told):
+    """Before anything is judged."""
+    assert run(*words) == 2
+    assert told in capsys.readouterr().err
+    assert not (base / "e.zip").exists()
+
+
+def test_what_changes_while_it_is_judged_is_told(base, capsys, monkeypatch):
+    """Evidence of something else than was judged is never written."""
+    from rvmon.cli import judging
+
+    judge = judging.judge
+
+    def other(*words, **more):
+        (base / "a.csv").write_text("stamp,v,go\n0,2,\n")
+        return judge(*words, **more)
+
+    monkeypatch.setattr(judging, "judge", other)
+    assert run("a.csv") == 2
+    assert "changed meanwhile" in capsys.readouterr().err
+    assert not (base / "e.zip").exists()
+
+
+def test_the_page_needs_nothing_but_itself(base):
+    """No address is in it."""
+    run(*TRACES)
+    with zipfile.ZipFile("e.zip") as packed:
+        page = packed.read("matrix.html").decode()
+    assert not re.search(r"(src|href)=\"(?!#)", page)
+    assert "2 ✓ passed" in page
