@@ -30,6 +30,7 @@ BUDGETS = {
     "tests/rvmon/coverage": 25,
     "tests/rvmon/dataflow": 6,
     "tests/rvmon/diagnostics": 1,
+    "tests/rvmon/evidence": 1,
     "tests/rvmon/execute": 20,
     "tests/rvmon/explain": 20,
     "tests/rvmon/export": 10,

@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
-from rvmon.cli.say import say, warn
+from rvmon.cli.say import say
 from rvmon.verdict.rows import VerdictRow
 
 if TYPE_CHECKING:
@@ -77,9 +77,9 @@ def run(arguments: argparse.Namespace) -> int:
     except TamperedError as error:
         differ, unchecked = [str(error)], []
     for one in differ:
-        warn(f"differs: {one}")
+        say(f"differs: {one}")
     for one in unchecked:
-        warn(f"not checked: {one}")
+        say(f"not checked: {one}")
     if differ:
         say("It does not hold.")
         return 1
@@ -97,7 +97,6 @@ def _verified(kept: Kept, arguments: argparse.Namespace) -> tuple[list[str], lis
 
     about, items = kept.about, kept.items
     say(f"{arguments.file}: {about.name}, judged by rvmon {about.rvmon}, law {about.law}")
-    say(f"SHA-256 of the file: {kept.sha256}")
     differ, unchecked = _recordings(about.recordings)
     there = [item for item in items if item not in differ and item not in unchecked]
     differ = [f"{name} is not the recording that was judged" for name in differ]

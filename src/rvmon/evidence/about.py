@@ -7,6 +7,7 @@ import platform
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
+from functools import cache
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
@@ -119,8 +120,9 @@ def _files(paths: Iterable[Path]) -> Iterator[Path]:
             yield path
 
 
+@cache
 def own_program() -> Stamp:
-    """The stamp of the sources of rvmon."""
+    """The stamp of the sources of rvmon, of which this process has read some."""
     folder = Path(rvmon.__file__).parent
     return stamp_of_files(folder, [folder])
 

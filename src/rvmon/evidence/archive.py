@@ -59,8 +59,8 @@ def pack(entries: Mapping[str, bytes]) -> bytes:
     return made.getvalue()
 
 
-def unpack(path: str) -> tuple[dict[str, bytes], str]:
-    """The entries of an archive without their checksums, and its own SHA-256.
+def unpack(path: str) -> dict[str, bytes]:
+    """The entries of an archive without their checksums.
 
     Raises:
         RvmonError: it cannot be read, or is nothing that `pack` writes.
@@ -79,7 +79,7 @@ def unpack(path: str) -> tuple[dict[str, bytes], str]:
     _expect_sums(path, entries, sums)
     if pack(entries) != data:
         raise TamperedError(f"{path} holds more than its entries, or holds them otherwise")
-    return entries, hashlib.sha256(data).hexdigest()
+    return entries
 
 
 def _entries(path: str, data: bytes) -> dict[str, bytes]:

@@ -149,13 +149,11 @@ class Kept:
         about: what it was made of.
         entries: all that it holds, by name.
         folder: of the requirements as files, as long as it is open.
-        sha256: of the archive.
     """
 
     about: About
     entries: Mapping[str, bytes]
     folder: Path
-    sha256: str
 
     @property
     def specs(self) -> dict[str, Path]:
@@ -215,7 +213,7 @@ def opened_evidence(path: str) -> Iterator[Kept]:
         RvmonError: it cannot be read, is none, or one of a later rvmon.
         TamperedError: it was changed since it was written.
     """
-    entries, sha256 = unpack(path)
+    entries = unpack(path)
     try:
         told = entries[ABOUT]
         _ = entries[VERDICTS]
@@ -241,4 +239,4 @@ def opened_evidence(path: str) -> Iterator[Kept]:
             raise RvmonError(f"{path}: {error.strerror or error}") from None
         # Specifications may import what lies in their project: here that is this folder.
         (folder / "pyproject.toml").touch()
-        yield Kept(about, entries, folder, sha256)
+        yield Kept(about, entries, folder)

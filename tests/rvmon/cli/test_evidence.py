@@ -72,7 +72,7 @@ def verify(capsys, *words):
 
 def rewritten(path, change):
     """Change entries, and make an archive of them whose checksums are right."""
-    entries, _ = unpack(path)
+    entries = unpack(path)
     change(entries)
     with open(path, "wb") as file:
         file.write(pack(entries))
@@ -88,7 +88,7 @@ def test_the_same_run_gives_the_same_bytes(base):
 def test_it_holds_what_verdicts_follow_from(base, capsys):
     """Texts with imports, options, hashes, versions, verdicts, coverage, the matrix."""
     assert run(*TRACES, "--coverage", "c.db") == 2
-    entries, _ = unpack("e.zip")
+    entries = unpack("e.zip")
     assert entries["spec/common.rv"] == COMMON.encode()
     assert entries["spec/specs/base.rv"] == SPEC.encode()
     about = json.loads(entries["evidence.json"])

@@ -17,6 +17,10 @@ PAGES = {
         {"run", "compare"},
     ),
     "after-an-incident": (["base.rv"], {"clip", "run"}),
+    "keep-evidence": (
+        ["base.rv", "monday/a.csv", "monday/b.csv", "monday/b.csv"],
+        {"run", "evidence"},
+    ),
     "watch-a-running-robot": (["base.rv", "robot.jsonl"], {"watch"}),
 }
 """The files that a page writes, in its order, and the commands that it shows."""
