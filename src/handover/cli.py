@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
-from rvmon.cli import guarded
+from rvmon.cli import evidence, guarded
 from rvmon.cli.campaign import (
     INTERRUPTED,
     add_campaign_options,
@@ -28,7 +28,6 @@ from rvmon.cli.campaign import (
     mutate_code,
     names_of,
 )
-from rvmon.cli.evidence import add_evidence
 from rvmon.cli.numbers import positive
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_replay(commands)
     _add_shrink(commands)
     _add_mutate(commands)
-    add_evidence(commands, _campaign)
+    evidence.add_parser(commands, _campaign)
     return parser
 
 

@@ -13,8 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cli import guarded
-from rvmon.cli.evidence import add_evidence
+from rvmon.cli import evidence, guarded
 from rvmon.cli.numbers import duration, number_or_folder, positive
 from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
@@ -112,7 +111,7 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
     )
     mutate.set_defaults(run=_mutate)
-    add_evidence(commands, lambda: campaign)
+    evidence.add_parser(commands, lambda: campaign)
     return parser
 
 

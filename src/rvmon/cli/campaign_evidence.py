@@ -18,16 +18,24 @@ from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.unfinished import sources_of
 from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError
-from rvmon.evidence.about import About, Stamp, own_program, package_versions, stamp_of_files
-from rvmon.evidence.keep import COVERAGE, Kept, Texts, coverage_json, texts_of, write_evidence
+from rvmon.evidence.keep import (
+    COVERAGE,
+    About,
+    Kept,
+    coverage_json,
+    own_program,
+    package_versions,
+    sha256_of,
+    texts_of,
+    write_evidence,
+)
 from rvmon.report.folder import refuse_no_file
 from rvmon.session import Spec
 from rvmon.verdict.rows import VerdictRow
-from rvmon.verdict.verdict import Verdict
 
 
-def begun(campaign: Campaign, path: str) -> Texts:
-    """The requirements of a campaign as they are before it is played, and after.
+def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
+    """The texts of requirements, before the campaign is played, and after.
 
     Args:
         campaign: that is to be played.
@@ -45,7 +53,7 @@ def begun(campaign: Campaign, path: str) -> Texts:
 
 def write_campaign(
     path: str,
-    before: Texts,
+    before: tuple[dict[str, bytes], list[str]],
     results: Results,
     summary: CampaignSummary,
     specs: Mapping[str, Spec],
@@ -65,22 +73,19 @@ def write_campaign(
         RvmonError: it was interrupted, has changed meanwhile, or cannot be written.
     """
     campaign = results.plan.campaign
-    if results.cut_short:
-        raise RvmonError(f"--evidence: {results.cut_short}: evidence is of whole campaigns")
-    if begun(campaign, path) != before:
-        raise RvmonError("--evidence: requirements have changed meanwhile: run it again")
-    jobs = {f"{one.job.robot}/{one.job.test.name}": one.job.test for one in results.played}
+    if results.cut_short or begun(campaign, path) != before:
+        why = results.cut_short or "requirements have changed meanwhile"
+        raise RvmonError(f"--evidence: none is kept: {why}: run it again")
+    tests = {_name(one.job): one.job.test for one in results.played}
     about = About(
         name=campaign.name,
-        packages=dict(package_versions(campaign.packages)),
-        programs={"rvmon": own_program(), campaign.name: program_of(campaign)},
-        specs=before.specs,
+        packages=package_versions(campaign.packages),
+        programs={"rvmon": own_program()} | programs_of(campaign),
+        specs=dict(zip(specs, before[1], strict=True)),
         command=[campaign.program or Path(sys.argv[0]).name, *map(str, words)],
         timeout_s=campaign.timeout_s,
-        planted={name: test.mutation for name, test in jobs.items() if test.mutation is not None},
+        planted={name: test.mutation for name, test in tests.items() if test.mutation is not None},
     )
-    table = {**campaign.presentation.document(summary)}
-    table.pop("seconds", None)  # those that it took
     covered = {
         robot: (
             coverage_model(campaign, robot),
@@ -92,9 +97,11 @@ def write_campaign(
         )
         for robot in campaign.robots
     }
+    table = {**campaign.presentation.document(summary)}
+    table.pop("seconds", None)  # those that it took
     entries = {
-        **before.entries,
-        **{f"tests/{test.name}.json": to_json(test) for test in jobs.values()},
+        **before[0],
+        **{f"tests/{test.name}.json": to_json(test) for test in tests.values()},
         "table.json": document_json(table),
         COVERAGE: coverage_json(covered),
     }
@@ -102,23 +109,26 @@ def write_campaign(
     write_evidence(path, about, entries, specs, rows)
 
 
-def program_of(campaign: Campaign) -> Stamp:
-    """The stamp of what a campaign tests, and tests with."""
-    paths = sources_of(campaign)
-    return stamp_of_files(paths[0].parent, paths)
+def programs_of(campaign: Campaign) -> dict[str, str]:
+    """SHA-256 of the files and folders that outcomes of a campaign depend on, by name."""
+    return {f"{one.parent.name}/{one.name}": sha256_of(one) for one in sources_of(campaign)}
+
+
+def _name(job: Job) -> str:
+    return f"{job.robot}/{job.test.name}"
 
 
 def _rows(job: Job, outcome: Outcome) -> Iterator[VerdictRow]:
-    name = f"{job.robot}/{job.test.name}"
+    name = _name(job)
     error = "" if outcome.ending is Ending.COMPLETED else f"{outcome.ending}: {outcome.error}"
     for requirement, verdict in outcome.verdicts.items():
         reason = outcome.reasons.get(requirement, "")
         yield VerdictRow(name, requirement, verdict=verdict.value, reason=reason, error=error)
     for hit in outcome.illegal:
-        yield VerdictRow(name, verdict=Verdict.FAIL.value, reason=hit)
+        yield VerdictRow(name, verdict="F", reason=hit)
 
 
-def with_robots(campaign: Campaign, kept: Kept) -> Campaign:
+def as_kept(campaign: Campaign, kept: Kept) -> Campaign:
     """The campaign as it made evidence: with its robots, judged by the requirements in there.
 
     Args:
@@ -128,10 +138,9 @@ def with_robots(campaign: Campaign, kept: Kept) -> Campaign:
     Raises:
         RvmonError: the campaign has no such robot.
     """
-    specs = kept.specs
-    if unknown := [name for name in specs if name not in campaign.robots]:
-        raise RvmonError(f"{campaign.name} has no robot {', '.join(unknown)}: is it the campaign?")
-    robots = {name: replace(campaign.robots[name], spec=spec) for name, spec in specs.items()}
+    if unknown := kept.specs.keys() - campaign.robots.keys():
+        raise RvmonError(f"{campaign.name} has no robot {', '.join(sorted(unknown))}")
+    robots = {name: replace(campaign.robots[name], spec=spec) for name, spec in kept.specs.items()}
     return replace(campaign, robots=robots, timeout_s=kept.about.timeout_s)
 
 
@@ -141,26 +150,22 @@ def played_again(
     """Play tests of evidence again; their code is not measured.
 
     Args:
-        campaign: of `with_robots`.
+        campaign: of `as_kept`.
         kept: the evidence.
         chosen: robots and tests.
         jobs: processes.
-    """
-    own = replace(campaign, code=None)
-    tests = [_job(own, kept, name) for name in chosen]
-    played = outcomes(own, tests, jobs=jobs, controls=False)
-    for job, (outcome, _) in zip(tests, played, strict=True):
-        yield from _rows(job, outcome)
-
-
-def _job(campaign: Campaign, kept: Kept, name: str) -> Job:
-    """A test of evidence on its robot.
 
     Raises:
-        RvmonError: there is no such robot, or no such test.
+        RvmonError: a test is none, or not there.
     """
-    robot, _, test = name.partition("/")
-    entry = f"tests/{test}.json"
-    if robot not in campaign.robots or entry not in kept.entries:
-        raise RvmonError(f"{campaign.name} has no robot `{robot}`, or the evidence no `{entry}`")
-    return Job(from_json(kept.entries[entry], campaign.test, source=entry), robot)
+    tests = []
+    for name in chosen:
+        robot, _, test = name.partition("/")
+        entry = f"tests/{test}.json"
+        if robot not in campaign.robots:
+            raise RvmonError(f"{campaign.name} has no robot {robot}")
+        body = kept.entries.get(entry, b"")
+        tests.append(Job(from_json(body, campaign.test, source=entry), robot))
+    played = outcomes(replace(campaign, code=None), tests, jobs=jobs, controls=False)
+    for job, (outcome, _) in zip(tests, played, strict=True):
+        yield from _rows(job, outcome)

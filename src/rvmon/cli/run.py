@@ -35,7 +35,6 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.cli.beside import Options
     from rvmon.cli.judging import Judged
-    from rvmon.cli.run_evidence import Begun
     from rvmon.reproducer import Case
     from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
@@ -144,8 +143,9 @@ def run(arguments: argparse.Namespace) -> int:
     given = arguments.spec
     with unpacked(arguments) as case:
         if case is not None:
-            if arguments.traces:
-                raise RvmonError(f"{given} brings its recording along: name no other")
+            if arguments.traces or arguments.evidence:
+                told = "name no other, and keep no evidence of it"
+                raise RvmonError(f"{given} brings its recording along: {told}")
             arguments.traces = [case.recording]
         return _run(arguments, case, given)
 
@@ -158,7 +158,11 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _show_warnings(spec)
     traces = list(found_recordings(arguments.traces))
     _refuse_places(arguments, traces, spec)
-    before = _evidence_begun(arguments, traces, case)
+    before = None
+    if arguments.evidence is not None:
+        from rvmon.cli.evidence_write import begun, write_run
+
+        before = begun(arguments, traces)
     must_trigger = ids_of(arguments.require_triggered or None, spec)
     known = _known_failures(arguments, spec)
     judged = _judged(arguments, traces, spec, options, case)
@@ -167,8 +171,6 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _show_known(known, reports)
     write_files(arguments, spec, judged, known, given if case else "")
     if before is not None:
-        from rvmon.cli.run_evidence import write_run
-
         write_run(arguments, spec, judged, before)
     if case is not None:
         compare_expected(judged[0], case)
@@ -182,19 +184,6 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
             warn(f"{name} was triggered in no recording")
         failed |= bool(silent)
     return int(failed)
-
-
-def _evidence_begun(
-    arguments: argparse.Namespace, traces: Sequence[str], case: Case | None
-) -> Begun | None:
-    """What evidence says of the inputs, if it is asked for."""
-    if arguments.evidence is None:
-        return None
-    if case is not None:
-        raise RvmonError("--evidence is of recordings, not of a reproducer")
-    from rvmon.cli.run_evidence import begun
-
-    return begun(arguments, traces)
 
 
 def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:

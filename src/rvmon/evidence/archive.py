@@ -1,7 +1,6 @@
 """An archive whose bytes follow from what it holds: a zip file, sorted, without stamps of time.
 
-Its entries are stored as they are, as compressors differ from machine to machine. Whatever rvmon
-would not have written so is refused, or told: nothing can hide beside what the archive shows.
+Its entries are stored as they are: compressors differ from machine to machine.
 """
 
 from __future__ import annotations
@@ -19,22 +18,9 @@ SUMS = "SHA256SUMS"
 
 MOST_BYTES = 1 << 30
 
-MOST_ENTRIES = 65_000
-"""More need another form of index."""
-
-_MOST_INDEX = 1 << 24
-"""Bytes of the index."""
-
-_INDEX_END, _OTHER_INDEX = 22, 20
-"""Bytes behind the index: the last of a zip file without a comment. Before them stand those of the
-other form, where it has that."""
-
-_STAMP = (1980, 1, 1, 0, 0, 0)
-_UNIX, _RIGHTS = 3, 0o100644 << 16
-
 
 class TamperedError(RvmonError):
-    """An archive does not hold what was written."""
+    """Evidence is not what was written."""
 
 
 def pack(entries: Mapping[str, bytes]) -> bytes:
@@ -46,17 +32,23 @@ def pack(entries: Mapping[str, bytes]) -> bytes:
     >>> pack({"b": b"1", "a": b"2"}) == pack({"a": b"2", "b": b"1"})
     True
     """
+    sums = "".join(_sum(name, body) for name, body in sorted(entries.items()))
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w") as packed:
-        for name, body in sorted({**entries, SUMS: _sums(entries)}.items()):
-            entry = zipfile.ZipInfo(name, _STAMP)
-            entry.create_system, entry.external_attr = _UNIX, _RIGHTS
+        for name, body in sorted({**entries, SUMS: sums.encode()}.items()):
+            entry = zipfile.ZipInfo(name)
+            entry.create_system, entry.external_attr = (
+                3,
+                0o100644 << 16,
+            )  # as of Unix, whatever it is
             packed.writestr(entry, body)
-        index_at = packed.start_dir
-    index = made.tell() - index_at
-    if made.tell() > MOST_BYTES or index > _MOST_INDEX or len(entries) > MOST_ENTRIES:
-        raise RvmonError(f"{len(entries):,} entries, {made.tell():,} bytes: too much for evidence")
+    if made.tell() > MOST_BYTES:
+        raise RvmonError(f"evidence of {made.tell():,} bytes is too much: judge fewer at once")
     return made.getvalue()
+
+
+def _sum(name: str, body: bytes) -> str:
+    return f"{hashlib.sha256(body).hexdigest()}  {name}\n"
 
 
 def unpack(path: str) -> dict[str, bytes]:
@@ -64,60 +56,28 @@ def unpack(path: str) -> dict[str, bytes]:
 
     Raises:
         RvmonError: it cannot be read, or is nothing that `pack` writes.
-        TamperedError: it was changed since.
+        TamperedError: it was changed since, or is no archive.
     """
     try:
-        if not Path(path).is_file():
-            raise RvmonError(f"{path}: there is no such file")
-        if Path(path).stat().st_size > MOST_BYTES:
-            raise RvmonError(f"{path} is larger than {MOST_BYTES >> 30} GB, and is no evidence")
+        if not Path(path).is_file() or Path(path).stat().st_size > MOST_BYTES:
+            raise RvmonError(f"{path} is no file, or larger than {MOST_BYTES >> 30} GB")
         data = Path(path).read_bytes()
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror or error}") from None
-    entries = _entries(path, data)
-    sums = entries.pop(SUMS, b"")
-    _expect_sums(path, entries, sums)
-    if pack(entries) != data:
-        raise TamperedError(f"{path} holds more than its entries, or holds them otherwise")
-    return entries
-
-
-def _entries(path: str, data: bytes) -> dict[str, bytes]:
-    entries: dict[str, bytes] = {}
-    end = data[-_INDEX_END:]
-    before = data[-_INDEX_END - _OTHER_INDEX : -_INDEX_END]
-    is_bounded = int.from_bytes(end[12:16], "little") <= _MOST_INDEX
-    if not end.startswith(b"PK\5\6") or before.startswith(b"PK\6\7") or not is_bounded:
-        raise RvmonError(f"{path} is no evidence, or a damaged one: its end is not that of one")
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
-            left = len(data)
-            for entry in packed.infolist():
-                left -= entry.file_size
-                if entry.compress_type != zipfile.ZIP_STORED or entry.flag_bits & 1 or left < 0:
-                    raise RvmonError(f"{path} is no evidence: its entries are packed or overlap")
-                if entry.filename in entries:
-                    raise RvmonError(f"{path} is no evidence: it has two `{entry.filename}`")
-                entries[entry.filename] = packed.read(entry)
-    except (zipfile.BadZipFile, EOFError, ValueError, NotImplementedError, OSError) as error:
-        raise TamperedError(f"{path} is damaged: {error}") from None
+            found = packed.infolist()
+            # What is stored as it is, and once, is no larger than the file: nothing unfolds.
+            is_packed = any(entry.compress_type != zipfile.ZIP_STORED for entry in found)
+            is_doubled = len({entry.filename for entry in found}) < len(found)
+            if is_packed or is_doubled or sum(entry.file_size for entry in found) > len(data):
+                raise RvmonError(f"{path} is no evidence: entries are packed, doubled or overlap")
+            entries = {entry.filename: packed.read(entry) for entry in found}
+    except (zipfile.BadZipFile, EOFError, ValueError, NotImplementedError, RuntimeError) as error:
+        raise TamperedError(f"{path} is no evidence, or a damaged one: {error}") from None
+    sums = entries.pop(SUMS, b"").decode("utf-8", "replace")
+    if pack(entries) != data:
+        other = [name for name, body in entries.items() if _sum(name, body) not in sums]
+        told = ", ".join(other) or "its form, or what it lacks"
+        raise TamperedError(f"{path} was changed since it was written: {told}")
     return entries
-
-
-def _sums(entries: Mapping[str, bytes]) -> bytes:
-    lines = (f"{hashlib.sha256(body).hexdigest()}  {name}\n" for name, body in entries.items())
-    return "".join(sorted(lines, key=lambda line: line[66:])).encode()
-
-
-def _expect_sums(path: str, entries: Mapping[str, bytes], sums: bytes) -> None:
-    """See that the checksums are those of the entries.
-
-    Raises:
-        TamperedError: they are not; named are the entries.
-    """
-    said = set(sums.decode("utf-8", "replace").splitlines())
-    have = _sums(entries).decode().splitlines()
-    other = {line[66:] for line in said.symmetric_difference(have)}
-    if other:
-        names = ", ".join(sorted(other))
-        raise TamperedError(f"{path}: {SUMS} says otherwise of {names}: changed, added or removed")

@@ -1,20 +1,26 @@
-"""Evidence written, and opened again."""
+"""Evidence: what it is made of, how it is written and opened again."""
 
 from __future__ import annotations
 
 import csv
+import hashlib
+import platform
+import re
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
+from functools import cache
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Literal, NamedTuple
 
 import msgspec
 
+import rvmon
+from rvmon.cache import file_stamps
 from rvmon.coverage.hits import Hits, count_of, merged, share
 from rvmon.coverage.model import Model
 from rvmon.errors import RvmonError
-from rvmon.evidence.about import FORMAT, About
 from rvmon.evidence.archive import TamperedError, pack, unpack
 from rvmon.evidence.matrix import Row, matrix_csv, matrix_page, rows_by_item, trace_matrix
 from rvmon.reproducer import (
@@ -27,73 +33,147 @@ from rvmon.reproducer import (
 from rvmon.results.write import csv_bytes
 from rvmon.session import Spec
 from rvmon.verdict.rows import VerdictRow
+from rvmon.verdict.verdict import LAW
 from rvmon.writing import write_whole
 
 ABOUT, VERDICTS, COVERAGE = "evidence.json", "verdicts.csv", "coverage.json"
-"""Entries, beside the requirements and the tests."""
-
-_FOLDERS = ("spec/", "binding/")
-"""Entries that are read as files."""
 
 
-@dataclass(frozen=True, slots=True)
-class Texts:
-    """The requirements as their files say them, with all that these name.
+class Judging(msgspec.Struct, frozen=True):
+    """How recordings were judged, as the options of `rvmon run` say it."""
+
+    only: str | None
+    const: list[str]
+    until: float | None
+    time: str | None
+    map: list[str]
+    nan: str | None
+    clock: str | None
+    binding: str | None
+    allow_missing: str | None
+    engine: str
+    strict_columns: bool
+    robustness: bool
+
+
+class About(msgspec.Struct, frozen=True, kw_only=True):
+    """How evidence was made.
 
     Attributes:
-        entries: by name.
-        specs: entry of the requirements, by robot.
-        binding: entry of the binding, if there is one.
+        name: of the specification, or of the campaign.
+        programs: SHA-256 of the sources of rvmon and, of a campaign, of what it depends on.
+        specs: entries with the requirements, by robot; of recordings by an empty name.
+        command: of a campaign, the words that run it.
+        recordings: SHA-256 by path.
+        judging: how recordings were judged; `None` of a campaign.
+        timeout_s: of a campaign, seconds that a test could take.
+        planted: of a campaign, the faults of tests on a robot that had one, by robot and test.
     """
 
-    entries: Mapping[str, bytes]
+    name: str
+    rvmon: str = rvmon.__version__
+    law: int = LAW
+    python: str = msgspec.field(default_factory=platform.python_version)
+    packages: dict[str, str]
+    programs: dict[str, str]
     specs: dict[str, str]
-    binding: str | None = None
+    command: list[str] = []
+    recordings: dict[str, str] = {}
+    judging: Judging | None = None
+    timeout_s: float | None = None
+    planted: dict[str, str] = {}
+    format: Literal[1] = 1
 
 
-def texts_of(specs: Mapping[str, str | Path], binding: str | None = None) -> Texts:
-    """Read the files of requirements.
+class Kept(NamedTuple):
+    """Evidence that is open.
+
+    Attributes:
+        about: what it was made of.
+        entries: all that it holds, by name.
+        items: the verdicts by recording; of a campaign by robot and test.
+        specs: the files of the requirements, by robot, as long as it is open.
+        binding: path of the binding, if there is one.
+    """
+
+    about: About
+    entries: Mapping[str, bytes]
+    items: Mapping[str, list[Row]]
+    specs: Mapping[str, Path]
+    binding: str | None
+
+
+def sha256_of(path: Path) -> str:
+    """The SHA-256 of a file; of a folder, that of the lines `sha256sum` has for its files.
+
+    Raises:
+        OSError: there is none.
+    """
+    if path.is_file():
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    files = [Path(name) for name, _, _ in file_stamps(str(path))]
+    lines = sorted(f"{sha256_of(one)}  {one.relative_to(path).as_posix()}\n" for one in files)
+    return hashlib.sha256("".join(lines).encode()).hexdigest()
+
+
+@cache
+def own_program() -> str:
+    """The SHA-256 of the sources of rvmon, of which this process has read some."""
+    return sha256_of(Path(rvmon.__file__).parent)
+
+
+def package_versions(further: Iterable[str] = ()) -> dict[str, str]:
+    """The versions of the packages that rvmon can make use of, and of further ones."""
+    needs: list[str] = []
+    with suppress(PackageNotFoundError):
+        needs = [one for one in requires("rvmon") or () if "'dev'" not in one]
+    found: dict[str, str] = {}
+    for name in sorted({re.split(r"[^\w.-]", one)[0] for one in needs} | {*further}):
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
+
+
+def texts_of(
+    specs: Mapping[str, str | Path], binding: str | None = None
+) -> tuple[dict[str, bytes], list[str]]:
+    """The entries of requirements with all that they import, and of a binding.
 
     Args:
         specs: paths, by robot; of recordings by an empty name.
         binding: path.
 
+    Returns:
+        The entries, and the names of the files that were asked for among them, in order.
+
     Raises:
         RvmonError: one cannot be read.
     """
     try:
-        found, places = [], {}
-        for robot, spec in specs.items():
-            own = files_under(f"spec/{robot}".rstrip("/"), str(spec), imported_files(str(spec)))
-            found += own
-            places[robot] = own[0][0]
-        bound = None
+        parts = [
+            files_under(f"spec/{robot}".rstrip("/"), str(path), imported_files(str(path)))
+            for robot, path in specs.items()
+        ]
         if binding is not None:
-            own = files_under("binding", binding, definition_files(binding))
-            found += own
-            bound = own[0][0]
-        return Texts({name: path.read_bytes() for name, path in found}, places, bound)
+            parts.append(files_under("binding", binding, definition_files(binding)))
+        return {name: path.read_bytes() for one in parts for name, path in one}, [
+            one[0][0] for one in parts
+        ]
     except (OSError, ValueError) as error:
-        raise RvmonError(f"evidence cannot be kept of these files: {error}") from None
+        raise RvmonError(f"--evidence: these files cannot be kept: {error}") from None
 
 
 def coverage_json(covered: Mapping[str, tuple[Model, Iterable[Hits]]]) -> bytes:
-    """What was hit of coverage models, by robot: the share, and each item with its hits."""
+    """What was hit of coverage models, by robot: the share, and how often each item was."""
     document = {}
     for robot, (model, several) in covered.items():
         hits = merged(several)
         groups = {
-            group.name: {
-                item.name: {
-                    "kind": item.kind,
-                    "goal": item.goal,
-                    "hits": count_of(hits, group.name, item.name),
-                }
-                for item in group.items.values()
-            }
-            for group in model.groups.values()
+            group: {item: count_of(hits, group, item) for item in model.groups[group].items}
+            for group in model.groups
         }
-        document[robot] = {"share": share(hits, model), "groups": groups}
+        document[robot] = {"share": share(hits, model), "hits": groups}
     return msgspec.json.format(msgspec.json.encode(document))
 
 
@@ -117,92 +197,31 @@ def write_evidence(
         RvmonError: it cannot be written.
     """
     verdicts = csv_bytes(rows)
-    told = msgspec.json.format(msgspec.json.encode(about)) + b"\n"
-    derived = matrix_entries(about, specs, verdicts)
+    derived = derived_entries(about, specs, rows_by_item(verdicts))
+    told = msgspec.json.format(msgspec.json.encode(about))
     try:
         write_whole(path, pack({**entries, **derived, ABOUT: told, VERDICTS: verdicts}))
     except OSError as error:
         raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 
 
-def matrix_entries(about: About, specs: Mapping[str, Spec], verdicts: bytes) -> dict[str, bytes]:
-    """The entries that follow from requirements and verdicts.
-
-    Args:
-        about: what the evidence was made of.
-        specs: the requirements, by robot.
-        verdicts: as CSV.
+def derived_entries(
+    about: About, specs: Mapping[str, Spec], items: Mapping[str, list[Row]]
+) -> dict[str, bytes]:
+    """The entries that follow from requirements and verdicts: the matrix, and its page.
 
     Raises:
-        ValueError: they are none.
+        ValueError: a verdict is none.
     """
     checked = {robot: spec.checked for robot, spec in specs.items()}
-    matrix = trace_matrix(checked, rows_by_item(verdicts), about)
-    return {"matrix.csv": matrix_csv(matrix), "matrix.html": matrix_page(matrix, about)}
-
-
-@dataclass(frozen=True, slots=True)
-class Kept:
-    """Evidence that is open.
-
-    Attributes:
-        about: what it was made of.
-        entries: all that it holds, by name.
-        folder: of the requirements as files, as long as it is open.
-    """
-
-    about: About
-    entries: Mapping[str, bytes]
-    folder: Path
-
-    @property
-    def specs(self) -> dict[str, Path]:
-        """The files of the requirements, by robot."""
-        return {name: placed(self.folder, place) for name, place in self.about.specs.items()}
-
-    @property
-    def binding(self) -> str | None:
-        """Path of the binding, if there is one."""
-        if self.about.judging is None or self.about.judging.binding is None:
-            return None
-        path = str(placed(self.folder, self.about.judging.binding))
-        expect_definitions_inside(self.folder, path)
-        return path
-
-    @property
-    def items(self) -> dict[str, list[Row]]:
-        """The verdicts by recording; of a campaign by robot and test.
-
-        Raises:
-            TamperedError: they are none, or of other recordings.
-        """
-        try:
-            found = rows_by_item(self.entries[VERDICTS])
-        except (ValueError, csv.Error) as error:
-            raise TamperedError(f"{VERDICTS} holds no verdicts: {error}") from None
-        other = found.keys() - self.about.recordings.keys()
-        if self.about.judging is not None and other:
-            raise TamperedError(f"{VERDICTS} is of other recordings: {', '.join(sorted(other))}")
-        return found
-
-    def expect_matrix(self, specs: Mapping[str, Spec]) -> None:
-        """See that the matrix follows from requirements and verdicts.
-
-        Raises:
-            TamperedError: it does not.
-        """
-        try:
-            derived = matrix_entries(self.about, specs, self.entries[VERDICTS])
-        except ValueError as error:
-            raise TamperedError(f"{VERDICTS} holds no verdicts: {error}") from None
-        for name, body in derived.items():
-            if self.entries.get(name) != body:
-                raise TamperedError(f"{name} does not follow from requirements and verdicts")
-
-
-class _Version(msgspec.Struct):
-    format: int
-    rvmon: str = "another version"
+    matrix = trace_matrix(checked, items, about.planted)
+    facts = {
+        "judged by": f"rvmon {about.rvmon}, law {about.law}, Python {about.python}",
+        "requirements": ", ".join(about.specs.values()),
+        "command": " ".join(about.command),
+    }
+    page = matrix_page(f"{about.name}: what shows its requirements", facts, matrix)
+    return {"matrix.csv": matrix_csv(matrix), "matrix.html": page}
 
 
 @contextmanager
@@ -215,28 +234,27 @@ def opened_evidence(path: str) -> Iterator[Kept]:
     """
     entries = unpack(path)
     try:
-        told = entries[ABOUT]
-        _ = entries[VERDICTS]
-        found = msgspec.json.decode(told, type=_Version)
-        if found.format != FORMAT:
-            raise RvmonError(
-                f"{path}: evidence of a later form ({found.format}), by rvmon {found.rvmon}: "
-                "install that or a later one"
-            )
-        about = msgspec.json.decode(told, type=About)
-    except (KeyError, msgspec.MsgspecError, UnicodeDecodeError) as error:
-        raise RvmonError(f"{path} is no evidence of rvmon: {error}") from None
+        about = msgspec.json.decode(entries[ABOUT], type=About)
+        items = rows_by_item(entries[VERDICTS])
+    except (KeyError, ValueError, csv.Error) as error:
+        raise RvmonError(f"{path} is no evidence that this rvmon can read: {error}") from None
+    if about.judging is not None and (other := items.keys() - about.recordings.keys()):
+        raise TamperedError(f"{VERDICTS} is of other recordings: {', '.join(sorted(other))}")
     with TemporaryDirectory(prefix="rvmon-") as temporary:
         folder = Path(temporary, "evidence")
-        folder.mkdir()
         try:
             for name, body in entries.items():
-                if name.startswith(_FOLDERS):
+                if name.startswith(("spec/", "binding/")):
                     target = placed(folder, name)
                     target.parent.mkdir(parents=True, exist_ok=True)
                     target.write_bytes(body)
+            # Specifications may import what lies in their project: here that is this folder.
+            (folder / "pyproject.toml").touch()
         except OSError as error:
             raise RvmonError(f"{path}: {error.strerror or error}") from None
-        # Specifications may import what lies in their project: here that is this folder.
-        (folder / "pyproject.toml").touch()
-        yield Kept(about, entries, folder)
+        specs = {robot: placed(folder, name) for robot, name in about.specs.items()}
+        binding = about.judging.binding if about.judging is not None else None
+        if binding is not None:
+            binding = str(placed(folder, binding))
+            expect_definitions_inside(folder, binding)
+        yield Kept(about, entries, items, specs, binding)

@@ -67,7 +67,10 @@ def test_every_byte_counts(file):
 def test_what_was_changed_is_named(file, entries):
     """An entry that is another, one more, or one less, with the sums that were written."""
     sums = zipfile.ZipFile(io.BytesIO(pack(ENTRIES))).read("SHA256SUMS")
-    with pytest.raises(TamperedError, match=r"says otherwise of (verdicts.csv|more|empty)"):
+    with pytest.raises(
+        TamperedError,
+        match=r"changed since it was written: (verdicts.csv|more|its form, or what it lacks)",
+    ):
         unpack(file(zipped([*entries.items(), ("SHA256SUMS", sums)])))
 
 
@@ -100,9 +103,9 @@ def overlapping():
 @pytest.mark.parametrize(
     ("data", "told"),
     [
-        (zipped([("a", b"0" * 1_000_000)], zipfile.ZIP_DEFLATED), "packed or overlap"),
-        (zipped([("a", b"1"), ("b", b"2")]).replace(b"b", b"a"), "two `a`"),
-        (overlapping(), "packed or overlap|damaged"),
+        (zipped([("a", b"0" * 1_000_000)], zipfile.ZIP_DEFLATED), "packed, doubled or overlap"),
+        (zipped([("a", b"1"), ("b", b"2")]).replace(b"b", b"a"), "packed, doubled or overlap"),
+        (overlapping(), "packed, doubled or overlap"),
         (b"", "no evidence"),
         (b"PK\5\6" + b"\xff" * 18, "no evidence"),
         (pack(ENTRIES)[:-30], "no evidence"),
@@ -118,7 +121,7 @@ def test_one_that_is_too_large_is_not_read(file, monkeypatch):
     """Neither written."""
     data = pack(ENTRIES)
     monkeypatch.setattr(archive, "MOST_BYTES", 100)
-    with pytest.raises(RvmonError, match="is larger than"):
+    with pytest.raises(RvmonError, match="larger than"):
         unpack(file(data))
     with pytest.raises(RvmonError, match="too much"):
         pack(ENTRIES)
