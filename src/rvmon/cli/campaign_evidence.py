@@ -110,8 +110,11 @@ def write_campaign(
 
 
 def programs_of(campaign: Campaign) -> dict[str, str]:
-    """SHA-256 of the files and folders that outcomes of a campaign depend on, by name."""
-    return {f"{one.parent.name}/{one.name}": sha256_of(one) for one in sources_of(campaign)}
+    """SHA-256 of the folders and files that outcomes of a campaign depend on, by name."""
+    return {
+        one.name if one.is_dir() else f"{one.parent.name}/{one.name}": sha256_of(one)
+        for one in sources_of(campaign)
+    }
 
 
 def _name(job: Job) -> str:
@@ -162,8 +165,6 @@ def played_again(
     for name in chosen:
         robot, _, test = name.partition("/")
         entry = f"tests/{test}.json"
-        if robot not in campaign.robots:
-            raise RvmonError(f"{campaign.name} has no robot {robot}")
         body = kept.entries.get(entry, b"")
         tests.append(Job(from_json(body, campaign.test, source=entry), robot))
     played = outcomes(replace(campaign, code=None), tests, jobs=jobs, controls=False)

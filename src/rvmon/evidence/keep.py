@@ -217,7 +217,6 @@ def derived_entries(
     matrix = trace_matrix(checked, items, about.planted)
     facts = {
         "judged by": f"rvmon {about.rvmon}, law {about.law}, Python {about.python}",
-        "requirements": ", ".join(about.specs.values()),
         "command": " ".join(about.command),
     }
     page = matrix_page(f"{about.name}: what shows its requirements", facts, matrix)
@@ -236,10 +235,14 @@ def opened_evidence(path: str) -> Iterator[Kept]:
     try:
         about = msgspec.json.decode(entries[ABOUT], type=About)
         items = rows_by_item(entries[VERDICTS])
+        if about.judging is not None and about.specs.keys() != {""}:
+            raise ValueError("recordings are judged by one specification")
     except (KeyError, ValueError, csv.Error) as error:
         raise RvmonError(f"{path} is no evidence that this rvmon can read: {error}") from None
-    if about.judging is not None and (other := items.keys() - about.recordings.keys()):
-        raise TamperedError(f"{VERDICTS} is of other recordings: {', '.join(sorted(other))}")
+    judged = items.keys() if about.judging else {item.partition("/")[0] for item in items}
+    known = about.recordings if about.judging else about.specs
+    if other := judged - known.keys():
+        raise TamperedError(f"{VERDICTS} is of others: {', '.join(sorted(other))}")
     with TemporaryDirectory(prefix="rvmon-") as temporary:
         folder = Path(temporary, "evidence")
         try:

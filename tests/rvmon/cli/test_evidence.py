@@ -242,7 +242,7 @@ def test_only_what_was_judged_is_read(base, capsys):
 
     rewritten("e.zip", change)
     code, told = verify(capsys)
-    assert (code, "of other recordings: b.csv" in told) == (1, True)
+    assert (code, "of others: b.csv" in told) == (1, True)
 
 
 @pytest.mark.parametrize(
