@@ -145,3 +145,10 @@ def test_a_package_that_is_missing_is_named(monkeypatch):
     monkeypatch.setattr("rvmon.results.write.find_spec", lambda _: None)
     with pytest.raises(RvmonError, match="needs pyarrow, which is not installed: pip install"):
         refuse_format("v.parquet")
+
+
+def test_a_carriage_return_in_a_name_ends_no_row(tmp_path):
+    """A file of CSV with such a name reads back."""
+    path = tmp_path / "v.csv"
+    write_results(path, [VerdictRow("a\rb.csv", "R1", verdict="P")], {})
+    assert [row.recording for row in read_results(path)] == ["a\rb.csv"]
