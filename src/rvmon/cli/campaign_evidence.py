@@ -64,18 +64,17 @@ def write_campaign(
     Args:
         path: of the file.
         before: what `begun` gave before it was played.
-        results: of its tests.
+        results: of all its tests.
         summary: its figures.
         specs: what judged, by robot.
         words: the command that plays it again.
 
     Raises:
-        RvmonError: it was interrupted, has changed meanwhile, or cannot be written.
+        RvmonError: requirements have changed meanwhile, or it cannot be written.
     """
     campaign = results.plan.campaign
-    if results.cut_short or begun(campaign, path) != before:
-        why = results.cut_short or "requirements have changed meanwhile"
-        raise RvmonError(f"--evidence: none is kept: {why}: run it again")
+    if begun(campaign, path) != before:
+        raise RvmonError("--evidence: requirements have changed meanwhile: run it again")
     tests = {_name(one.job): one.job.test for one in results.played}
     about = About(
         name=campaign.name,

@@ -113,7 +113,9 @@ def conduct(
     with bar("tests", planned) as tell:
         results = execute(chosen, jobs=arguments.jobs, kept=kept, progress=tell)
     conducted = written(results, specs, folder, arguments, again)
-    if texts is not None:
+    if texts is not None and results.cut_short:
+        warn(f"{arguments.evidence}: not written: evidence is of whole campaigns")
+    elif texts is not None:
         write_campaign(arguments.evidence, texts, results, conducted.summary, specs, same)
     if folder is not None and (remark := left_over(folder, before)):
         warn(remark)
