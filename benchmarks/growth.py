@@ -49,7 +49,11 @@ def _cost(words: list[str], folder: Path) -> tuple[float, float, float]:
     """Seconds of CPU and of the clock, MB of the largest process."""
     began, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.Popen(
-        [sys.executable, "-m", *words], cwd=folder, stdout=subprocess.DEVNULL
+        [sys.executable, "-m", *words],
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
     _, status, usage = os.wait4(process.pid, 0)
     if os.waitstatus_to_exitcode(status) > 1:
@@ -96,7 +100,7 @@ def main() -> None:
         (folder / "r.csv").write_text(_recording(dice))
         return ["rvmon", "run", "s.rv", "r.csv", "--quiet"]
 
-    def tests(folder: Path, count: int) -> list[str]:
+    def tests(_: Path, count: int) -> list[str]:
         played = ["handover.cli", "run", "--strategy", "constrained", "--tests", str(count)]
         return [*played, "--legacy", "--out", "out"]
 
