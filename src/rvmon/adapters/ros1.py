@@ -6,39 +6,27 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-import msgspec
-
-from rvmon.adapters.messages import MessageFeed
+from rvmon.adapters.ros import RosSource
 from rvmon.errors import RvmonError
-from rvmon.live.clock import SimulatedClock
-from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import bag_readers, ros_topic
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.time import TICKS_PER_SECOND
 
 
-class Ros1Source:
-    """A node that offers what the topics of a feed say, from `with` on.
+class Ros1Source(RosSource):
+    """A node of ROS 1.
 
     Messages bring their definition along: packages of their types need not be installed.
 
     Args:
-        feed: gets the messages.
-        clock: follows `/clock`; `None`: the clock of the driver runs by itself.
-        verdicts: the topic on which verdicts are published, as JSON in `std_msgs/String`; `None`:
-            none are.
+        *given: as for `RosSource`.
+        **options: as for `RosSource`.
 
     Raises:
         RvmonError: rospy or rosbags is not there.
     """
 
-    def __init__(
-        self,
-        feed: MessageFeed,
-        *,
-        clock: SimulatedClock | None = None,
-        verdicts: str | None = None,
-    ) -> None:
+    def __init__(self, *given: Any, **options: Any) -> None:
+        super().__init__(*given, **options)
         try:
             import rospy
         except ImportError:
@@ -48,10 +36,6 @@ class Ros1Source:
             ) from None
         bag_readers()  # says what to install
         self._rospy = rospy
-        self._feed = feed
-        self._clock = clock
-        self._verdicts = verdicts
-        self._publisher: Any = None
         self._subscribers: list[Any] = []
         self._decoders: dict[tuple[str, str], tuple[Topic, Callable[[bytes], Any]]] = {}
 
@@ -70,11 +54,10 @@ class Ros1Source:
         if self._verdicts is not None:
             from std_msgs.msg import String
 
-            self._publisher = rospy.Publisher(self._verdicts, String, queue_size=100)
-        topics = [*self._feed.topics(), *(["/clock"] if self._clock is not None else [])]
+            self._send = rospy.Publisher(self._verdicts, String, queue_size=100).publish
         self._subscribers = [
             rospy.Subscriber(topic, rospy.AnyMsg, self._take, callback_args=topic, tcp_nodelay=True)
-            for topic in topics
+            for topic in self._topics()
         ]
         return self
 
@@ -91,16 +74,7 @@ class Ros1Source:
         except Exception as error:  # noqa: BLE001 - code that was made of the definition
             self._feed.lose(topic, f"it does not fit its definition ({error})")
             return
-        if topic == "/clock" and self._clock is not None:
-            stamp = content.clock
-            self._clock.set_ns(stamp.sec * TICKS_PER_SECOND + stamp.nanosec)
-        else:
-            self._feed.take(known, content)
-
-    def publish(self, judgement: Judgement) -> None:
-        """Publish a verdict: to be called by a driver, as its `on_judged`."""
-        if self._publisher is not None:
-            self._publisher.publish(msgspec.json.encode(judgement.to_dict()).decode())
+        self._hear(known, content)
 
     def __exit__(
         self,

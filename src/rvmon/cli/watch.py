@@ -50,9 +50,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         nargs="?",
         default="-",
         help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, whose "
-        "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (topics of ROS 1) or "
-        "dds:DOMAIN (those of ROS 2). What has a time (t, t_ns, --time) is judged at it, the "
-        "rest as it arrives",
+        "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: or ros2: (topics of "
+        "ROS; ros2:/clock goes by the clock of a simulator) or dds:DOMAIN (those of ROS 2, without "
+        "an installation of it). What has a time (t, t_ns, --time) is judged at it, the rest as it "
+        "arrives",
     )
     add_only(parser)
     add_const(parser)
@@ -155,12 +156,21 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
     return live
 
 
-def _watch_ros1(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+def _watch_ros(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     from rvmon.adapters.messages import MessageFeed
+    from rvmon.adapters.ros import CLOCK
     from rvmon.adapters.ros1 import Ros1Source
+    from rvmon.adapters.ros2 import Ros2Source
+    from rvmon.live import SimulatedClock
 
-    live, hear = _live_here(arguments, spec, shown)
-    source = Ros1Source(MessageFeed(live, spec.schema), verdicts=arguments.publish)
+    version, _, topic = arguments.source.partition(":")
+    if topic not in ("", CLOCK):
+        raise RvmonError(f"{arguments.source}: expected {version}: or {version}:{CLOCK}")
+    simulated = SimulatedClock() if topic else None
+    live, hear = _live_here(arguments, spec, shown, simulated)
+    made = Ros1Source if version == "ros1" else Ros2Source
+    feed = MessageFeed(live, spec.schema)
+    source = made(feed, clock=simulated, verdicts=arguments.publish)
     hear(source.publish)
     with live, source, shown:
         _follow(arguments, live, shown)
@@ -187,11 +197,16 @@ def _watch_dds(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live
     return live
 
 
-_DOORS = (("mqtt:", _watch_mqtt), ("ros1:", _watch_ros1), ("dds:", _watch_dds))
+_DOORS = (
+    ("mqtt:", _watch_mqtt),
+    ("ros1:", _watch_ros),
+    ("ros2:", _watch_ros),
+    ("dds:", _watch_dds),
+)
 
 
 def _live_here(
-    arguments: argparse.Namespace, spec: Spec, shown: Output
+    arguments: argparse.Namespace, spec: Spec, shown: Output, simulated: Clock | None = None
 ) -> tuple[Live, Callable[[Callable[[Judgement], object]], object]]:
     """Monitors whose samples are stamped here, and how somebody else hears their verdicts."""
     from rvmon.live import WallClock
@@ -202,7 +217,7 @@ def _live_here(
         for one in hearing:
             one(judgement)
 
-    clock = WallClock(since_1970=arguments.realtime is not None)
+    clock = simulated or WallClock(since_1970=arguments.realtime is not None)
     return _live(arguments, spec, clock, judged), hearing.append
 
 
