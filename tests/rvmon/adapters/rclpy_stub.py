@@ -146,9 +146,7 @@ def install(monkeypatch):
         "rclpy": {
             "Context": lambda: types.SimpleNamespace(try_shutdown=lambda: None),
             "Parameter": Parameter,
-            "create_node": lambda name, *, parameter_overrides, **_: Node(
-                graph, parameter_overrides
-            ),
+            "create_node": lambda *_, parameter_overrides, **__: Node(graph, parameter_overrides),
             "init": lambda **_: None,
         },
         "rclpy.clock": {"Clock": Clock, "ClockType": ClockType},
