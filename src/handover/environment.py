@@ -94,7 +94,10 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         self._played: Played | None = None
 
     def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+        self,
+        *,
+        seed: int | None = None,
+        options: dict[str, Any] | None = None,  # noqa: ARG002 - Gymnasium has it so
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Begin an episode."""
         super().reset(seed=seed)
@@ -135,7 +138,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         self._steps += 1
         world = self._played.world
         world.run(self._steps * _STEP_NS - 1)  # what comes at the instant itself, comes after it
-        samples = cast("list[Sample]", world.recorder.samples[self._said :])
+        samples = world.recorder.samples[self._said :]
         self._said += len(samples)
         happened = {name for _, values in samples for name in values}
         self._informed |= "informed" in happened
@@ -187,4 +190,4 @@ def published(spec: Spec) -> Callable[[object, object, Mapping[str, Any]], list[
     return observe
 
 
-gymnasium.register("rvmon/Handover-v0", HandoverEnv)
+gymnasium.register("rvmon/Handover-v0", f"{__name__}:{HandoverEnv.__name__}")
