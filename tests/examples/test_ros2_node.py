@@ -1,4 +1,4 @@
-"""The node of ROS 2 in C++, compiled against a stand-in for rclcpp, which cannot be installed here."""
+"""The node of ROS 2 in C++, against a stand-in for rclcpp, which cannot be installed here."""
 
 import csv
 import re
