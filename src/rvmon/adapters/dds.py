@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from rvmon.adapters.messages import MessageFeed
+from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
 from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import ros_topic, ros_types
@@ -18,8 +18,8 @@ from rvmon.readers.messages.ros import ros_topic, ros_types
 if TYPE_CHECKING:
     from rvmon.readers.messages.topic import Topic
 
-_DEPTH = 1_000
-"""Messages of a topic that wait at most within DDS."""
+_DEPTH = 10_000
+"""Messages of a topic that wait at most within DDS; one more is rejected, and told to be lost."""
 
 _PREFIX = "rt/"
 """Before the names of topics of ROS 2 on the wire."""
@@ -62,12 +62,15 @@ class DdsSource:
         self._verdicts = verdicts
         self._writer: Any = None
         self._readers: dict[str, tuple[Any, Topic]] = {}
+        self._found: dict[str, str] = {}
         self._told: set[str] = set()
         self._news = Event()
         self._stops = False
         # Within a call of DDS no entity can be made: it only wakes the thread that makes and reads.
         self._listener = Listener(
-            on_data_available=lambda _: self._news.set(), on_sample_lost=self._lose
+            on_data_available=lambda _: self._news.set(),
+            on_sample_lost=self._lose,
+            on_sample_rejected=self._lose,
         )
 
     def __enter__(self) -> DdsSource:
@@ -100,10 +103,13 @@ class DdsSource:
             self._news.wait()
             self._news.clear()
             self._find()
+            had_time = self._feed.has_time
             for reader, topic in self._readers.values():
                 for content in reader.take(N=_DEPTH):
                     if content.sample_info.valid_data:
                         self._feed.take(topic, content)
+            if not had_time and self._feed.has_time:
+                self._news.set()  # the other topics can be read now
 
     def _lose(self, reader: Any, _: object) -> None:
         for known, topic in tuple(self._readers.values()):
@@ -124,7 +130,10 @@ class DdsSource:
         for one in self._finder.take(N=1_000):
             name = getattr(one, "topic_name", "").removeprefix(_PREFIX)
             if name in self._wanted and name not in self._readers:
-                self._begin(name, one.type_name)
+                self._found[name] = one.type_name
+        ready = [one for one in self._found if self._feed.has_time or self._wanted[one] == CLOCK]
+        for name in ready:
+            self._begin(name, self._found.pop(name))
 
     def _begin(self, name: str, wire_type: str) -> None:
         from cyclonedds.core import Policy, Qos
@@ -138,7 +147,9 @@ class DdsSource:
                 self._told.add(name)
                 self._feed.lose(topic.name, f"{kind}: {topic.fault}")
             return
-        qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(_DEPTH))
+        # A history that keeps the last messages would replace others and tell nobody.
+        limits = Policy.ResourceLimits(_DEPTH, -1, -1)
+        qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepAll, limits)
         wire = DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions))
         reader = DataReader(self._participant, wire, qos=qos, listener=self._listener)
         self._readers[name] = reader, topic

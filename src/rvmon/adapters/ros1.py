@@ -6,36 +6,40 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-from rvmon.adapters.ros import RosSource
+import msgspec
+
+from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
+from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import bag_readers, ros_topic
 from rvmon.readers.messages.topic import Topic
 
 
-class Ros1Source(RosSource):
-    """A node of ROS 1.
+class Ros1Source:
+    """A node that offers what the topics of a feed say, from `with` on.
 
     Messages bring their definition along: packages of their types need not be installed.
 
     Args:
-        *given: as for `RosSource`.
-        **options: as for `RosSource`.
+        feed: gets the messages.
+        verdicts: the topic on which verdicts are published, as JSON in `std_msgs/String`; `None`:
+            none are.
 
     Raises:
         RvmonError: rospy or rosbags is not there.
     """
 
-    def __init__(self, *given: Any, **options: Any) -> None:
-        super().__init__(*given, **options)
-        try:
-            import rospy
-        except ImportError:
-            raise RvmonError(
-                "ROS 1 needs rospy, which is not there: source the setup of your ROS, or install "
-                "python3-rospy and add its folder to PYTHONPATH"
-            ) from None
+    def __init__(
+        self,
+        feed: MessageFeed,
+        *,
+        verdicts: str | None = None,
+    ) -> None:
+        self._rospy = _rospy()
         bag_readers()  # says what to install
-        self._rospy = rospy
+        self._feed = feed
+        self._verdicts = verdicts
+        self._publisher: Any = None
         self._subscribers: list[Any] = []
         self._decoders: dict[tuple[str, str], tuple[Topic, Callable[[bytes], Any]]] = {}
 
@@ -54,12 +58,28 @@ class Ros1Source(RosSource):
         if self._verdicts is not None:
             from std_msgs.msg import String
 
-            self._send = rospy.Publisher(self._verdicts, String, queue_size=100).publish
-        self._subscribers = [
-            rospy.Subscriber(topic, rospy.AnyMsg, self._take, callback_args=topic, tcp_nodelay=True)
-            for topic in self._topics()
-        ]
+            self._publisher = rospy.Publisher(self._verdicts, String, queue_size=100)
+        if self._feed.has_time:
+            self._subscribe()
+        else:
+            from rosgraph_msgs.msg import Clock  # rospy reads it, too: there is one type per topic
+
+            self._subscribers.append(rospy.Subscriber(CLOCK, Clock, self._tick, tcp_nodelay=True))
         return self
+
+    def _subscribe(self) -> None:
+        rospy = self._rospy
+        self._subscribers += [
+            rospy.Subscriber(topic, rospy.AnyMsg, self._take, callback_args=topic, tcp_nodelay=True)
+            for topic in self._feed.topics()
+            if topic != CLOCK
+        ]
+
+    def _tick(self, message: Any) -> None:
+        had_time = self._feed.has_time
+        self._feed.set_time(message.clock.secs, message.clock.nsecs)
+        if not had_time:
+            self._subscribe()
 
     def _take(self, message: Any, topic: str) -> None:
         header = message._connection_header  # rospy has no other way to the type of an AnyMsg
@@ -74,7 +94,12 @@ class Ros1Source(RosSource):
         except Exception as error:  # noqa: BLE001 - code that was made of the definition
             self._feed.lose(topic, f"it does not fit its definition ({error})")
             return
-        self._hear(known, content)
+        self._feed.take(known, content)
+
+    def publish(self, judgement: Judgement) -> None:
+        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        if self._publisher is not None:
+            self._publisher.publish(msgspec.json.encode(judgement.to_dict()).decode())
 
     def __exit__(
         self,
@@ -85,3 +110,27 @@ class Ros1Source(RosSource):
         for subscriber in self._subscribers:
             subscriber.unregister()
         self._rospy.signal_shutdown("rvmon ends")
+
+
+def uses_sim_time() -> bool:
+    """Whether nodes of ROS 1 are told to take the time of `/clock`, by the parameter of that name.
+
+    Raises:
+        RvmonError: rospy is not there, or no master answers.
+    """
+    rospy = _rospy()
+    try:
+        return bool(rospy.get_param("/use_sim_time", False))
+    except OSError as error:
+        raise RvmonError(f"no master of ROS 1 answers (ROS_MASTER_URI): {error}") from None
+
+
+def _rospy() -> Any:
+    try:
+        import rospy
+    except ImportError:
+        raise RvmonError(
+            "ROS 1 needs rospy, which is not there: source the setup of your ROS, or install "
+            "python3-rospy and add its folder to PYTHONPATH"
+        ) from None
+    return rospy

@@ -12,8 +12,11 @@ from threading import Thread
 from types import TracebackType
 from typing import Any
 
-from rvmon.adapters.ros import RosSource
+import msgspec
+
+from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
+from rvmon.live.robot import Judgement
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
 
@@ -27,22 +30,22 @@ _ARRAY = re.compile(r"sequence<(?P<of>.+?)(, \d+)?>|(?P<of_fixed>.+)\[\d+\]")
 """`sequence<double>`, `sequence<double, 3>`, `double[9]`."""
 
 
-class Ros2Source(RosSource):
-    """A node of ROS 2.
+class Ros2Source:
+    """A node of ROS 2 that offers what the topics of a feed say, from `with` on.
 
     Topics are found as somebody publishes them, with their types, whose packages have to be
     installed. Of what is published reliably, or latched, nothing is missed.
 
     Args:
-        *given: as for `RosSource`.
-        **options: as for `RosSource`; with a `clock` the node has `use_sim_time`.
+        feed: gets the messages; where it follows `/clock`, the node has `use_sim_time`.
+        verdicts: the topic on which verdicts are published, as JSON in `std_msgs/String`; `None`:
+            none are.
 
     Raises:
         RvmonError: rclpy is not there.
     """
 
-    def __init__(self, *given: Any, **options: Any) -> None:
-        super().__init__(*given, **options)
+    def __init__(self, feed: MessageFeed, *, verdicts: str | None = None) -> None:
         try:
             import rclpy
         except ImportError:
@@ -51,6 +54,9 @@ class Ros2Source(RosSource):
                 "dds:DOMAIN, which needs no ROS"
             ) from None
         self._rclpy = rclpy
+        self._feed = feed
+        self._verdicts = verdicts
+        self._publisher: Any = None
         self._found: set[str] = set()
 
     def __enter__(self) -> Ros2Source:
@@ -61,15 +67,14 @@ class Ros2Source(RosSource):
         rclpy = self._rclpy
         self._context = rclpy.Context()
         rclpy.init(context=self._context)
-        simulated = rclpy.Parameter("use_sim_time", value=self._clock is not None)
+        simulated = rclpy.Parameter("use_sim_time", value=CLOCK in self._feed.topics())
         self._node = rclpy.create_node(
             "rvmon", context=self._context, parameter_overrides=[simulated]
         )
         if self._verdicts is not None:
             from std_msgs.msg import String
 
-            publisher = self._node.create_publisher(String, self._verdicts, 100)
-            self._send = lambda text: publisher.publish(String(data=text))
+            self._publisher = self._node.create_publisher(String, self._verdicts, 100)
         # By a clock that runs where nobody publishes the simulated one, too.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._node.create_timer(_TURN_S, self._find, clock=steady)
@@ -82,7 +87,8 @@ class Ros2Source(RosSource):
 
     def _find(self) -> None:
         """Subscribe to the topics that are wanted and published."""
-        wanted = {*self._topics()} - self._found
+        wanted = {*self._feed.topics()} if self._feed.has_time else {CLOCK}
+        wanted -= self._found
         for name, types in self._node.get_topic_names_and_types():
             publishers = self._node.get_publishers_info_by_topic(name) if name in wanted else ()
             if publishers:
@@ -114,12 +120,26 @@ class Ros2Source(RosSource):
         self._node.create_subscription(
             kind,
             name,
-            lambda content: self._hear(topic, content),
+            lambda content: self._take(topic, content),
             qos,
             event_callbacks=SubscriptionEventCallbacks(
                 message_lost=lambda _: self._feed.lose(name, "some before it were lost")
             ),
         )
+
+    def _take(self, topic: Topic, content: Any) -> None:
+        had_time = self._feed.has_time
+        self._feed.take(topic, content)
+        if not had_time:
+            self._find()
+
+    def publish(self, judgement: Judgement) -> None:
+        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        if self._publisher is not None:
+            from std_msgs.msg import String
+
+            said = msgspec.json.encode(judgement.to_dict()).decode()
+            self._publisher.publish(String(data=said))
 
     def __exit__(
         self,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections import deque
+from collections import Counter, deque
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rvmon.live import Driver, Judgement, Status
     from rvmon.session import Spec
 
+_TOLD = 5
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
 
@@ -36,6 +37,8 @@ class Output(logging.Handler):
         super().__init__()
         self._failures_only = failures_only
         self._log = logging.getLogger("rvmon.live.input")
+        self._told = Counter[str]()
+        self._broken: OSError | None = None
 
     def __enter__(self) -> Output:
         self._log.addHandler(self)
@@ -52,13 +55,22 @@ class Output(logging.Handler):
         self._log.removeHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Say what is wrong with the input."""
-        self.note(record.getMessage())
+        """Say what is wrong with the input: of many of a kind the first, and each tenfold."""
+        self._told[record.msg] += 1
+        count = self._told[record.msg]
+        if count <= _TOLD:
+            self.note(record.getMessage())
+        elif count == 10 ** (len(str(count)) - 1):
+            self.note(f"{record.getMessage()}  (the {count:,}th of this kind; few are told)")
 
     def judged(self, judgement: Judgement) -> None:
         """Say a verdict, if it is asked for."""
-        if judgement.attempt.verdict is Verdict.FAIL or not self._failures_only:
+        if judgement.attempt.verdict is not Verdict.FAIL and self._failures_only:
+            return
+        try:
             self.say(judgement)
+        except OSError as error:  # in the thread of the monitors; `show` is called by who can end
+            self._broken = error
 
     def say(self, judgement: Judgement) -> None:
         """Say a verdict."""
@@ -69,7 +81,13 @@ class Output(logging.Handler):
         warn(text)
 
     def show(self, driver: Driver) -> None:
-        """Show how it stands; called a few times in a second."""
+        """Show how it stands; called a few times in a second.
+
+        Raises:
+            OSError: a verdict could not be said, as its reader has left.
+        """
+        if self._broken is not None:
+            raise self._broken
 
     def ended(self, driver: Driver) -> None:
         """Say what came of it."""

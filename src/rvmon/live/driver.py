@@ -272,6 +272,7 @@ class Driver:
 
     def _take(self, entry: Entry) -> None:
         if isinstance(entry, NewRun):
+            _input_log.warning("%s", entry.why)
             for robot in self._robots.values():
                 robot.restart(HealthKind.CLOCK, entry.why)
                 self._wakes.pop(robot.name, None)

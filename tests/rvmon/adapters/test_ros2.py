@@ -52,7 +52,8 @@ def started(graph):
     """A source that follows `/clock`, with its driver."""
     spec, clock = loads(SPEC), SimulatedClock()
     driver = Driver(spec, clock=clock, on_judged=lambda one: source.publish(one))
-    source = Ros2Source(MessageFeed(driver, spec.schema), clock=clock, verdicts="/verdicts")
+    feed = MessageFeed(driver, spec.schema, clock=clock)
+    source = Ros2Source(feed, verdicts="/verdicts")
     with source:
         yield driver
 
@@ -81,6 +82,8 @@ def test_topics_are_judged_by_the_clock_of_a_simulator_and_verdicts_go_back(grap
 
 def test_what_is_promised_is_asked_for(graph, started):
     """Reliable and latched where all publishers are, else less: more would get nothing."""
+    assert {*graph.subscriptions} == {"/clock"}  # what came before could not be stamped
+    _at(graph, started, 0)
     assert "/other" not in graph.subscriptions
     asked = {topic: profile for topic, (_, profile, _) in graph.subscriptions.items()}
     assert asked["/base/twist"] == stub.QoSProfile(1000, durability=LATCHED.durability)
@@ -89,6 +92,7 @@ def test_what_is_promised_is_asked_for(graph, started):
 
 def test_a_topic_is_read_when_somebody_publishes_it(graph, started):
     """Also after the node has begun; once."""
+    _at(graph, started, 0)
     graph.publishers["/base"] = ("std_msgs/msg/Bool", [LATCHED])
     before = dict(graph.subscriptions)
     graph.call(graph.timers[0])
