@@ -23,21 +23,18 @@ class Base:
 
 async def main():
     base, failed = Base(), asyncio.Event()
-
-    def on_failure(judgement):
-        print(f"{judgement.attempt.name} F: {judgement.attempt.reason}")
-        failed.set()
-
-    async with LiveTasks(rvmon.load(SPEC), on_failure=on_failure) as live:
+    async with LiveTasks(
+        rvmon.load(SPEC), only=["B2"], on_failure=lambda _: failed.set()
+    ) as live:
         live.offer({"speed": base.speed, "obstacle": 2.0})
-        await asyncio.sleep(0.1)
         live.offer({"stop_request": True})
         base.brake()
         await failed.wait()  # nothing comes: time alone decides
         base.emergency_stop()
         live.offer({"speed": base.speed})
     (report,) = live.close()[""]
-    print(", ".join(f"{name} {verdict}" for name, verdict in report.verdicts.items()))
+    for attempt in report.attempts:
+        print(attempt.name, attempt.verdict, attempt.reason)
 
 
 if __name__ == "__main__":
