@@ -309,7 +309,9 @@ def _follow(
                 time.sleep(_TURN)
             else:
                 feeding.join(_TURN)
-            if (age := _age(arguments.spec)) != arguments.made and age is not None:
+            if shown.broken is not None:
+                raise shown.broken
+            if (age := _age(arguments.spec)) != arguments.made:
                 arguments.made = age
                 try:
                     live.replace_spec(_loaded(arguments))

@@ -2,17 +2,15 @@
 
 import json
 import os
-import shutil
 import signal
-import socket
 import subprocess
 import sys
 import threading
 from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
 from tests.rvmon.adapters.talkers import DDS, ROS1
+from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster
 
 from rvmon import RvmonError, loads
 from rvmon.adapters.messages import MessageFeed
@@ -33,20 +31,7 @@ requirement R2
 LONG = 60.0
 """Seconds after which a process is ended that does not end."""
 
-SYSTEM = "/usr/lib/python3/dist-packages"
 WATCH = f"import sys; sys.path.append({SYSTEM!r}); from rvmon.cli import main; sys.exit(main())"
-LO = (
-    '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="false"/>'
-    "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>"
-    '<ParticipantIndex>auto</ParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers>'
-    "</Discovery></Domain></CycloneDDS>"
-)
-
-
-def _missing(what):
-    if os.environ.get("CI"):
-        pytest.fail(f"{what} is not installed")
-    pytest.skip(f"{what} is not installed")
 
 
 @contextmanager
@@ -86,22 +71,10 @@ def _failures(folder, source, talker, environment):
 @pytest.fixture
 def master():
     """The address of a master of ROS 1."""
-    program = shutil.which("rosmaster")
-    if program is None or not Path(SYSTEM, "rospy").exists():
-        _missing("rosmaster, or rospy")
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    command = [program, "--core", "-p", str(port)]
-    with _ended(subprocess.Popen(command, **quiet)) as process:  # noqa: S603
-        while True:
-            try:
-                socket.create_connection(("127.0.0.1", port), 1).close()
-                break
-            except OSError:
-                assert process.poll() is None
-        yield f"http://127.0.0.1:{port}"
+    if rosmaster() is None:
+        missing("rosmaster, or rospy")
+    with master_of_ros1() as address:
+        yield address
 
 
 @pytest.mark.process
@@ -119,7 +92,7 @@ def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
     pytest.importorskip("cyclonedds")
     domain = str(100 + os.getpid() % 100)
     talker = [sys.executable, "-c", DDS, domain]
-    found = _failures(tmp_path, f"dds:{domain}", talker, {"CYCLONEDDS_URI": LO})
+    found = _failures(tmp_path, f"dds:{domain}", talker, {"CYCLONEDDS_URI": LOOPBACK})
     assert found == [("R1#1", "F"), ("R2#1", "F")]
 
 
