@@ -23,9 +23,7 @@ class Base:
 
 async def main():
     base, failed = Base(), asyncio.Event()
-    async with LiveTasks(
-        rvmon.load(SPEC), only=["B2"], on_failure=lambda _: failed.set()
-    ) as live:
+    async with LiveTasks(rvmon.load(SPEC), only=["B2"], on_failure=lambda _: failed.set()) as live:
         live.offer({"speed": base.speed, "obstacle": 2.0})
         live.offer({"stop_request": True})
         base.brake()

@@ -31,9 +31,7 @@ def main():
     here = DomainParticipant(int(sys.argv[1]))
     speed, obstacle = published(here, "speed", Float64), published(here, "obstacle", Float64)
     stop_request = published(here, "stop_request", Bool)
-    while not all(
-        topic.get_matched_subscriptions() for topic in (speed, obstacle, stop_request)
-    ):
+    while not all(topic.get_matched_subscriptions() for topic in (speed, obstacle, stop_request)):
         time.sleep(0.05)  # nobody listens yet
     speed.write(Float64(0.8))
     for metres in (2.0, 1.0, 0.4):

@@ -14,7 +14,7 @@ SCENE = [  # seconds, robot, name, value
     (0.2, "left", "stop_request", "true"),
     (0.2, "right", "stop_request", "true"),
     (0.4, "right", "speed", "0.0"),
-    (1.8, "right", "obstacle", "2.0"),
+    (1.5, "right", "obstacle", "2.0"),
 ]
 
 

@@ -7,9 +7,9 @@ import subprocess
 import sys
 import threading
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
-from tests.rvmon.adapters.talkers import DDS, ROS1
 from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster
 
 from rvmon import RvmonError, loads
@@ -28,6 +28,7 @@ requirement R2
   upon stop
   then within 300 ms base.speed == 0
 """
+EXAMPLES = Path(__file__).parents[3] / "examples"
 LONG = 60.0
 """Seconds after which a process is ended that does not end."""
 
@@ -49,9 +50,9 @@ def _ended(process):
 
 def _failures(folder, source, talker, environment):
     """What `rvmon watch` says of a source by the second failure; then it is ended by Ctrl-C."""
-    (folder / "s.rv").write_text(SPEC)
     environment = {**os.environ, **environment}
-    command = [sys.executable, "-c", WATCH, "watch", "s.rv", source, "--format", "json"]
+    watch = ["watch", EXAMPLES / "base.rv", source, "--format", "json"]
+    command = [sys.executable, "-c", WATCH, *watch]
     with (
         _ended(subprocess.Popen(talker, env=environment)),  # noqa: S603
         _ended(
@@ -64,7 +65,7 @@ def _failures(folder, source, talker, environment):
         watching.send_signal(signal.SIGINT)
         last = json.loads(watching.communicate(timeout=LONG)[0].splitlines()[-1])
     assert watching.returncode == 1
-    assert last["verdicts"] == {"R1": "F", "R2": "F"}
+    assert last["verdicts"] == {"B1": "F", "B2": "F"}
     return [(line["attempt"], line["verdict"]) for line in lines]
 
 
@@ -82,8 +83,8 @@ def test_topics_of_ros_1_are_judged(tmp_path, master):
     """Names lead to topics; types come with the messages."""
     pytest.importorskip("rosbags")
     environment = {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_HOME": str(tmp_path)}
-    talker = ["/usr/bin/python3", "-c", ROS1]
-    assert _failures(tmp_path, "ros1:", talker, environment) == [("R1#1", "F"), ("R2#1", "F")]
+    talker = ["/usr/bin/python3", EXAMPLES / "ros1" / "talker.py"]
+    assert _failures(tmp_path, "ros1:", talker, environment) == [("B1#1", "F"), ("B2#1", "F")]
 
 
 @pytest.mark.process
@@ -91,9 +92,9 @@ def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
     """Without an installation of ROS, in a domain of its own."""
     pytest.importorskip("cyclonedds")
     domain = str(100 + os.getpid() % 100)
-    talker = [sys.executable, "-c", DDS, domain]
+    talker = [sys.executable, EXAMPLES / "dds" / "talker.py", domain]
     found = _failures(tmp_path, f"dds:{domain}", talker, {"CYCLONEDDS_URI": LOOPBACK})
-    assert found == [("R1#1", "F"), ("R2#1", "F")]
+    assert found == [("B1#1", "F"), ("B2#1", "F")]
 
 
 def test_what_is_not_there_is_told(tmp_path, monkeypatch):
