@@ -5,9 +5,12 @@ import shutil
 import subprocess
 import sys
 import time
+import unittest
 from pathlib import Path
+from types import ModuleType
 
 import pytest
+from tests.rvmon.adapters import rclpy_stub
 from tests.tools.servers import Broker, missing, mosquitto
 
 from rvmon import load
@@ -124,3 +127,35 @@ def test_a_microcontroller(play):
     with pytest.raises(SystemExit) as ended:
         play("microcontroller/run.py")
     assert not ended.value.code
+
+
+def test_a_test_of_launch_testing(monkeypatch, request):
+    """It fails where the base does, or is not heard; with stand-ins: ROS cannot be installed."""
+    request.config.addinivalue_line("markers", "launch_test: as launch_testing has it")
+    graph = rclpy_stub.install(monkeypatch)
+    graph.types = {"std_msgs/msg/Float64": rclpy_stub.message(data="double")}
+    for name in ("launch", "launch_ros.actions", "launch_testing.actions"):
+        package, _, part = name.partition(".")
+        monkeypatch.setitem(sys.modules, package, ModuleType(package))
+        if part:
+            monkeypatch.setitem(sys.modules, name, ModuleType(name))
+    told = {}
+    for metres in (None, 0.8, 0.4):
+        monkeypatch.setattr(time, "sleep", lambda _, metres=metres: _drive(graph, metres))
+        test = runpy.run_path(str(EXAMPLES / "launch_testing" / "test_base.py"))["TestBase"]
+        result = unittest.TestResult()
+        test("test_requirements").run(result)
+        told[metres] = [text for _, text in result.failures]
+        assert not result.errors
+    assert "nothing was heard" in told[None][0]
+    assert told[0.8] == []
+    assert "B1 #1 FAIL" in told[0.4][0]
+
+
+def _drive(graph, metres):
+    """A base that comes so near to an obstacle, if it is there at all."""
+    for topic, value in (("/speed", 0.8), ("/obstacle", metres)):
+        graph.publishers[topic] = ("std_msgs/msg/Float64", [rclpy_stub.QoSProfile()])
+        if metres is not None:
+            graph.call(graph.timers[-1])
+            graph.publish(topic, data=value)
