@@ -128,7 +128,7 @@ class DdsSource:
     def _find(self) -> None:
         """Read the topics that are wanted and published."""
         for one in self._finder.take(N=1_000):
-            name = getattr(one, "topic_name", "").removeprefix(_PREFIX)
+            name = (getattr(one, "topic_name", None) or "").removeprefix(_PREFIX)  # none: it left
             if name in self._wanted and name not in self._readers:
                 self._found[name] = one.type_name
         ready = [one for one in self._found if self._feed.has_time or self._wanted[one] == CLOCK]
