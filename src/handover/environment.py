@@ -9,21 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, cast
 
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
 from handover.driver.play import Played, begun
 from handover.generator.abstract_test import AbstractTest, Action, SendSignal, SetParam, Withdraw
 from handover.world.measures import gripper_centre
 from handover.world.recorder import Sample
-from rvmon.errors import RvmonError
 from rvmon.trace.time import TICKS_PER_SECOND
-
-try:
-    import gymnasium
-    import numpy as np
-    from numpy.typing import NDArray
-except ImportError:
-    raise RvmonError(
-        "environments need gymnasium, which is not installed: pip install 'rvmon[gym]'"
-    ) from None
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -142,15 +136,14 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         self._said += len(samples)
         happened = {name for _, values in samples for name in values}
         self._informed |= "informed" in happened
-        error = self._played.process.error
+        robot = self._played.process
         info = {
             "samples": tuple(samples),
             "begun": chosen is not None and self._chosen is None,
-            "error": error,
+            "error": robot.error,
         }
-        over = error is not None or "done" in happened
-        truncated = not over and self._steps >= _HORIZON_STEPS
-        return self._observed(self._played), float("released" in happened), over, truncated, info
+        reward, truncated = float("released" in happened), self._steps >= _HORIZON_STEPS
+        return self._observed(self._played), reward, robot.is_over, truncated, info
 
     @property
     def test(self) -> AbstractTest:

@@ -124,8 +124,9 @@ def rv(request: pytest.FixtureRequest) -> Any:
             beside = request.path.parent / spec
             return Judge(load(beside if beside.exists() else spec), **wanted)
 
-        judges.append(_without_frames(made))
-        return judges[-1]
+        found = _without_frames(made)
+        judges.append(found)
+        return found
 
     return judge
 

@@ -54,25 +54,28 @@ def test_it_is_judged_as_its_test_is():
 
     spec = load(spec_path("legacy").with_name("handover.rv"))
     env = Judged(_env(robot="legacy"), spec, published(spec), step_s=STEP_S)
-    decided = [one.name for *_, info in _episode(env, 2) for one in info["rv"]["decided"]]
+    decided = [one for *_, info in _episode(env, 2) for one in info["rv"]["decided"]]
     declared = {*spec.schema.signals, *spec.schema.events}
     samples = [
         (t / 1e9, {name: value for name, value in values.items() if name in declared})
         for t, values in run_test(env.unwrapped.test, robot="legacy").samples
     ]
-    attempts = spec.evaluate(samples).attempts
-    assert sorted(decided) == sorted(one.name for one in attempts if one.decided is not None)
+    wanted = [one for one in spec.evaluate(samples).attempts if one.decided is not None]
+    assert sorted(decided, key=_place) == sorted(wanted, key=_place)
     assert decided
 
 
-def test_a_person_who_speaks_begins_nothing_else():
-    """Nor one who is not there yet; then the piece is given to who takes it, which is rewarded."""
+def _place(attempt):
+    return attempt.requirement, attempt.number
+
+
+def _taken(env):
+    """A person who activates the robot, and takes the piece as soon as it is held out."""
     from handover.environment import ACTIONS
 
     numbers = {name: number for number, name in enumerate(ACTIONS)}
-    env = _env()
     observation, _ = env.reset(seed=3)
-    begun, informed, rewards, over, step = {}, None, 0.0, False, 0
+    informed, over, step = None, False, 0
     while not over:
         if observation[1] and informed is None:
             informed = step
@@ -86,12 +89,35 @@ def test_a_person_who_speaks_begins_nothing_else():
             1031: "reach for the piece",
             1032: "close the hand",
         }.get(after, "nothing")
-        observation, reward, over, _, info = env.step(numbers[name])
-        begun |= {after: info["begun"]} if name != "nothing" else {}
-        rewards, step = rewards + reward, step + 1
-    assert [after for after, whether in begun.items() if not whether] == [10, 110]
-    assert rewards == 1.0
+        observation, reward, terminated, truncated, info = env.step(numbers[name])
+        yield after, name, observation, reward, terminated, info
+        over, step = terminated or truncated, step + 1
+
+
+def test_the_piece_is_given_to_who_takes_it():
+    """Which is rewarded, once. Who speaks, or is not there yet, begins nothing else."""
+    steps = [*_taken(_env())]
+    assert [
+        after for after, name, *_, info in steps if name != "nothing" and not info["begun"]
+    ] == [
+        10,
+        110,
+    ]
+    assert sum(reward for *_, reward, _, _ in steps) == 1.0
+    _, _, observation, _, terminated, info = steps[-1]
     assert observation[-1] == 1.0  # who took it holds it
+    assert terminated
+    assert info["error"] is None
+
+
+@pytest.mark.parametrize(
+    ("mutation", "error"), [("crashes", "ZeroDivisionError"), ("ends-silently", "None")]
+)
+def test_a_robot_that_has_ended_ends_the_episode(mutation, error):
+    """Whether it crashed or only left."""
+    *_, (*_, terminated, info) = _taken(_env(mutation=mutation))
+    assert terminated
+    assert str(info["error"]).startswith(error)
 
 
 def test_what_is_no_action_is_told():
