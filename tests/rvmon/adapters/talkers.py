@@ -45,3 +45,24 @@ for value in (0.5, 1.5, 0.3):
 stop.write(Bool(True))
 time.sleep(60)
 """
+
+SIMULATOR = """
+import time
+import rospy
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Bool, Float64
+rospy.init_node("simulator")
+speed = rospy.Publisher("/base/speed", Float64, queue_size=10, latch=True)
+stop = rospy.Publisher("/stop", Bool, queue_size=10)
+clock = rospy.Publisher("/clock", Clock, queue_size=10)
+speed.publish(1.5)
+while not stop.get_num_connections():
+    clock.publish(rospy.Time(1000))
+    time.sleep(0.02)
+clock.publish(rospy.Time(2000))
+time.sleep(0.1)
+stop.publish(True)
+while not rospy.is_shutdown():
+    time.sleep(0.1)
+    clock.publish(rospy.Time(2001))
+"""
