@@ -232,11 +232,11 @@ class Driver:
         return len(self._waiting)
 
     def _clock_was_set(self, before: int, now: int) -> None:
-        if now < before:
+        if now < before or now - before > _FAR_NS:  # as where a clock is set that began with 1970
             with self._lock:
                 self._stamped = now
-                why = f"a new run began: the clock went back by {format_ticks(before - now)}"
-                self._waiting.put_new_run(why)
+                way = f"back by {format_ticks(before - now)}" if now < before else "on by years"
+                self._waiting.put_new_run(f"a new run began: the clock went {way}")
         self.wake()
 
     # --- from whoever drives it --------------------------------------------------------------

@@ -217,6 +217,17 @@ def test_a_clock_that_goes_back_begins_a_new_run():
     assert door.driver.close()[""][1].verdicts["D2"] is Verdict.PASS
 
 
+def test_a_clock_that_leaps_by_years_begins_a_new_run(caplog):
+    """A machine that has no battery learns what time it is: nothing was owed all that time."""
+    door = Door(DOOR.replace("always speed", "always within 1 s speed"))
+    door.driver.offer({"speed": 3.0, "knock": True})
+    with caplog.at_level(logging.WARNING, "rvmon.live.input"):
+        door.at(1_800_000_000)
+    assert "went on by years" in caplog.text
+    status = door.driver.status()[""]
+    assert (status.run, status.verdicts["D1"], status.verdicts["D2"]) == (2, "I", "I")
+
+
 def test_another_specification_is_taken_up_at_once():
     """The former run ends; what it showed does not count for the new one."""
     door = Door()
