@@ -310,11 +310,15 @@ def test_wrong_arguments_are_told_when_it_is_made():
         Door(sources=["sped"])
 
 
-def test_stamps_of_another_epoch_are_refused():
-    """By a clock that began with 0, deadlines of stamps since 1970 would never pass."""
+def test_stamps_of_another_epoch_or_of_the_future_are_refused():
+    """By a clock that began with 0, deadlines of stamps since 1970 would never pass.
+
+    After a stamp of the next hour all others would be late.
+    """
     driver = Driver(loads(DOOR))
-    with pytest.raises(TraceError, match="since_1970"):
-        driver.offer({"speed": 0.0}, t_ns=1_700_000_000 * S)
+    for seconds in (1_700_000_000, 3_600):
+        with pytest.raises(TraceError, match="since_1970"):
+            driver.offer({"speed": 0.0}, t_ns=seconds * S)
 
 
 def test_a_sample_is_values_by_name():
