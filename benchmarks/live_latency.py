@@ -25,7 +25,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import asdict, dataclass
@@ -97,7 +97,15 @@ def _mqtt(address: str) -> Iterator[Send]:
     client.max_queued_messages_set(0)
     client.connect("127.0.0.1", int(address))
     client.loop_start()
-    yield lambda name, value: client.publish(name, repr(value), qos=1)
+    under_way = deque([client.publish("begin", "0", qos=1)])
+
+    def send(name: str, value: float) -> None:
+        under_way.append(client.publish(f"door/{name}", repr(value), qos=1))
+        if len(under_way) > 1_000:  # or they would wait here, and not be published
+            under_way.popleft().wait_for_publish()
+
+    yield send
+    under_way[-1].wait_for_publish()
     time.sleep(QUIET_S)
     client.disconnect()
     client.loop_stop()
@@ -221,7 +229,7 @@ def _through(
     if door == "mqtt":
         from rvmon.adapters.mqtt import MqttSource, address_of
 
-        source = MqttSource(objects, address_of(f"mqtt://127.0.0.1:{address}/#"))
+        source = MqttSource(objects, address_of(f"mqtt://127.0.0.1:{address}/door/#"))
     elif door == "ros1":
         from rvmon.adapters.ros1 import Ros1Source
 

@@ -79,7 +79,9 @@ class Broker:
     def __init__(self, folder: Path) -> None:
         self.port = _free_port()
         self._settings = folder / "mosquitto.conf"
-        self._settings.write_text(f"listener {self.port} 127.0.0.1\nallow_anonymous true\n")
+        self._settings.write_text(
+            f"listener {self.port} 127.0.0.1\nallow_anonymous true\nsys_interval 1\n"
+        )
         self.start()
 
     def start(self) -> None:

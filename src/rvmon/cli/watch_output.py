@@ -27,7 +27,7 @@ _TOLD = 5
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
 _MOST_OPEN = 100
-_FRAME = 4
+_FRAME = 5
 """Lines of a robot's table beside its rows."""
 _FEW = 4
 """Rows that a robot has at least, before another robot is shown."""
@@ -97,7 +97,7 @@ class Output(logging.Handler):
         """Say what came of it."""
         from rvmon.report.terminal import Terminal
 
-        Terminal().print(_tables(driver))
+        Terminal().print(tables(driver))
 
 
 class JsonOutput(Output):
@@ -171,7 +171,7 @@ class View(Output):
         from rich.text import Text
 
         failures = [Text(line, style=MARKS[Verdict.FAIL].terminal) for line in self._failures]
-        return Group(_tables(driver, height), *failures)
+        return Group(tables(driver, height), *failures)
 
 
 def output_named(name: str | None, *, failures_only: bool) -> Output:
@@ -195,8 +195,13 @@ def _line(judgement: Judgement) -> str:
     return f"{robot}{format_ticks(decided)}  {attempt.name} {attempt.verdict} {sign}{reason}"
 
 
-def _tables(driver: Driver, height: int | None = None) -> RenderableType:
-    """How robots and requirements stand, those first that need a look; in so many lines, or all."""
+def tables(driver: Driver, height: int | None = None) -> RenderableType:
+    """How robots and requirements stand, those first that need a look.
+
+    Args:
+        driver: of the robots.
+        height: so many lines there are; what finds none is counted. `None`: all requirements.
+    """
     from rich.console import Group
 
     found = driver.status(most_open=height or _MOST_OPEN)

@@ -8,8 +8,10 @@ import sys
 import threading
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+from tests.rvmon.adapters.talkers import SIMULATOR
 from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster
 
 from rvmon import RvmonError, loads
@@ -136,3 +138,39 @@ def test_a_message_that_does_not_fit_is_unknown(feed):
     (report,) = driver.close()[""]
     assert report.verdicts["R1"] == "I"
     assert [one.name for one in report.health if one.kind == "none"] == ["base.speed"]
+
+
+def test_the_clock_follows_the_topic_of_that_name():
+    """It is known what time it is from its first message on; back is a new run, and is told."""
+    spec, clock = loads(SPEC), SimulatedClock()
+    driver = Driver(spec, clock=clock)
+    messages = MessageFeed(driver, spec.schema, clock=clock)
+    ticks = Topic("/clock", "rosgraph_msgs/msg/Clock", {})
+    assert (messages.has_time, next(messages.topics())) == (False, "/clock")
+
+    def tick(seconds):
+        time = SimpleNamespace(sec=seconds, nanosec=5)
+        messages.take(ticks, SimpleNamespace(clock=time))
+        driver.work()
+
+    tick(1000)
+    assert messages.has_time
+    messages.take(FLOAT, {"data": 2.0})
+    tick(1001)
+    tick(3)
+    messages.take(FLOAT, {"data": 0.5})
+    first, second = driver.close()[""]
+    assert [one.decided for one in first.attempts] == [1000 * 10**9 + 5]
+    assert (first.verdicts["R1"], second.verdicts["R1"]) == ("F", "P")
+
+
+@pytest.mark.process
+def test_robots_of_a_simulator_are_judged_by_its_clock(tmp_path, master):
+    """`use_sim_time` of ROS 1: a deadline of simulated time, whatever the machine needs."""
+    pytest.importorskip("rosbags")
+    environment = {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_HOME": str(tmp_path)}
+    told = ["/usr/bin/python3", "-c", "import rospy; rospy.set_param('/use_sim_time', True)"]
+    subprocess.run(told, env={**os.environ, **environment}, check=True, timeout=LONG)  # noqa: S603
+    talker = ["/usr/bin/python3", "-c", SIMULATOR]
+    found = _failures(tmp_path, "ros1:", talker, environment)
+    assert found == [("B1#1", "F"), ("B2#1", "F")]
