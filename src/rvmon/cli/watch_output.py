@@ -204,7 +204,7 @@ def tables(driver: Driver, height: int | None = None) -> RenderableType:
     """
     from rich.console import Group
 
-    found = driver.status(most_open=height or _MOST_OPEN)
+    found = driver.status(most_open=_MOST_OPEN)
     robots = sorted(found.values(), key=lambda one: _need(fold(one.verdicts.values())))
     requirements = len(driver.spec.requirements)
     most, rows = _SHOWN_ROBOTS, requirements

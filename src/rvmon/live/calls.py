@@ -92,7 +92,7 @@ def as_event(
                 occurs(ended, *args, **kwargs)
                 return result
 
-            return iterated  # type: ignore[return-value]
+            return iterated
 
         if inspect.iscoroutinefunction(function):
 

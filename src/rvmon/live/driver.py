@@ -226,8 +226,8 @@ class Driver:
         """How each robot stands; nothing is judged until that is put together.
 
         Args:
-            most_open: of each robot so many records of what is open, the nearest, as each takes a
-                tenth of a millisecond; default all.
+            most_open: of each robot so many records of what is open, the oldest of each requirement
+                first, as each takes a tenth of a millisecond; default all.
         """
         with self._working:
             now = self._clock.now_ns()

@@ -377,7 +377,7 @@ class Monitor:
         return self.owed()[1]
 
     def owed(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
-        """How many attempts of each requirement are open, and `open` or so many of it."""
+        """How many attempts of each requirement are open, and `open` or the oldest of it."""
         return self.one_call(self._owed, most)
 
     def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:

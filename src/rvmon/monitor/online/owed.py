@@ -1,4 +1,4 @@
-"""What is open now: how many attempts, and the records of all or of the nearest."""
+"""What is open now: how many attempts, and the records of all or of the oldest."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def owed_now(
         evaluators: of a monitor, taken along to now.
         ledger: of it.
         now: as in `Ledger.open_record`.
-        most: so many records: of the oldest attempt of each requirement and instance, those first
-            of which time alone can decide one first; `None`: of all.
+        most: so many records: of the oldest attempt of each requirement and instance, the oldest
+            of these first; `None`: of all.
     """
     void = ledger.void_records
     counts = Counter(one.requirement for one in void)
@@ -33,6 +33,6 @@ def owed_now(
     if most is None:
         chosen = [(judge, attempt) for judge in holding for attempt in judge.attempts]
     else:
-        first = nsmallest(most, holding, key=lambda judge: judge.next_due)
+        first = nsmallest(most, holding, key=lambda judge: judge.attempts[0].triggered)
         chosen = [(judge, judge.attempts[0]) for judge in first]
     return counts, [*(ledger.open_record(*one, now) for one in chosen), *void[:most]]
