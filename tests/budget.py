@@ -10,6 +10,8 @@ BUDGETS = {
     "src/rvmon": 20,
     "tests": 2,
     "tests/benchmarks": 10,
+    "tests/examples": 15,
+    "tests/handover": 4,
     "tests/handover/campaign": 62,
     "tests/handover/checker": 5,
     "tests/handover/collector": 2,

@@ -229,9 +229,9 @@ class LendingMonitor(GeneratedMonitor):
         self._have_back()
         return super()._put_away()
 
-    def _open(self) -> Sequence[Attempt]:
+    def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
         self._have_back()
-        return super()._open()
+        return super()._owed(most)
 
     def _next_due(self) -> int | None:
         self._have_back()

@@ -381,3 +381,18 @@ requirement C1
         "K1": 696,
         "C1": 696,
     }
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_of_much_that_is_open_the_oldest_is_enough(engine):
+    """All are counted; the records are those of `open`: of each requirement that began first."""
+    text = SPEC.replace("within 3 s stop", "within 9 s stop")
+    monitor = rvmon.loads(text).monitor(engine=engine, only=["U1", "L1"])
+    for t in range(4):
+        monitor.step(t, {"e": True, "beat": t == 3, "x": 0.0, "y": 1.0})
+    counts, records = monitor.owed(2)
+    assert counts["U1"] == 4
+    assert sum(counts.values()) == len(monitor.open)
+    assert {one.name: one.deadline for one in records} == {"L1#1": None, "U1#1": 9_000_000_000}
+    assert all(one in monitor.open for one in records)
+    assert monitor.owed() == (counts, monitor.open)
