@@ -107,11 +107,12 @@ class Spec:
 
         return choices(self._compiled.chosen(requirements_asked(self.checked, only)))
 
-    def plan(self, *, only: Iterable[str] | None = None) -> Plan:
+    def plan(self, *, only: Iterable[str] | None = None, robustness: bool = False) -> Plan:
         """What `rvmon.codegen` makes Python and C of that run without rvmon.
 
         Args:
             only: ids of the requirements; default all.
+            robustness: whether it says what is measured, too.
 
         Raises:
             UnknownNameError: there is no such requirement.
@@ -119,7 +120,7 @@ class Spec:
         """
         from rvmon.monitor.compiled.code_plan import plan_alone
 
-        return plan_alone(self._compiled, only)
+        return plan_alone(self._compiled, only, measured=robustness)
 
     def prepare(
         self, *, only: Iterable[str] | None = None, ready: Callable[[Prepared], object] = id

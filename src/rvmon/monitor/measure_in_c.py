@@ -9,7 +9,6 @@ from rvmon.codegen.c_online import OnlineLibrary, online_library
 from rvmon.dataflow.margins import INFINITE
 from rvmon.monitor.c.monitor import CompiledMonitor
 from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.monitor.compiled.refusal import of_measured_c, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
@@ -38,7 +37,6 @@ def measuring_library(
     key = ("margins in c", ids)
     found = compiled.forms.get(key)
     if not isinstance(found, OnlineLibrary):
-        refuse(requirements, of_measured_c, "the engine `c`, which measures,")
         plan = plan_alone(compiled, ids, measured=True)
         found = compiled.forms[key] = online_library(plan, optimised=optimised, measured=True)
     return found
