@@ -52,18 +52,25 @@ def robustness_monitor(
         only: ids of the requirements; `None`: all.
         settle: see there.
         sources: see there.
-        engine: `auto` or `c`, compiled C.
+        engine: `c`, compiled C; or `auto`, which takes that where it was prepared.
         streams: see there.
 
     Raises:
         UnknownNameError: no such engine measures, or there is no such way to settle.
         RvmonError: compiled C does not measure a requirement, or there is no compiler.
     """
-    if not _is_c(engine):
+    if not _is_c(engine) and not _is_prepared(compiled, only):
         return RobustnessMonitor(compiled, only, settle, sources, streams=streams)
     from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
 
     return CompiledRobustnessMonitor(compiled, only, settle, sources, streams=streams)
+
+
+def _is_prepared(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
+    """Whether compiled C lies ready that measures the requirements as Python does."""
+    from rvmon.monitor.c.prepared import measuring_prepared
+
+    return measuring_prepared(compiled, compiled.chosen(only)) is not None
 
 
 def _is_c(engine: str) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.codegen.c_online import OnlineLibrary, online_library
 from rvmon.dataflow.margins import INFINITE
 from rvmon.monitor.c.monitor import CompiledMonitor
+from rvmon.monitor.c.prepared import measuring_prepared
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -163,7 +164,7 @@ class CompiledRobustnessMonitor(RobustnessMonitor):
         streams: bool,
     ) -> CompiledRun:
         """See `RobustnessMonitor`."""
-        library = measuring_library(compiled, chosen)
+        library = measuring_prepared(compiled, chosen) or measuring_library(compiled, chosen)
         run = CompiledRun(library, compiled, chosen, settle, sources, streams=streams)
         vars(self).update(step=run.step, step_ns=run.step_ns)  # with nothing in between
         return run
