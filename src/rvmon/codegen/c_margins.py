@@ -64,8 +64,6 @@ class Measures:
 
     def _tables(self) -> Iterator[str]:
         leaves = [core for plan in self.plans for _, core in plan.leaves]
-        most = max(len(plan.leaves) for plan in self.plans)
-        yield f"#define MEASURED_LEAVES {most}"
         yield from Forms(self._plan, self.plans).tables("measured_")
         yield "/* Per node, whether its value matters only where that of the formula is wanted. */"
         alone = [
