@@ -167,13 +167,12 @@ def _by_samples(
 
 def _in_c(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins | None:
     """The figures by compiled C; `None` if the recording has no columns."""
-    from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
+    from rvmon.monitor.measure_in_c import margins_of_columns
 
+    chosen = compiled.chosen(asked.only)
     try:
         columns = columns_of(compiled, source, asked)
-        names = frozenset(columns.names)
-        monitor = CompiledRobustnessMonitor(compiled, asked.only, sources=names, streams=streams)
-        return monitor.fed(columns, source.end)
+        return margins_of_columns(compiled, chosen, columns, source.end, streams=streams)
     except NotPlainError:
         return None
 
