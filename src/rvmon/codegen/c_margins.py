@@ -22,7 +22,7 @@ from rvmon.spec.checked.formula import Compare, CompareOp, Numeric, SignalValue
 from rvmon.spec.checked.formula import Literal as Number
 from rvmon.trace.schema import Kind
 
-_PARTS = ("queues", "windows", "joins", "gauge", "judge")
+_PARTS = ("queues", "windows", "joins", "gauge", "figures", "judge")
 
 _SIGNED = {
     CompareOp.LT: "-{}",
