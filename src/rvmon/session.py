@@ -280,7 +280,8 @@ class Spec:
         from rvmon.readers.reading import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
-        return Reading(self.reading(**schema).schema, sources_asked(self.checked, sources), allowed)
+        told = (self.reading(**schema) if schema else self).schema
+        return Reading(told, sources_asked(self.checked, sources), allowed)
 
     def evaluate_many(
         self,
