@@ -26,6 +26,8 @@ requirement R3
   whenever once[0 s, 1 s] x > 8 cm then v < 2.5 m/s
 requirement R4
   upon rise(v > 1 m/s) then within 1 s e
+requirement R5
+  upon e then always v < 20 m/s
 """
 NAMES = ("x", "v", "e")
 
@@ -43,8 +45,8 @@ def folder(tmp_path_factory):
     for _ in range(400):
         t += rng.choice((1, 300_000_000, 700_000_000, 1_000_000_000))
         if rng.random() < 0.7:
-            numbers = [rng.choice((None, math.nan, *(rng.uniform(0, 14),) * 6)) for _ in "xv"]
-            cells = (*numbers, rng.choice((None, None, None, 1)))
+            x = rng.choice((None, math.nan, *(rng.uniform(0, 14),) * 6))
+            cells = (x, rng.uniform(0, 4), rng.choice((None, None, None, 1)))
         csv.append(f"{t}," + ",".join("" if cell is None else f"{cell}" for cell in cells))
         said = {name: cell for name, cell in zip(NAMES, cells, strict=True) if cell is not None}
         plain = {name: None if cell != cell else cell for name, cell in said.items()}
