@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Protocol
 
-from rvmon.errors import UnknownNameError
+from rvmon.errors import TraceError, UnknownNameError
 from rvmon.monitor.compiled.refusal import of_measured_c
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
@@ -104,9 +105,13 @@ def margins_of(
     named = "" if reading.sources is None else "its sources are named"
     source = Source(recording, until, row_by_row=named)
     asked = Asked(None if only is None else tuple(only))
+    margins = None
     if _is_c(engine):
         margins = _in_c(compiled, source, asked, streams=streams)
-    else:
+    elif _is_prepared(compiled, asked.only):
+        with suppress(TraceError):  # what C does not take, or nobody: the others say so
+            margins = _in_c(compiled, source, asked, streams=streams)
+    if margins is None and not _is_c(engine):
         judge = engine_named("auto").judge
         found = _by_columns(compiled, source, asked, judge, streams=streams)
         margins = found and found[1]

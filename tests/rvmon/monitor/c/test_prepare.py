@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 import rvmon
@@ -120,6 +121,21 @@ def test_auto_measures_by_what_is_compiled(monkeypatch):
     python, theirs = figures()
     assert (ready, python) == (CompiledRobustnessMonitor, RobustnessMonitor)
     assert ours == theirs
+
+
+def test_auto_measures_columns_by_what_is_compiled(monkeypatch):
+    """It is no other figure, and needs no arrays."""
+    spec = rvmon.loads(SPEC)
+    trace = {name: np.array(column) for name, column in TRACE.items()}
+    with monkeypatch.context() as patch:
+        patch.setattr("rvmon.monitor.measure._by_columns", None)
+        ours = spec.robustness(trace)
+    monkeypatch.setattr("rvmon.monitor.measure._is_prepared", lambda *_: False)
+    theirs = spec.robustness(trace)
+    assert ours.attempts == theirs.attempts
+    assert {n: [*one] for n, one in ours.streams.items()} == {
+        n: [*one] for n, one in theirs.streams.items()
+    }
 
 
 @pytest.mark.parametrize("kind", ["int", "real"])
