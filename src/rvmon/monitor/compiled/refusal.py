@@ -22,6 +22,7 @@ from rvmon.spec.checked.formula import (
     ProbeAtom,
     SignalValue,
 )
+from rvmon.trace.schema import Kind
 
 if TYPE_CHECKING:
     from rvmon.formula.state import Leaf, State
@@ -71,6 +72,8 @@ _MOST_LEAVES = 39
 
 _MOST_STRETCHES = 64
 """So many stretches of time a past operator of compiled code remembers."""
+
+_MANY = "remembers more than 60 stretches of time"
 
 _MODERATE = 1e50
 """Sums and a few products of numbers up to this magnitude are finite."""
@@ -176,6 +179,18 @@ def of_prepared(one: CompiledRequirement) -> Refusal | None:
     return Refusal(reason, _AUTO, "python") if reason else None
 
 
+def of_prepared_margins(one: CompiledRequirement) -> Refusal | None:
+    """What `auto` does not have compiled C measure, be that prepared."""
+    refusal = of_measured_c(one)
+    kinds = {one.spec.signals[name].type.kind for name in one.reads & {*one.spec.signals}}
+    reason = ""
+    if Kind.INT in kinds:  # C has doubles alone
+        reason = "reads whole numbers"
+    elif any(map(_keeps_many, one.shared_graph.nodes)):
+        reason = _MANY
+    return refusal or (Refusal(reason, _AUTO, "python") if reason else None)
+
+
 def _beyond_prepared(one: CompiledRequirement) -> str:
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
@@ -191,7 +206,7 @@ def _beyond_prepared(one: CompiledRequirement) -> str:
     if _may_be_unknown(known, asked):
         return "compares what may be unknown though all signals are known"
     if any(map(_keeps_many, known.nodes)):
-        return "remembers more than 60 stretches of time"
+        return _MANY
     hidden = one.hidden
     if (hidden is not None and hidden.network_plan.looks_back) or any(map(_remembers, others)):
         return "remembers what it needs for attempts in doubt only"
