@@ -21,7 +21,7 @@ BUDGETS = {
     "tests/handover/robot": 1,
     "tests/handover/world": 2,
     "tests/rvmon": 20,
-    "tests/rvmon/adapters": 25,
+    "tests/rvmon/adapters": 32,
     "tests/rvmon/analysis": 12,
     "tests/rvmon/automaton": 12,
     "tests/rvmon/binding": 5,
