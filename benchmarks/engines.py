@@ -87,6 +87,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
         "dataflow/network_plan.py",
         "dataflow/positions.py",
         "dataflow/ranges.py",
+        "dataflow/soonest_news.py",
         "dataflow/sweep.py",
         "monitor/attempts/network_judge.py",
         "monitor/attempts/network_letters.py",

@@ -37,6 +37,7 @@ class Knowledge:
         pending: per node, the first position that is wanted and not known.
         swept: per `until`, up to where its operands only lead on; per `since`, where it is known.
         carried: per `since`, what it is just before that.
+        watched: by index of a leaf, values that may make something known before it is due.
         noted: the positions, with their letters, that time has not been let come to yet.
         arrived: of sparse positions, one that comes in this step, with the integers before it.
     """
@@ -55,6 +56,7 @@ class Knowledge:
         ]
         self.arrived: Range | None = None
         self._letter: Sequence[bool] = ()
+        self.watched: list[tuple[int, bool]] = []
         self.noted: list[tuple[int, Sequence[bool]]] = []
         self._visits = _SELDOM
 
@@ -71,6 +73,7 @@ class Knowledge:
         made.carried = list(self.carried)
         made.arrived = None
         made._letter = self._letter
+        made.watched = list(self.watched)
         made.noted = list(self.noted)
         made._visits = self._visits
         return made

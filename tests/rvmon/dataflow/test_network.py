@@ -10,7 +10,7 @@ from tests.tools.differential import campaign, case_of
 from tests.tools.generate_ltl import random_mtl
 
 import rvmon
-from rvmon.dataflow.network import Network
+from rvmon.dataflow.network import MOST_NOTED, Network
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.runtime.values import NEVER
@@ -157,6 +157,28 @@ def test_memory_is_bounded_by_the_window():
         monitor.step(k * 0.5, {"b": k % 2 == 0})
         sizes.append(sum(len(true) + len(false) for true, false in judge.worse.known))
     assert max(sizes[200:]) <= max(sizes[:200]) <= 150
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+def test_letters_that_decide_nothing_are_but_noted(time, monkeypatch):
+    """As long as no letter could decide, none is worked out, but for what would take much room."""
+    grown, original = [], Network.grow
+
+    def counted(self, *args):
+        grown.append(len(self.noted))
+        original(self, *args)
+
+    monkeypatch.setattr(Network, "grow", counted)
+    owed = "upon e then F[0 s, 5 s] ((G[0 s, 4 s] a) or b)"
+    monitor = spec_of(owed, time).monitor(engine="network")
+    monitor.step(0, {"e": True, "a": False, "b": False})
+    before = len(grown)
+    for k in range(1, 390):
+        monitor.step(k * 0.01, {"a": k % 2 == 0})
+    assert len(grown) - before <= 3
+    assert max(grown) <= MOST_NOTED
+    [failed] = [one for k in range(390, 600) for one in monitor.step(k * 0.01, {"a": k % 2 == 0})]
+    assert (failed.verdict.value, failed.decided) == ("F", 5 * SECOND + SECOND // 100)
 
 
 def test_time_decides_under_another_letter_before_the_next_position():

@@ -44,9 +44,11 @@ class NetworkJudge(AttemptJudge):
         better: the one that takes it for the better; `None` as long as both are the same.
         attempts: those whose value is not known.
         now: the stamp that the networks have come to.
+        sleeps: an instant before which nothing becomes known, whatever letters come: till then
+            these are but noted.
     """
 
-    STATE = (*AttemptJudge.STATE, "worse", "better", "now", "_letters", "_held")
+    STATE = (*AttemptJudge.STATE, "worse", "better", "now", "sleeps", "_letters", "_held")
 
     leaps = True
 
@@ -69,6 +71,9 @@ class NetworkJudge(AttemptJudge):
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
         """Those that were asked for last, of each network one."""
         self.now = -1 << 64
+        self.sleeps = -NEVER
+        self._bounded_at = -FOREVER
+        """The stamp as of which `sleeps` holds for all that begins then, too."""
         self._passed = 0
         """How often time has passed since the letter changed."""
         self._ahead: list[tuple[bool, Pieces]] | None = None
@@ -92,6 +97,12 @@ class NetworkJudge(AttemptJudge):
             self.visit(t)
         self._note_doubt()
         self._stood = None
+        if self.sleeps > t and self.now <= 2 * t and self._letters is not None:
+            delay = min(map(self.compiled.network_delay, self._letters))
+            self.sleeps = min(self.sleeps, t + delay)
+            if delay > (self.flow.gap or 1):
+                self.due = min(self.due, self.sleeps)
+                return
         self._join(attempt, t)
 
     def _join(self, attempt: Open, t: int) -> None:
@@ -101,7 +112,9 @@ class NetworkJudge(AttemptJudge):
         open_still = bool(self.attempts) and self.attempts[-1] is attempt
         if open_still and self.worse and self._judge(attempt, self.worse, self.better):
             self.attempts.pop()
-        self._rest()
+            self._rest()
+        elif self._bounded_at != 2 * t + 1:
+            self._rest()
 
     def _begin_network(self) -> None:
         if self.worse is None:
@@ -109,19 +122,25 @@ class NetworkJudge(AttemptJudge):
             self._letters = None
             self._journals = [None, None]
             self.now = -1 << 64
+            self.sleeps = -NEVER if self.plan.looks_back else NEVER
 
     def visit(self, t: int) -> None:
         """Take all attempts to the position `t`, which the flow is at."""
         if self.plan.looks_back:
             self._begin_network()
         letters = self._read(self.flow.values)
-        if letters[0] != letters[1]:
+        if self.due <= t and letters[0] != letters[1]:
             self._look(2 * t)
         self.position = t
         if self.worse is not None:
+            roused = False
             if letters != self._letters or self.flow.gap is None:
                 self._turn(t, self.worse, letters)
-            elif self.due > t:
+                roused = any(map(Network.is_roused, self._networks, letters))
+                # What is due was worked out for the letter before; `sleeps` holds for all of them.
+                self.due = min(self.due, self.sleeps)
+            if self.due > t and self.sleeps > t and not roused:
+                self.restless = self.flow.gap is None
                 return
             self._look(2 * t + 1)
         self._rest()
@@ -195,6 +214,7 @@ class NetworkJudge(AttemptJudge):
 
     def _rest(self) -> None:
         """Forget all if nothing is waited for; set when time alone may make known what is."""
+        self._bounded_at = -FOREVER
         if not self._is_waited_for:
             self.due = NEVER
             if not self.plan.looks_back:
@@ -202,9 +222,20 @@ class NetworkJudge(AttemptJudge):
         elif self._ahead is not None:
             self.due = min((at // 2 for _, at in self._coming()), default=NEVER)
         else:
+            if not self.plan.looks_back:
+                self.sleeps, self._bounded_at = self._soonest(), self.now
             # Mostly another letter comes first: it is not worked out what is next.
-            self.due = (self.now + 1) // 2
+            self.due = max((self.now + 1) // 2, self.sleeps)
         self.restless = self.flow.gap is None and self.worse is not None
+
+    def _soonest(self) -> int:
+        """An instant before which no network has news of what is waited for in it."""
+        found = NEVER
+        for network in self._networks:
+            first = self._first_waiting(better=network is self.better)
+            if first is not None:
+                found = min(found, network.soonest_news(first))
+        return found
 
     @property
     def stood(self) -> tuple[tuple[int, ...], Stood]:

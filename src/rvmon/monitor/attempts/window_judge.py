@@ -62,6 +62,7 @@ class WindowJudge(NetworkJudge):
             self._mend()
         if self._network is None and self._windows is None:
             self._letters = None
+            self.sleeps = -NEVER
 
     def visit(self, t: int) -> None:
         """See `NetworkJudge`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,6 +20,7 @@ from rvmon.codegen.python_windows import windows_class
 from rvmon.dataflow.chain import Windows, chain_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
+from rvmon.dataflow.soonest_news import delay_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.core import Literal
@@ -260,6 +261,18 @@ class CompiledRequirement:
         """The same for runs in which evaluators work out what is measured."""
         given = (self.rank, self.spec, self.requirement, self.obligation, self._factory)
         return CompiledRequirement(*given, measures=True)
+
+    def network_delay(self, letter: Sequence[bool]) -> int:
+        """Ticks that pass in its delay network until an attempt that begins can be decided."""
+        key = tuple(letter)
+        found = self._delays.get(key)
+        if found is None:
+            found = self._delays[key] = delay_of(self.network_plan, self.gap, letter)
+        return found
+
+    @cached_property
+    def _delays(self) -> dict[tuple[bool, ...], int]:
+        return {}
 
     @property
     def is_fed(self) -> bool:
