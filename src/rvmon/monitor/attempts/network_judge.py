@@ -222,7 +222,7 @@ class NetworkJudge(AttemptJudge):
         elif self._ahead is not None:
             self.due = min((at // 2 for _, at in self._coming()), default=NEVER)
         else:
-            if not self.plan.looks_back:
+            if not (self._passed or self.plan.looks_back):
                 self.sleeps, self._bounded_at = self._soonest(), self.now
             # Mostly another letter comes first: it is not worked out what is next.
             self.due = max((self.now + 1) // 2, self.sleeps)
