@@ -25,8 +25,8 @@ from rvmon.plan.stood import Stood
 from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
 
-PATIENCE = 4
-"""So often time is let pass before it is worked out what it brings if the letter stays."""
+PATIENCE = 6
+"""So often it is looked before it is worked out what time brings if the letter stays."""
 
 WAITING = PASSED + 1
 """In the place of a location: neither `FAILED` nor `PASSED`.
@@ -74,8 +74,8 @@ class NetworkJudge(AttemptJudge):
         self.sleeps = -NEVER
         self._bounded_at = -FOREVER
         """The stamp as of which `sleeps` holds for all that begins then, too."""
-        self._passed = 0
-        """How often time has passed since the letter changed."""
+        self._looks = 0
+        """How often it was looked since the letter changed."""
         self._ahead: list[tuple[bool, Pieces]] | None = None
         """What time alone makes known of attempts, the letter staying, if that was worked out."""
         self.texts = tuple(text for _, text in self.leaves)
@@ -146,7 +146,7 @@ class NetworkJudge(AttemptJudge):
         self._rest()
 
     def _turn(self, t: int, worse: Network, letters: Letters) -> None:
-        self._letters, self._passed, self._ahead = letters, 0, None
+        self._letters, self._looks, self._ahead = letters, 0, None
         if self.better is None and letters[0] != letters[1]:
             self.better, self._journals[1] = worse.copy(), None
         self._note_doubt()
@@ -172,6 +172,7 @@ class NetworkJudge(AttemptJudge):
     def _look(self, limit: int) -> None:
         """Let time come to a stamp, and hear of the decisions that this brings."""
         if self.now < limit and self.worse is not None:
+            self._looks += 1
             for network in self._networks:
                 wanted = self._first_waiting(better=network is self.better)
                 wanted = limit // 2 if wanted is None else wanted
@@ -219,10 +220,10 @@ class NetworkJudge(AttemptJudge):
             self.due = NEVER
             if not self.plan.looks_back:
                 self.worse = self.better = self._letters = None
-        elif self._ahead is not None:
+        elif self._looks > PATIENCE:
             self.due = min((at // 2 for _, at in self._coming()), default=NEVER)
         else:
-            if not (self._passed or self.plan.looks_back):
+            if self._looks == 1 and not self.plan.looks_back:
                 self.sleeps, self._bounded_at = self._soonest(), self.now
             # Mostly another letter comes first: it is not worked out what is next.
             self.due = max((self.now + 1) // 2, self.sleeps)
@@ -353,9 +354,6 @@ class NetworkJudge(AttemptJudge):
 
     def _wait(self, limit: int) -> None:
         self._look(limit)
-        self._passed += 1
-        if self._passed > PATIENCE and limit % 2 and self._ahead is None:
-            self._ahead = list(self._foreseen())
         self._rest()
 
     @property
