@@ -181,6 +181,25 @@ def test_letters_that_decide_nothing_are_but_noted(time, monkeypatch):
     assert (failed.verdict.value, failed.decided) == ("F", 5 * SECOND + SECOND // 100)
 
 
+def test_a_letter_that_stays_is_soon_not_looked_at(monkeypatch):
+    """However many samples say the same, what time brings is worked out once."""
+    grown, original = [], Network.grow
+    monkeypatch.setattr(Network, "grow", lambda *given: grown.append(original(*given)))
+    monitor = spec_of("always (a -> (not b) U[2 s, 10 s] b)").monitor(engine="network")
+    decided = [one for k in range(1200) for one in monitor.step(k / 100, {"a": k == 0, "b": False})]
+    assert [(one.triggered, one.decided) for one in decided] == [(0, 10 * SECOND + 1)]
+    assert len(grown) <= 12
+
+
+def test_time_that_passes_in_one_go_leaves_out_no_failure():
+    """Each failure within a long silence is followed by the next attempt, as if it was split."""
+    spec = spec_of("always (F[1 s, 3 s] b)")
+    first, last = (0, {"a": False, "b": False}), (30, {"b": True})
+    found = outcomes(spec, [first, last])
+    assert found == outcomes(spec, [first, *((k / 2, {}) for k in range(1, 60)), last])
+    assert [verdict for _, _, verdict in found] == ["F"] * 9 + ["I"]
+
+
 def test_time_decides_under_another_letter_before_the_next_position():
     """What an unknown occurrence left open is known as soon as another one is told."""
     spec = spec_of("whenever e then F[1 ns, 1 ns] true", "sampled every 4 ns")
