@@ -192,12 +192,18 @@ def test_a_letter_that_stays_is_soon_not_looked_at(monkeypatch):
 
 
 def test_time_that_passes_in_one_go_leaves_out_no_failure():
-    """Each failure within a long silence is followed by the next attempt, as if it was split."""
-    spec = spec_of("always (F[1 s, 3 s] b)")
-    first, last = (0, {"a": False, "b": False}), (30, {"b": True})
-    found = outcomes(spec, [first, last])
-    assert found == outcomes(spec, [first, *((k / 2, {}) for k in range(1, 60)), last])
-    assert [verdict for _, _, verdict in found] == ["F"] * 9 + ["I"]
+    """Within a silence each failure is followed by the next attempt, though an older one waits."""
+    owed = "always (a -> (c and F[1 s, 20 s] b) or F[1 s, 3 s] b)"
+    spec = rvmon.loads(f"spec s\nsignal a, b, c : bool\nrequirement R1\n  {owed}\n")
+    begun = [
+        (0, {"a": True, "b": False, "c": True}),
+        (1, {"a": False}),
+        (2, {"a": True, "c": False}),
+    ]
+    found = outcomes(spec, [*begun, (15, {})])
+    assert found == outcomes(spec, [*begun, *((2 + k / 2, {}) for k in range(1, 27))])
+    assert (0, None, "I") in found
+    assert len(found) == 6
 
 
 def test_time_decides_under_another_letter_before_the_next_position():
