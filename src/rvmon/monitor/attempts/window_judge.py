@@ -13,7 +13,7 @@ from typing import Any
 
 from rvmon.dataflow.chain import Windows
 from rvmon.dataflow.journal import Journal
-from rvmon.dataflow.network import FOREVER, Network
+from rvmon.dataflow.network import Network
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge, position_of
 from rvmon.monitor.attempts.network_letters import Letters
@@ -130,7 +130,7 @@ class WindowJudge(NetworkJudge):
         network = self.worse
         self._network, self._windows = network and network.copy(), None
         self._journals = [None, None]
-        self._bounded_at = -FOREVER
+        self._ahead = None
 
     def _mend(self) -> None:
         """Go on by networks behind an interrupt: those are told of whole positions."""
