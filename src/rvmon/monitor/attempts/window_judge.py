@@ -14,6 +14,7 @@ from typing import Any
 from rvmon.dataflow.chain import Windows
 from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import FOREVER, Network
+from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge, position_of
 from rvmon.monitor.attempts.network_letters import Letters
@@ -114,12 +115,35 @@ class WindowJudge(NetworkJudge):
 
     def _journal_of(self, noted: Sequence[Noted]) -> Journal:
         """A journal that begins with what may still be asked for."""
-        gap, (t, letter) = self.flow.gap or 1, noted[0]
-        network = Network(self.plan, self.flow.gap)
-        first = self._first_waiting(better=False)
-        if first is not None and first < t:
-            network.begin_at(t // gap, first // gap, letter)
-        return Journal(network, noted)
+        return journal_of(self.plan, self.flow.gap, noted, self._first_waiting(better=False))
+
+    def lent(self) -> Sequence[Noted] | None:
+        """The letters that what is open may depend on; `None`: not all of them are known."""
+        windows, journal = self._windows, self._journals[0]
+        if not self.attempts:
+            return ()
+        if self._torn or windows is None or journal is None:
+            return None
+        gap = self.flow.gap or 1
+        return journal.noted_since(windows.forget(self.position // gap) * gap)
+
+    def take_back(self, attempts: list[Open], noted: Sequence[Noted], limit: int) -> None:
+        """Go on with attempts that were judged elsewhere.
+
+        Args:
+            attempts: all of which wait.
+            noted: the letters that they may depend on.
+            limit: the stamp that time has come to.
+        """
+        self.attempts, self._clear, self._torn = attempts, [], False
+        self._network = self.better = self._windows = self._letters = self._stood = None
+        self._journals = [None, None]
+        self._bounded_at = -FOREVER
+        self.now, self.due, self.restless = limit, NEVER, False
+        if attempts:
+            self._begin_windows(noted)
+            self._letters = self._read(self.flow.values)
+            self._look(limit)
 
     def _fall_back(self) -> None:
         """Have networks judge what is open."""
@@ -209,7 +233,13 @@ class WindowJudge(NetworkJudge):
     @property
     def next_due(self) -> int:
         """See `NetworkJudge`."""
+        self.refresh()
         return super().next_due if self._windows is None else self.due
+
+    def refresh(self) -> None:
+        """See when it is due: where samples like the last one are but noted, that may be later."""
+        if self._windows is not None and self.flow.gap is None and not self._torn:
+            self._look(self.now)
 
     def situation(self, t: int) -> object:
         """See `NetworkJudge`."""
@@ -222,6 +252,24 @@ class WindowJudge(NetworkJudge):
         if self._windows is not None:
             self._fall_back()
         return super().held_at_end(attempt, end, reached)
+
+
+def journal_of(
+    plan: NetworkPlan, gap: int | None, noted: Sequence[Noted], first: int | None
+) -> Journal:
+    """A journal of the letters that attempts may depend on.
+
+    Args:
+        plan: of the network.
+        gap: ticks between two positions; `None` if only samples are positions.
+        noted: the letters.
+        first: the instant of the first position that is waited for; `None`: none is.
+    """
+    t, letter = noted[0]
+    network = Network(plan, gap)
+    if first is not None and first < t:
+        network.begin_at(t // (gap or 1), first // (gap or 1), letter)
+    return Journal(network, noted)
 
 
 def _waits(attempt: Open) -> bool:

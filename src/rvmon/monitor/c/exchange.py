@@ -86,7 +86,7 @@ class Exchange:
             unit.leave()  # what nobody reads has occurred
         times = (max(last, reached - 1), reached, last)
         try:
-            return array("q", self._words(unit, evaluators.counts, times)).tobytes()
+            return array("q", self._words(unit, evaluators.numbered, times)).tobytes()
         except OverflowError:  # no instant of a run, but of a snapshot that was forged
             return None
 
@@ -197,7 +197,8 @@ class Exchange:
         unit = evaluators.unit
         words = iter(array("q", state))
         taken, _, unit.position, unit.before = (next(words) for _ in range(4))
-        _, reached, _, _ = (next(words) for _ in range(4))
+        after, reached, _, _ = (next(words) for _ in range(4))
+        limit = 2 * reached + (after == reached)
         v, since, until = unit.v, unit.since, unit.until
         for place in self._places:
             truth = next(words)
@@ -216,7 +217,7 @@ class Exchange:
             1 << place for place in self._places if v[place] and unit.momentary >> place & 1
         )
         for index, rule in enumerate(unit.rules[: len(self._plan.rules)]):
-            evaluators.counts[index] = take_rule(rule, words, reached)
+            evaluators.number_from(index, take_rule(rule, words, reached, limit))
         unit.resume()
         return taken
 

@@ -17,7 +17,7 @@ from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.codegen.python_windows import windows_class
-from rvmon.dataflow.chain import Windows, chain_of
+from rvmon.dataflow.chain import Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.soonest_news import delay_of
@@ -229,7 +229,7 @@ class CompiledRequirement:
         chain = None if self.is_beside else chain_of(self.network_plan, self.gap)
         if chain is None:
             return None
-        return windows_class(self.network_plan, chain, self.gap), chain.reach
+        return windows_class(self.network_plan, chain, self.gap), reach_of(self.network_plan) or 0
 
     @cached_property
     def measured_plan(self) -> NetworkPlan:

@@ -11,6 +11,7 @@ from rvmon.automaton.machine import Machine
 from rvmon.codegen.python_unit import unit_class
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.judges import judge_of
+from rvmon.monitor.attempts.window_judge import WindowJudge
 from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -173,6 +174,22 @@ class GeneratedEvaluators(Evaluators):
             return rule
         return self._clerks[rule.index].judge_now(rule)
 
+    @property
+    def numbered(self) -> Sequence[int]:
+        """Per requirement, the number of its last attempt."""
+        pairs = zip(self._clerks, self.unit.rules, self.counts, strict=False)
+        return [
+            self.ledger.count_of(clerk.id) if isinstance(rule, AttemptJudge) else count
+            for clerk, rule, count in pairs
+        ]
+
+    def number_from(self, index: int, count: int) -> None:
+        """Go on behind the last attempt of a requirement, which was numbered elsewhere."""
+        if isinstance(self.unit.rules[index], AttemptJudge):
+            self.ledger.count_to(self._clerks[index].id, count)
+        else:
+            self.counts[index] = count
+
     def take_along(self, t: int) -> None:
         """See `Evaluators`."""
         for rule in self.unit.rules:
@@ -318,6 +335,10 @@ class GeneratedMonitor(Monitor):
         return data
 
     def _next_due(self) -> int | None:
+        for rule in self._unit.rules:
+            if isinstance(rule, WindowJudge):
+                rule.refresh()
+                self._unit.note(rule)
         own = min(self._unit.next_position(), self._unit.next_due())
         others = super()._next_due()
         found = own if others is None else min(own, others)
