@@ -9,8 +9,8 @@ from typing import Any
 from rvmon.codegen.c_online import NEVER as C_NEVER
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import Open
-from rvmon.monitor.attempts.network_judge import WAITING
-from rvmon.monitor.attempts.window_judge import Noted, WindowJudge
+from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge
+from rvmon.monitor.attempts.network_letters import Noted
 from rvmon.monitor.online.unit_clerks import reopened
 from rvmon.runtime.bulk import BulkRule, Run, packed, unpacked
 from rvmon.runtime.rule import Rule
@@ -45,7 +45,7 @@ def is_plain(rule: Rule) -> bool:
     ):
         return False
     tokens = [one.token for one in rule.attempts]
-    if isinstance(rule, WindowJudge):
+    if isinstance(rule, NetworkJudge):
         return rule.lent() is not None and all(token[0] == WAITING for token in tokens)
     cuts = rule.machine.cuts_of
     return 0 <= rule.letter < len(rule.machine.class_of) and all(
@@ -64,9 +64,9 @@ def rule_words(rule: Rule, count: int) -> Iterator[int]:
         location, anchors = one.token
         yield from (one.triggered, one.number, location, packed(one.seen))
         yield int(one.triggered == rule.current)
-        if not isinstance(rule, WindowJudge):
+        if not isinstance(rule, NetworkJudge):
             yield from anchors
-    if isinstance(rule, WindowJudge):
+    if isinstance(rule, NetworkJudge):
         letters = rule.lent() or ()
         yield len(letters)
         for t, letter in letters:
@@ -76,7 +76,10 @@ def rule_words(rule: Rule, count: int) -> Iterator[int]:
 def letters_of(words: Iterable[int], leaves: int) -> list[Noted]:
     """The letters that were noted: of each its instant, then a bit for each leaf."""
     each = iter(words)
-    return [(t, tuple([bool(word >> leaf & 1) for leaf in range(leaves)])) for t, word in zip(each, each, strict=True)]
+    return [
+        (t, tuple([bool(word >> leaf & 1) for leaf in range(leaves)]))
+        for t, word in zip(each, each, strict=True)
+    ]
 
 
 def take_rule(rule: Rule, words: Iterator[int], reached: int, limit: int) -> int:
@@ -98,12 +101,12 @@ def take_rule(rule: Rule, words: Iterator[int], reached: int, limit: int) -> int
     found = []
     for _ in range(size):
         triggered, number, location, seen, is_current = (next(words) for _ in range(5))
-        clocks = () if isinstance(rule, WindowJudge) else rule.machine.cuts_of[location]
+        clocks = () if isinstance(rule, NetworkJudge) else rule.machine.cuts_of[location]
         anchors = tuple([next(words) for _ in clocks])
         if is_current:
             rule.current = triggered
         found.append((triggered, number, (location, anchors), seen))
-    if isinstance(rule, WindowJudge):
+    if isinstance(rule, NetworkJudge):
         leaves, plan = len(rule.leaves), rule.plan
         own = [
             reopened(number, t, (WAITING, (t,)), unpacked(seen, leaves))

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rvmon.codegen.c_online import NOT_YET
-from rvmon.monitor.attempts.window_judge import journal_of
+from rvmon.monitor.attempts.network_letters import journal_of
 from rvmon.monitor.c.exchange_rules import letters_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.records.deferred_reasons import DeferredReasons
@@ -40,7 +40,7 @@ class NotedReasons(DeferredReasons):
         entries = array("q", book[: 8 * _WORDS_OF_ENTRY * count])
         letters = letters_of(entries, len(plan.leaves))
         journal = journal_of(plan, self.compiled.gap, letters, triggered)
-        journal.grow(None, 2 * t + 1, triggered)
+        journal.grow(None, 2 * t + 1)
         read = self.unpacked(seen_then), seen, self.texts
         return network_details(
             attempt,

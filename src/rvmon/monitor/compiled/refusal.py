@@ -180,8 +180,8 @@ def of_prepared(one: CompiledRequirement) -> Refusal | None:
 
 
 def _beyond_prepared(one: CompiledRequirement) -> str:
-    if one.automaton is None and one.windows is None:
-        return f"has no automaton ({one.refusal}), nor windows alone"
+    if one.automaton is None and one.reach is None:
+        return f"has no automaton ({one.refusal}), nor bounds within what `always` demands"
     if len(one.network_plan.leaves) > _MOST_BITS and one.automaton is None:
         return f"tells more than {_MOST_BITS} propositions apart"
     if one.spec.max_delay is not None:

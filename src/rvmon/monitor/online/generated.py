@@ -11,7 +11,6 @@ from rvmon.automaton.machine import Machine
 from rvmon.codegen.python_unit import unit_class
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.judges import judge_of
-from rvmon.monitor.attempts.window_judge import WindowJudge
 from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -335,10 +334,6 @@ class GeneratedMonitor(Monitor):
         return data
 
     def _next_due(self) -> int | None:
-        for rule in self._unit.rules:
-            if isinstance(rule, WindowJudge):
-                rule.refresh()
-                self._unit.note(rule)
         own = min(self._unit.next_position(), self._unit.next_due())
         others = super()._next_due()
         found = own if others is None else min(own, others)
