@@ -124,7 +124,9 @@ class _Run:
 
     def see_next_due(self) -> None:
         """Both name the same next instant; that of a network may come in vain, but not too late."""
-        if not any(isinstance(rule, NetworkJudge) for rule in self.plain.evaluators.unit.rules):
+        unit = self.plain.evaluators.unit
+        has_network = any(isinstance(rule, NetworkJudge) for rule in unit.rules)
+        if not has_network and unit.GAP in (None, 1):
             self.both(lambda m: m.next_due)
             return
         wanted, got = _next_decision(self.plain), self.lending.next_due

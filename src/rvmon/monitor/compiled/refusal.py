@@ -186,8 +186,8 @@ def _beyond_prepared(one: CompiledRequirement) -> str:
         return f"tells more than {_MOST_BITS} propositions apart"
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
-    if one.gap not in (None, 1):
-        return "is clocked (`sampled every`)"
+    if one.gap not in (None, 1) and one.single_payloads:
+        return "has a clock (`sampled every`) and reads payloads"
     if len(one.leaves) > _MOST_LEAVES:
         return f"reads more than {_MOST_LEAVES} propositions"
     obligation = one.obligation
