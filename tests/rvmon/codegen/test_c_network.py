@@ -21,6 +21,7 @@ FORMS = {
     "until": "whenever p then ((F[0 s, 1 s] q) U[1 s, 4 s] G[0 s, 1 s] x < 3)",
     "doubt": "upon known(x) and x > 3 then F[1 s, 3 s] (q and F[1 s, 2 s] p)",
     "end": "upon end then once[0 s, 3 s] (p and F[1 s, 2 s] q)",
+    "between ticks": "whenever p then F[2 s, 5 s] F[1 ns, 2 ns] q",
     "for ever": "upon e then F[1 s, 2 s] always (p -> F[1 s, 3 s] q)",
 }
 
