@@ -83,8 +83,13 @@ def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
     beside_module._FEW = beside_module._MANY = lends
     try:
         run = _Run(pair, keep, rng.random() < 0.3)
+        is_left_alone = rng.random() < 0.3
         for action in case.actions:
             run.both(partial(_told, action=action))
+            if run.found:
+                break
+            if is_left_alone:
+                continue
             for ask in _asked(rng, pair, action):
                 run.both(ask)
             if rng.random() < 0.2:
@@ -171,6 +176,8 @@ def _next_decision(monitor: Monitor) -> int | None:
     found = [unit.next_position()]
     for rule in unit.rules:
         is_network = isinstance(rule, NetworkJudge)
+        if is_network:
+            rule._look(rule.now)  # samples like the last one were but noted
         found.append(rule.next_due if is_network else unit.due_at[rule.index])
     soonest = min(found)
     return max(soonest, due) if soonest < NEVER else None
