@@ -53,8 +53,8 @@ def main(argv: list[str]) -> int:
         rng = random.Random(seed)
         profile = Profile(time=MODELS[number % len(MODELS)], captures=False, for_each=False)
         unknowns = rng.random() < 0.25
-        samples = 300 if rng.random() < 0.2 else 60
-        traces = TraceProfile(samples, span=4 * samples, unknowns=unknowns, long=20)
+        size = 300 if rng.random() < 0.2 else 60
+        traces = TraceProfile(size, span=4 * size, unknowns=unknowns, long=20)
         chained = rng.random() * 100 < options.windows
         spec = windowed(rng) if chained else random_spec(rng, profile)
         cases = [random_trace(rng, spec, traces) for _ in range(options.traces)]

@@ -216,9 +216,10 @@ def _report(monitor: Monitor, end: int | None) -> Any:
     others = {
         one.name: getattr(report, one.name)
         for one in fields(report)
-        if one.name not in ("attempts", "engine")
+        if one.name not in ("attempts", "engine", "dropped")
     }
-    return attempts, others
+    dropped = [(name, sorted(counts.items())) for name, counts in report.dropped.items()]
+    return attempts, others, dropped
 
 
 def _answer(monitor: Monitor, ask: Callable[[Monitor], Any]) -> Any:
