@@ -129,9 +129,9 @@ class _Run:
 
     def see_next_due(self) -> None:
         """Both name the same next instant; that of a network may come in vain, but not too late."""
-        unit = self.plain.evaluators.unit
-        has_network = any(isinstance(rule, NetworkJudge) for rule in unit.rules)
-        if not has_network and unit.GAP in (None, 1):
+        plan = self.pair.forms.plan
+        has_network = any(rule.automaton is None for rule in plan.rules)
+        if not has_network and plan.gap in (None, 1):
             self.both(lambda m: m.next_due)
             return
         wanted, got = _next_decision(self.plain), self.lending.next_due
