@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rvmon.codegen.c_online import NOT_YET
@@ -23,9 +23,7 @@ class NotedReasons(DeferredReasons):
     def __init__(self, compiled: CompiledRequirement, *further: Any) -> None:
         super().__init__(compiled, *further)
         by_machine = compiled.automaton is not None
-        of_one: Callable[[Attempt, Any], Mapping[str, Any]]
-        of_one = self._of_machine if by_machine else self._of_network
-        self.details = of_one
+        self.details = self._of_machine if by_machine else self._of_network
 
     def _of_machine(self, attempt: Attempt, words: bytes) -> Mapping[str, Any]:
         seen, t, letter, position, location, clocks, *rest = array("q", words)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -41,7 +41,7 @@ class DeferredReasons:
         read = [(index[leaf], text) for leaf, text in compiled.leaves if leaf in index]
         self.leaves = tuple(leaf for leaf, _ in read)
         self.texts = tuple(text for _, text in read)
-        self.details = self._details
+        self.details: Callable[[Attempt, Any], Mapping[str, Any]] = self._details
 
     @cached_property
     def _machine(self) -> Machine:
