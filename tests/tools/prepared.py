@@ -82,7 +82,7 @@ def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
     waits = (beside_module._FEW, beside_module._MANY)
     beside_module._FEW = beside_module._MANY = lends
     try:
-        run = _Run(pair, keep, rng.random() < 0.3)
+        run = Run(pair, keep, rng.random() < 0.3)
         is_left_alone = rng.random() < 0.3
         for action in case.actions:
             run.both(partial(_told, action=action))
@@ -105,7 +105,9 @@ def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
     return ([*run.found, show_case(case)] if run.found else []), taken
 
 
-class _Run:
+class Run:
+    """Two monitors of a pair, which are told and asked the same."""
+
     def __init__(self, pair: Pair, keep: int | None, listens: bool) -> None:
         compiled, forms = pair.compiled, pair.forms
         chosen = compiled.chosen(None)
@@ -144,7 +146,7 @@ class _Run:
         own, other = reversed(kept) if across else kept
         before = self.lending
         taken = before.taken if isinstance(before, _Counted) else 0
-        run = _Run(self.pair, self.keep, False)
+        run = Run(self.pair, self.keep, False)
         for monitor, data in ((run.plain, own), (run.lending, other)):
             _put_back(self.pair.compiled, monitor, data)
         self.plain, self.lending = run.plain, run.lending
