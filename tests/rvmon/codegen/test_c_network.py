@@ -85,6 +85,13 @@ def test_each_call_returns_what_the_network_of_python_does(form, model):
         assert told(spec.monitor(engine="c"), rows) == told(spec.monitor(engine="network"), rows)
 
 
+def test_a_window_between_two_ticks_of_a_clock_holds_nothing():
+    """What has to come true in it does not, though the ticks around it have it."""
+    spec = rvmon.loads(text_of("whenever p then F[2 s, 5 s] F[1 ns, 2 ns] q", MODELS[2]))
+    rows = [*rows_of(1, 300)]
+    assert told(spec.monitor(engine="c"), rows) == told(spec.monitor(engine="network"), rows)
+
+
 def test_columns_are_judged_alike():
     """Whole columns by the same C."""
     spec = rvmon.loads(text_of(FORMS["nested"]))

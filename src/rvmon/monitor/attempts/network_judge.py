@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Mapping
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from rvmon.automaton.location import FAILED, PASSED
@@ -13,12 +13,13 @@ from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import Pieces, stamp
-from rvmon.dataflow.ranges import Range, merged
+from rvmon.dataflow.ranges import merged
 from rvmon.dataflow.sweep import Carried
 from rvmon.dataflow.time_decisions import Moment
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
-from rvmon.monitor.attempts.network_letters import Letters, letter_reader
+from rvmon.monitor.attempts.network_letters import Clear, Letters, Noted, journal_of, letter_reader
+from rvmon.monitor.attempts.waiting import learnt, position_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.standing import Standing
 from rvmon.plan.stood import Stood
@@ -71,7 +72,7 @@ class NetworkJudge(AttemptJudge):
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
         """Those that were asked for last, of each network one."""
         self.now = -1 << 64
-        self.sleeps = -NEVER
+        self.sleeps, self._clear = -NEVER, Clear(compiled.reach, flow.gap)
         self._bounded_at = -FOREVER
         """The stamp as of which `sleeps` holds for all that begins then, too."""
         self._looks = 0
@@ -120,6 +121,7 @@ class NetworkJudge(AttemptJudge):
         if self.worse is None:
             self.worse = Network(self.plan, self.flow.gap)
             self._letters = None
+            self._clear.forget()
             self._journals = [None, None]
             self.now = -1 << 64
             self.sleeps = -NEVER if self.plan.looks_back else NEVER
@@ -134,6 +136,7 @@ class NetworkJudge(AttemptJudge):
         self.position = t
         if self.worse is not None:
             roused = False
+            self._clear.note(t, letters)
             if letters != self._letters or self.flow.gap is None:
                 self._turn(t, self.worse, letters)
                 roused = any(map(Network.is_roused, self._networks, letters))
@@ -205,9 +208,7 @@ class NetworkJudge(AttemptJudge):
         worse, better = self.worse, self.better
         if worse is None:
             return
-        found = list(self._learnt(worse))
-        if better is not None:
-            found += self._learnt(better)
+        found = [one for network in self._networks for one in learnt(self.attempts, network)]
         for start, end in reversed(merged(found) if len(found) > 1 else found):
             asked = self.attempts[start : end + 1]
             kept = [attempt for attempt in asked if not self._judge(attempt, worse, better)]
@@ -228,6 +229,36 @@ class NetworkJudge(AttemptJudge):
             # Mostly another letter comes first: it is not worked out what is next.
             self.due = max((self.now + 1) // 2, self.sleeps)
         self.restless = self.flow.gap is None and self.worse is not None
+
+    def lent(self) -> Sequence[Noted] | None:
+        """The letters that what is open may depend on; `None`: not all of them are known."""
+        if not self.attempts:
+            return ()
+        return self._clear.since(position_of(self.attempts[0]), self.position)
+
+    def take_back(self, attempts: list[Open], noted: Sequence[Noted], limit: int) -> None:
+        """Go on with attempts that were judged elsewhere.
+
+        Args:
+            attempts: all of which wait.
+            noted: the letters that they may depend on.
+            limit: the stamp that time has come to.
+        """
+        self.attempts, self.better, self._journals = attempts, None, [None, None]
+        self.worse = self._letters = self._stood = self._ahead = None
+        self.now, self.due, self._looks, self._bounded_at = limit, NEVER, 0, -FOREVER
+        if attempts:
+            self._go_on(noted, limit)
+
+    def _go_on(self, noted: Sequence[Noted], limit: int) -> None:
+        """Have a network know what letters tell."""
+        journal = journal_of(self.plan, self.flow.gap, noted, position_of(self.attempts[0]))
+        journal.grow(None, limit)
+        self.worse = journal.after(len(journal)).copy()
+        self._letters = self._read(self.flow.values)
+        self._clear.take(noted)
+        self.sleeps = -NEVER
+        self._rest()
 
     def _soonest(self) -> int:
         """An instant before which no network has news of what is waited for in it."""
@@ -260,30 +291,6 @@ class NetworkJudge(AttemptJudge):
         return any(
             WAITING in (attempt.token[0], (attempt.better or _NONE)[0]) for attempt in self.attempts
         )
-
-    def _learnt(self, network: Network) -> Iterator[Range]:
-        """The attempts, by first and last index, whose value became known last."""
-        attempts, gap = self.attempts, network.positions.gap
-        if not attempts:
-            return
-        oldest, youngest = (position_of(attempts[end]) // gap for end in (0, -1))
-        for pieces in network.news[-2:]:
-            start, position = 0, oldest
-            for left, right, _, _ in pieces:
-                if right < position:
-                    continue
-                if left > youngest:
-                    break
-                if left > position:
-                    start = bisect_left(attempts, left * gap, start, key=position_of)
-                    position = position_of(attempts[start]) // gap
-                    if right < position:
-                        continue
-                end = bisect_right(attempts, right * gap, start, key=position_of)
-                yield start, end - 1
-                if end == len(attempts):
-                    break
-                start, position = end, position_of(attempts[end]) // gap
 
     def _judge(self, attempt: Open, worse: Network, better: Network | None) -> bool:
         """Look at one attempt; returns whether it was decided."""
@@ -388,11 +395,6 @@ class NetworkJudge(AttemptJudge):
         if self._held is None:
             self._held = held_at_end(self.worse, end, reached)
         return stamp(self._held, position_of(attempt) // self.worse.positions.gap) is not None
-
-
-def position_of(attempt: Open) -> int:
-    """The instant of the position whose value is an attempt's."""
-    return attempt.token[1][0]
 
 
 _NONE: Token = (FAILED, ())

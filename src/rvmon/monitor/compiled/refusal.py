@@ -70,6 +70,9 @@ MOST_GENERATED = 2000
 _MOST_LEAVES = 39
 """So many truth values fit into a number of 64 bits."""
 
+_MOST_BITS = 64
+"""So many of them stand in a letter that is noted."""
+
 _MOST_STRETCHES = 64
 """So many stretches of time a past operator of compiled code remembers."""
 
@@ -174,7 +177,7 @@ def of_measured_c(one: CompiledRequirement) -> Refusal | None:
 
 def of_prepared(one: CompiledRequirement) -> Refusal | None:
     """What `auto` does not have compiled C judge, be that prepared: Python does all of it."""
-    generated = of_generated(one)
+    generated = _of_captured(one) if one.automaton is None else of_generated(one)
     reason = _beyond_prepared(one) if generated is None else generated.reason
     return Refusal(reason, _AUTO, "python") if reason else None
 
@@ -192,10 +195,14 @@ def of_prepared_margins(one: CompiledRequirement) -> Refusal | None:
 
 
 def _beyond_prepared(one: CompiledRequirement) -> str:
+    if one.automaton is None and one.reach is None:
+        return f"has no automaton ({one.refusal}), nor bounds within what `always` demands"
+    if len(one.network_plan.leaves) > _MOST_BITS and one.automaton is None:
+        return f"tells more than {_MOST_BITS} propositions apart"
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
-    if one.gap not in (None, 1):
-        return "is clocked (`sampled every`)"
+    if one.gap not in (None, 1) and one.single_payloads:
+        return "has a clock (`sampled every`) and reads payloads"
     if len(one.leaves) > _MOST_LEAVES:
         return f"reads more than {_MOST_LEAVES} propositions"
     obligation = one.obligation
