@@ -31,7 +31,6 @@ from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,
     Formula,
-    Interval,
     SignalAtom,
     Unary,
     UnaryOp,
@@ -41,7 +40,7 @@ from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.rng import Rng, chance
 from rvmon.testing.generate.vocabulary import BOOLS
 from rvmon.testing.peers.client import Peer, PeerError
-from rvmon.testing.peers.core import both, no, to_core, until
+from rvmon.testing.peers.core import EVER, both, to_core
 from rvmon.testing.peers.dialects import LTLF, spelling, translate
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
@@ -51,8 +50,17 @@ from rvmon.verdict.verdict import Verdict
 LTLF2DFA = Path(__file__).parent / "peers" / "with_ltlf2dfa.py"
 JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
 ALIVE = SignalAtom("alive")
-EVER = Interval(0, None)
 Word = list[frozenset[str]]
+
+
+def no(operand: Formula) -> Formula:
+    """`not operand`."""
+    return Unary(UnaryOp.NOT, operand)
+
+
+def until(left: Formula, right: Formula) -> Formula:
+    """`left until right`, however long that takes."""
+    return Binary(BinaryOp.UNTIL, left, right, EVER)
 
 
 def embed(core: Formula) -> Formula:
@@ -67,11 +75,11 @@ def embed(core: Formula) -> Formula:
         case Unary(op=UnaryOp.NEXT, operand=operand):
             return Unary(UnaryOp.NEXT, both(ALIVE, embed(operand)))
         case Unary(op=UnaryOp.EVENTUALLY, operand=operand):
-            return until(ALIVE, both(ALIVE, embed(operand)), EVER)
+            return until(ALIVE, both(ALIVE, embed(operand)))
         case Unary(op=UnaryOp.ALWAYS, operand=operand):
-            return no(until(ALIVE, both(ALIVE, no(embed(operand))), EVER))
+            return no(until(ALIVE, both(ALIVE, no(embed(operand)))))
         case Binary(op=BinaryOp.UNTIL, left=left, right=right):
-            return until(both(ALIVE, embed(left)), both(ALIVE, embed(right)), EVER)
+            return until(both(ALIVE, embed(left)), both(ALIVE, embed(right)))
         case Binary(op=op, left=left, right=right):
             return Binary(op, embed(left), embed(right))
         case _:

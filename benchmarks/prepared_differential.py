@@ -9,17 +9,29 @@ up by the other, health, reports. Prints every difference; exits 1 if there is o
 from __future__ import annotations
 
 import argparse
+import random
 import sys
 import time
 
-from tests.tools.differential import cases_of
+from tests.tools.chains import random_chain
 from tests.tools.prepared import compiled_beside, differences
 
-from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.monitor.compiled.refusal import of_prepared
+from rvmon.monitor.compiled.specification import compile_spec
+from rvmon.spec.checked.specification import CheckedSpec, TimeModel
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
 
-MODELS = (TimeModel.HELD, TimeModel.SAMPLED)
+MODELS = tuple(TimeModel)
+
+
+def windowed(rng: random.Random) -> CheckedSpec:
+    """A specification of windows within windows that no automaton judges, and C can."""
+    while True:
+        spec = random_chain(rng)
+        (one,) = compile_spec(spec).chosen(None)
+        if one.automaton is None and of_prepared(one) is None:
+            return spec
 
 
 def main(argv: list[str]) -> int:
@@ -28,21 +40,29 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--pairs", type=int, default=1_000)
     parser.add_argument("--traces", type=int, default=10, help="of the pairs with one spec")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--windows", type=int, default=30, help="per cent that are without automaton"
+    )
     parser.add_argument("--show", type=int, default=3, help="differences printed at most")
     options = parser.parse_args(argv)
     began = time.perf_counter()
-    judged = refused = samples = by_c = found = number = 0
+    judged = refused = by_network = samples = by_c = found = number = 0
     while judged < options.pairs:
         number += 1
         seed = f"{options.seed}/{number}"
-        profile = Profile(time=MODELS[number % 2], captures=False, for_each=False)
-        unknowns = number % 4 == 0
-        traces = TraceProfile(samples=60, span=200, unknowns=unknowns, long=20)
-        cases = [*cases_of(seed, profile, traces, options.traces)]
-        pair = compiled_beside(cases[0].spec)
+        rng = random.Random(seed)
+        profile = Profile(time=MODELS[number % len(MODELS)], captures=False, for_each=False)
+        unknowns = rng.random() < 0.25
+        size = 300 if rng.random() < 0.2 else 60
+        traces = TraceProfile(size, span=4 * size, unknowns=unknowns, long=20)
+        chained = rng.random() * 100 < options.windows
+        spec = windowed(rng) if chained else random_spec(rng, profile)
+        cases = [random_trace(rng, spec, traces) for _ in range(options.traces)]
+        pair = compiled_beside(spec)
         if pair is None:
             refused += 1
             continue
+        by_network += any(rule.automaton is None for rule in pair.forms.plan.rules)
         for index, case in enumerate(cases):
             told, taken = differences(pair, case, f"{seed}/{index}")
             judged += 1
@@ -54,6 +74,7 @@ def main(argv: list[str]) -> int:
                     print(f"\n{'=' * 72}\nseed {seed}, trace {index}\n" + "\n".join(told[:8]))
     seconds = time.perf_counter() - began
     print(f"pairs {judged}, specifications refused {refused}, in {seconds:.0f} s")
+    print(f"specifications with what no automaton judges {by_network}")
     print(f"samples {samples}, of them by C {by_c}; pairs that differ {found}")
     return 1 if found else 0
 

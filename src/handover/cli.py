@@ -180,7 +180,7 @@ def _run(arguments: argparse.Namespace) -> int:
     words += ["--conform", arguments.conform] if arguments.conform else []
     conducted = conduct(campaign, strategies, arguments, words)
     show(campaign, conducted, arguments.format)
-    if conducted.summary.cut_short:
+    if conducted.interrupted:
         return INTERRUPTED
     return int(arguments.strict and bool(conducted.judged(strict=True).wrong))
 
@@ -197,7 +197,7 @@ def _demo(arguments: argparse.Namespace) -> int:
     show(campaign, conducted, "text")
     if arguments.out:
         print(f"Look at {Path(arguments.out) / REPORT}")
-    return INTERRUPTED if conducted.summary.cut_short else 0
+    return INTERRUPTED if conducted.interrupted else 0
 
 
 def _close(arguments: argparse.Namespace) -> int:

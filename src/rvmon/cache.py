@@ -80,15 +80,32 @@ def is_ours(path: Path) -> bool:
 
 def file_stamps(folder: str) -> Iterator[tuple[str, int, int]]:
     """What tells the files of a folder of sources from others: path, bytes and time of change."""
+    for entry in _files(folder):
+        found = entry.stat()
+        yield entry.path, found.st_size, found.st_mtime_ns
+
+
+def contents(path: Path) -> Iterator[tuple[str, str]]:
+    """What a file, or a folder of sources, holds: each path within, and a checksum.
+
+    It is the same on every machine, wherever it is and whenever it was installed.
+    """
+    if path.is_dir():
+        for entry in _files(str(path)):
+            yield os.path.relpath(entry.path, path), _checksum(Path(entry).read_bytes())
+    else:
+        yield path.name, _checksum(path.read_bytes())
+
+
+def _files(folder: str) -> Iterator[os.DirEntry[str]]:
     folders = [folder]
     for one in folders:  # grows
         with os.scandir(one) as entries:
             for entry in sorted(entries, key=lambda entry: entry.name):
-                if entry.is_dir():
-                    folders += [entry.path] if entry.name != "__pycache__" else []
-                else:
-                    found = entry.stat()
-                    yield entry.path, found.st_size, found.st_mtime_ns
+                if not entry.is_dir():
+                    yield entry
+                elif entry.name != "__pycache__":
+                    folders.append(entry.path)
 
 
 def read_kept(path: Path) -> bytes | None:

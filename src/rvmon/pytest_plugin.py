@@ -6,9 +6,9 @@ pytest loads it by itself where rvmon is installed; what it needs is imported wh
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Generator, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import pytest
 
@@ -22,6 +22,8 @@ _PROPERTY = "rv:"
 """Begins the properties of tests that are verdicts; they stand in JUnit XML as well."""
 
 _RECORDINGS = "rv_recordings"
+
+_T = TypeVar("_T")
 
 _judges: pytest.StashKey[list[Judge]] = pytest.StashKey()
 
@@ -54,9 +56,11 @@ class Judge:
         self.only = None if only is None else tuple(only)
         self._strict = strict
         self._expect = dict(expect or {})
-        for name in self._expect:
+        for name, wanted in self._expect.items():
             if name not in spec.requirements:
                 raise UnknownNameError(f"no requirement {name}: {', '.join(spec.requirements)}")
+            if wanted not in ("P", "F", "NT", "I"):
+                raise UnknownNameError(f"{name}: no verdict {wanted!r}: P, F, NT, I")
         self._monitor: Monitor | None = None
         self._reports: list[Report] = []
 
@@ -69,18 +73,20 @@ class Judge:
 
     def step(self, t: float, values: Mapping[str, Any]) -> None:
         """Judge a sample; see `Monitor.step`."""
-        self.monitor.step(t, values)
+        __tracebackhide__ = True
+        _without_frames(lambda: self.monitor.step(t, values))
 
     def check(self, trace: Any, **reading: Any) -> Report:
         """Judge a finished trace; see `Spec.evaluate`. A failure fails the test at its end."""
-        report = self.spec.evaluate(trace, only=self.only, **reading)
+        __tracebackhide__ = True
+        report = _without_frames(lambda: self.spec.evaluate(trace, only=self.only, **reading))
         self._reports.append(report)
         return report
 
     def finish(self) -> list[Report]:
-        """End the run and give what was judged; once."""
-        if self._monitor is not None:
-            self._reports.append(self._monitor.finish())
+        """End the run and give what was judged, if only that nothing was; once."""
+        if self._monitor is not None or not self._reports:
+            self._reports.append(self.monitor.finish())
             self._monitor = None
         reports, self._reports = self._reports, []
         return reports
@@ -110,14 +116,30 @@ def rv(request: pytest.FixtureRequest) -> Any:
     judges = request.node.stash.setdefault(_judges, [])
 
     def judge(spec: str | Path | Spec, **wanted: Any) -> Judge:
-        if not isinstance(spec, Spec):
+        __tracebackhide__ = True
+
+        def made() -> Judge:
+            if isinstance(spec, Spec):
+                return Judge(spec, **wanted)
             beside = request.path.parent / spec
-            spec = load(beside if beside.exists() else spec)
-        made = Judge(spec, **wanted)
-        judges.append(made)
-        return made
+            return Judge(load(beside if beside.exists() else spec), **wanted)
+
+        found = _without_frames(made)
+        judges.append(found)
+        return found
 
     return judge
+
+
+def _without_frames(call: Callable[[], _T]) -> _T:
+    """What a call gives; of what is wrong with its input, the text, and where the test made it."""
+    from rvmon.errors import RvmonError
+
+    __tracebackhide__ = True
+    try:
+        return call()
+    except RvmonError as error:
+        raise error.with_traceback(None) from None
 
 
 @pytest.hookimpl(wrapper=True)
@@ -173,9 +195,13 @@ class SpecFile(pytest.File):
 
     def collect(self) -> Iterator[RequirementItem]:
         """The tests."""
+        from rvmon.errors import RvmonError
         from rvmon.loading import load
 
-        spec = load(self.path)
+        try:
+            spec = load(self.path)
+        except RvmonError as error:
+            raise self.CollectError(str(error)) from None
         root = self.config.rootpath
         patterns = self.config.getini(_RECORDINGS)
         found = sorted({path for pattern in patterns for path in root.glob(pattern)})

@@ -107,11 +107,12 @@ class Spec:
 
         return choices(self._compiled.chosen(requirements_asked(self.checked, only)))
 
-    def plan(self, *, only: Iterable[str] | None = None) -> Plan:
+    def plan(self, *, only: Iterable[str] | None = None, robustness: bool = False) -> Plan:
         """What `rvmon.codegen` makes Python and C of that run without rvmon.
 
         Args:
             only: ids of the requirements; default all.
+            robustness: whether it says what is measured, too.
 
         Raises:
             UnknownNameError: there is no such requirement.
@@ -119,10 +120,14 @@ class Spec:
         """
         from rvmon.monitor.compiled.code_plan import plan_alone
 
-        return plan_alone(self._compiled, only)
+        return plan_alone(self._compiled, only, measured=robustness)
 
     def prepare(
-        self, *, only: Iterable[str] | None = None, ready: Callable[[Prepared], object] = id
+        self,
+        *,
+        only: Iterable[str] | None = None,
+        ready: Callable[[Prepared], object] = id,
+        robustness: bool = False,
     ) -> tuple[Prepared, ...]:
         """Compile ahead, into the cache, what makes streams faster and nothing else different.
 
@@ -132,6 +137,7 @@ class Spec:
         Args:
             only: ids of the requirements, as the engines will be asked for them; default all.
             ready: told each file when it is there.
+            robustness: whether `robustness_monitor()` is to have compiled code as well.
 
         Raises:
             UnknownNameError: there is no such requirement.
@@ -139,7 +145,7 @@ class Spec:
         """
         from rvmon.monitor.c.prepare import prepare
 
-        return prepare(self._compiled, requirements_asked(self.checked, only), ready)
+        return prepare(self._compiled, requirements_asked(self.checked, only), ready, robustness)
 
     def monitor(
         self,
@@ -159,10 +165,9 @@ class Spec:
             settle: `now` judges each sample at once; `next` merges samples with equal stamps and
                 judges each when the next stamp settles it.
             sources: the signals and events that can arrive; the others are unknown throughout.
-            keep: for runs that last for weeks: of each verdict the newest `keep` records are kept
-                per requirement, so that many passes hide no failure; verdicts and counts stay
-                exact, and the report says how many were dropped. Default: all. Not for the
-                engine `c`.
+            keep: for runs of weeks: of each verdict the newest `keep` records are kept per
+                requirement, so that many passes hide no failure; verdicts and counts stay exact,
+                the report says how many were dropped. Default: all. Not for the engine `c`.
 
         Raises:
             UnknownNameError: `only`, `engine`, `settle` or `sources` names what does not exist.
@@ -218,8 +223,7 @@ class Spec:
         Raises:
             MissingNameError: a trace in columns has none for a name that a requirement reads.
             TraceError: the trace cannot be read; place and cause are named.
-            UnknownNameError: `only`, `engine`, `sources` or another argument names what does not
-                exist.
+            UnknownNameError: an argument names what does not exist.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
@@ -276,7 +280,8 @@ class Spec:
         from rvmon.readers.reading import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
-        return Reading(self.reading(**schema).schema, sources_asked(self.checked, sources), allowed)
+        told = (self.reading(**schema) if schema else self).schema
+        return Reading(told, sources_asked(self.checked, sources), allowed)
 
     def evaluate_many(
         self,
@@ -331,17 +336,15 @@ class Spec:
     ) -> Margins:
         """By how much a finished trace meets each requirement, or fails to, in base units.
 
-        Comparisons of numbers count by the distance of their sides, other propositions as infinite;
-        unknown input and what would come after the end may be anything. Where the least value of an
-        attempt is above 0 it has passed, where the greatest is below 0 it has failed.
+        Comparisons count by the distance of their sides, other propositions as infinite; unknown
+        input and what is behind the end may be anything. `low > 0`: passed; `high < 0`: failed.
 
         Args:
-            trace: as `evaluate` takes it.
-            only: ids of the requirements; default all.
-            until: as for `evaluate`; so are `reading` and the errors.
+            trace: as `evaluate` takes it; so are the errors.
+            only: see there; so is `reading`.
+            until: see there.
             streams: whether to give a figure per sample, too; they are kept in memory.
             engine: `auto`, or `c`: compiled C, which does not measure every requirement.
-            **reading: `time`, `columns` and so on.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """

@@ -65,10 +65,13 @@ def test_verdicts_can_be_wanted_and_recordings_checked(folder):
         def test_own_failure(rv):
             rv("door.rv").step(0, {"closed": True})
             assert False, "its own"
+
+        def test_nothing(rv):
+            rv("door.rv", only=["D1"], expect={"D1": "P"})
         """,
     )
-    told.assert_outcomes(failed=2, passed=1)
-    told.stdout.fnmatch_lines(["*not as wanted: D1*", "*its own*"])
+    told.assert_outcomes(failed=3, passed=1)
+    told.stdout.fnmatch_lines(["*not as wanted: D1*", "*its own*", "*not as wanted: D1*"])
 
 
 @pytest.mark.process
@@ -92,10 +95,28 @@ def test_wrong_specifications_and_recordings_are_told(folder):
     told.assert_outcomes(failed=2)
     told.stdout.fnmatch_lines(["*maybe*"])
     assert "Traceback" not in told.stdout.str()
-    (folder.path / "door.rv").write_text("requirement")
-    told = folder.runpytest_subprocess("-p", "no:cacheprovider")
-    told.assert_outcomes(errors=1)
-    told.stdout.fnmatch_lines(["*RV001*"])
+    (folder.path / "bad.rv").write_text("requirement")
+    told = _run(
+        folder,
+        """
+        def test_recording(rv):
+            rv("door.rv").check("none.csv")
+
+        def test_specification(rv):
+            rv("bad.rv")
+
+        def test_sample(rv):
+            rv("door.rv").step(0, {"close": True})
+
+        def test_verdict(rv):
+            rv("door.rv", expect={"D1": "pass"})
+        """,
+        "--continue-on-collection-errors",
+    )
+    told.assert_outcomes(failed=6, errors=1)
+    told.stdout.no_fnmatch_line("*src/rvmon*")
+    causes = ["*ERROR collecting bad.rv*", "*RV001*", "*none.csv: No such file*", "*RV001*"]
+    told.stdout.fnmatch_lines([*causes, "*`close`*", "*'pass'*"])
 
 
 @pytest.mark.process

@@ -11,12 +11,19 @@ from typing import Any
 
 from rvmon.codegen.c_online import online_library
 from rvmon.errors import RvmonError
+from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.c import beside as beside_module
 from rvmon.monitor.c.beside import Beside, LendingMonitor, beside, plan_beside
 from rvmon.monitor.c.prepared import is_taken
 from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
-from rvmon.monitor.online.generated import Forms, GeneratedMonitor, forms_of
+from rvmon.monitor.online.generated import (
+    Forms,
+    GeneratedEvaluators,
+    GeneratedMonitor,
+    forms_of,
+)
 from rvmon.monitor.online.monitor import Monitor
+from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.show import show_case
@@ -75,11 +82,18 @@ def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
     waits = (beside_module._FEW, beside_module._MANY)
     beside_module._FEW = beside_module._MANY = lends
     try:
-        run = _Run(pair, keep, rng.random() < 0.3)
+        run = Run(pair, keep, rng.random() < 0.3)
+        is_left_alone = rng.random() < 0.3
         for action in case.actions:
             run.both(partial(_told, action=action))
+            if run.found:
+                break
+            if is_left_alone:
+                continue
             for ask in _asked(rng, pair, action):
                 run.both(ask)
+            if rng.random() < 0.2:
+                run.see_next_due()
             if rng.random() < 0.05:
                 run.put_away(across=rng.random() < 0.5)
             if run.found:
@@ -91,7 +105,9 @@ def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
     return ([*run.found, show_case(case)] if run.found else []), taken
 
 
-class _Run:
+class Run:
+    """Two monitors of a pair, which are told and asked the same."""
+
     def __init__(self, pair: Pair, keep: int | None, listens: bool) -> None:
         compiled, forms = pair.compiled, pair.forms
         chosen = compiled.chosen(None)
@@ -113,13 +129,24 @@ class _Run:
         if repr(wanted) != repr(got):
             self.found.append(_apart(wanted, got))
 
+    def see_next_due(self) -> None:
+        """Both name the same next instant; that of a network may come in vain, but not too late."""
+        plan = self.pair.forms.plan
+        has_network = any(rule.automaton is None for rule in plan.rules)
+        if not has_network and plan.gap in (None, 1):
+            self.both(lambda m: m.next_due)
+            return
+        wanted, got = _next_decision(self.plain), self.lending.next_due
+        if wanted is not None and (got is None or got > wanted):
+            self.found.append(f"next due: {got} is later than {wanted}")
+
     def put_away(self, *, across: bool) -> None:
         """Put both away, and take them up again, perhaps each as the other was."""
         kept = (self.plain.snapshot(), self.lending.snapshot())
         own, other = reversed(kept) if across else kept
         before = self.lending
         taken = before.taken if isinstance(before, _Counted) else 0
-        run = _Run(self.pair, self.keep, False)
+        run = Run(self.pair, self.keep, False)
         for monitor, data in ((run.plain, own), (run.lending, other)):
             _put_back(self.pair.compiled, monitor, data)
         self.plain, self.lending = run.plain, run.lending
@@ -141,6 +168,23 @@ def _put_back(compiled: CompiledSpec, monitor: Monitor, data: bytes) -> None:
     put_back(document_of(compiled, data), monitor.options, monitor.evaluators, monitor)
 
 
+def _next_decision(monitor: Monitor) -> int | None:
+    """The next instant at which time alone decides something, of networks worked out anew."""
+    due, evaluators = monitor.next_due, monitor.evaluators
+    if due is None or not isinstance(evaluators, GeneratedEvaluators):
+        return due
+    evaluators.take_along(evaluators.unit.position)
+    unit = evaluators.unit
+    found = [unit.next_position()]
+    for rule in unit.rules:
+        is_network = isinstance(rule, NetworkJudge)
+        if is_network:
+            rule._look(rule.now)  # samples like the last one were but noted
+        found.append(rule.next_due if is_network else unit.due_at[rule.index])
+    soonest = min(found)
+    return max(soonest, due) if soonest < NEVER else None
+
+
 def _told(monitor: Monitor, action: Sample | int) -> list[str]:
     if isinstance(action, Sample):
         return [*map(_shown, monitor.step_ns(action.t, action.values))]
@@ -152,8 +196,6 @@ def _asked(
 ) -> Iterator[Callable[[Monitor], Any]]:
     """What is asked behind an action."""
     t = action.t if isinstance(action, Sample) else action
-    if rng.random() < 0.2:
-        yield lambda m: m.next_due
     if rng.random() < 0.1:
         yield lambda m: [*map(_shown, m.open)]
     if rng.random() < 0.2:
@@ -176,9 +218,10 @@ def _report(monitor: Monitor, end: int | None) -> Any:
     others = {
         one.name: getattr(report, one.name)
         for one in fields(report)
-        if one.name not in ("attempts", "engine")
+        if one.name not in ("attempts", "engine", "dropped")
     }
-    return attempts, others
+    dropped = [(name, sorted(counts.items())) for name, counts in report.dropped.items()]
+    return attempts, others, dropped
 
 
 def _answer(monitor: Monitor, ask: Callable[[Monitor], Any]) -> Any:

@@ -3,20 +3,74 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from handover.driver.draws import draw, stream
 from handover.driver.run import Run
 from rvmon.cdv import TestError
+from rvmon.trace.time import TICKS_PER_SECOND
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from handover.driver.run import AroundRobotStep, Observer
-    from handover.generator.abstract_test import AbstractTest
+    from handover.generator.abstract_test import AbstractTest, Action
+    from handover.world.process import Process
+    from handover.world.world import World
 
 
-def run_test(
+def run_test(test: AbstractTest, **options: Any) -> Run:
+    """Simulate a test and return all that was published.
+
+    The same test gives the same run in every process, whatever was run before.
+
+    Args:
+        test: what the human does, and the seed of everything random.
+        **options: as for `begun`.
+
+    Raises:
+        TestError: no robot or mutation of that name.
+    """
+    played = begun(test, **options)
+    horizon_ns = round(test.horizon_s * TICKS_PER_SECOND)
+    played.world.run(horizon_ns)
+    return Run(
+        test=test,
+        robot=played.robot,
+        mutation=played.mutation,
+        samples=tuple(played.world.recorder.samples),
+        states=tuple(played.states),
+        end_ns=horizon_ns,
+        stepped_s=played.world.stepped_s,
+        error=played.process.error,
+        poses=played.world.poses(),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """A test that is being played.
+
+    Attributes:
+        world: runs it, as far as it is told to.
+        robot: `"correct"` or `"legacy"`.
+        mutation: the change made to the robot, if any.
+        process: the robot's.
+        states: `(t_ns, state)` at each entry of a robot state so far.
+    """
+
+    world: World
+    robot: str
+    mutation: str | None
+    process: Process
+    states: list[tuple[int, str]]
+
+
+def begun(
     test: AbstractTest,
     *,
+    actions: Iterable[Action] | None = None,
     robot: str | None = None,
     mutation: str | None = None,
     startup_loss: bool = True,
@@ -24,13 +78,12 @@ def run_test(
     record_poses: bool = False,
     observer: Observer | None = None,
     around_robot_step: AroundRobotStep | None = None,
-) -> Run:
-    """Simulate a test and return all that was published.
-
-    The same test gives the same run in every process, whatever was run before.
+) -> Played:
+    """Set up robot, human and world of a test; nothing has happened yet.
 
     Args:
         test: what the human does, and the seed of everything random.
+        actions: what the human does instead; each is asked for when the one before is over.
         robot: `"correct"` or `"legacy"`; default: the robot that the test names, else correct.
         mutation: default: the one that the test names.
         startup_loss: `False` switches the fitted loss of signals to the legacy robot off in any
@@ -49,7 +102,7 @@ def run_test(
     from handover.robot.handover import HandoverRobot
     from handover.robot.mutants import MUTATIONS
     from handover.world.bus import Node
-    from handover.world.parameters import NS, ZERO_POSE
+    from handover.world.parameters import ZERO_POSE
     from handover.world.process import Process
     from handover.world.world import World
 
@@ -88,7 +141,7 @@ def run_test(
     rng = stream(test.seed, "postures")
     at_limits = test.postures == "at_limits"
     script = Script(
-        test.actions,
+        test.actions if actions is None else actions,
         human_node,
         world.human,
         (lambda *limits: rng.choice(limits)) if at_limits else rng.uniform,
@@ -97,16 +150,4 @@ def run_test(
     )
     process = Process(world.schedule, robot_node, machine.run(), around_robot_step or nullcontext)
     Process(world.schedule, human_node, script.run())
-    horizon_ns = round(test.horizon_s * NS)
-    world.run(horizon_ns)
-    return Run(
-        test=test,
-        robot=robot,
-        mutation=mutation,
-        samples=tuple(world.recorder.samples),
-        states=tuple(states),
-        end_ns=horizon_ns,
-        stepped_s=world.stepped_s,
-        error=process.error,
-        poses=world.poses(),
-    )
+    return Played(world, robot, mutation, process, states)

@@ -24,6 +24,7 @@ class Process:
     """Runs one program on one node, from now until it returns, crashes or the time is over.
 
     Attributes:
+        is_over: whether it returned or crashed.
         error: what crashed it, as one line with its place, or `None`.
     """
 
@@ -34,6 +35,7 @@ class Process:
         program: Program,
         around: Callable[[], AbstractContextManager[object]] = nullcontext,
     ) -> None:
+        self.is_over = False
         self.error: str | None = None
         self._schedule = schedule
         self._node = node
@@ -47,15 +49,19 @@ class Process:
             with self._around():
                 wait_s = next(self._program, _ENDED)
             if wait_s is _ENDED:
-                self._node.end()
+                self._end()
                 return
             wait_ns = self._checked_ns(wait_s)
         except Exception as error:  # noqa: BLE001  # whatever the code under test does is a result
             self.error = describe(error)
             self._program.close()
-            self._node.end()
+            self._end()
             return
         self._schedule.at(self._schedule.now_ns + wait_ns, self._step)
+
+    def _end(self) -> None:
+        self.is_over = True
+        self._node.end()
 
     def _checked_ns(self, wait_s: object) -> int:
         if (

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from threading import Event, Thread
+from threading import Thread
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from rvmon.adapters.messages import MessageFeed
+from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
 from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import ros_topic, ros_types
@@ -18,8 +18,13 @@ from rvmon.readers.messages.ros import ros_topic, ros_types
 if TYPE_CHECKING:
     from rvmon.readers.messages.topic import Topic
 
-_DEPTH = 1_000
-"""Messages of a topic that wait at most within DDS."""
+_DEPTH = 10_000
+"""Messages of a topic that wait at most within DDS; one more is rejected, and told to be lost."""
+
+_AT_ONCE = 1_000
+"""Messages of a topic that are taken before another topic has its turn."""
+
+_LONG_NS = 3_600_000_000_000
 
 _PREFIX = "rt/"
 """Before the names of topics of ROS 2 on the wire."""
@@ -62,13 +67,12 @@ class DdsSource:
         self._verdicts = verdicts
         self._writer: Any = None
         self._readers: dict[str, tuple[Any, Topic]] = {}
+        self._found: dict[str, str] = {}
         self._told: set[str] = set()
-        self._news = Event()
         self._stops = False
-        # Within a call of DDS no entity can be made: it only wakes the thread that makes and reads.
-        self._listener = Listener(
-            on_data_available=lambda _: self._news.set(), on_sample_lost=self._lose
-        )
+        # To be called for each message would hold up the thread of DDS that receives them, until
+        # the socket drops some and nobody is told; a loss is rare.
+        self._listener = Listener(on_sample_lost=self._lose, on_sample_rejected=self._lose)
 
     def __enter__(self) -> DdsSource:
         """Join the domain.
@@ -77,7 +81,7 @@ class DdsSource:
             RvmonError: that cannot be.
         """
         from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
-        from cyclonedds.core import DDSException
+        from cyclonedds.core import DDSException, GuardCondition, WaitSet
         from cyclonedds.domain import DomainParticipant
 
         self._wanted = {topic.lstrip("/"): topic for topic in self._feed.topics()}
@@ -87,23 +91,33 @@ class DdsSource:
             raise RvmonError(f"domain {self._domain} of DDS cannot be joined: {error}") from None
         if self._verdicts is not None:
             self._writer = self._written(self._verdicts)
-        self._finder = BuiltinDataReader(
-            self._participant, BuiltinTopicDcpsPublication, listener=self._listener
-        )
-        self._news.set()  # for what was there before
+        self._finder = BuiltinDataReader(self._participant, BuiltinTopicDcpsPublication)
+        self._stop = GuardCondition(self._participant)
+        self._waiting = WaitSet(self._participant)
+        self._waiting.attach(self._stop)
+        self._wait_for(self._finder)
         self._thread = Thread(target=self._drive, name="rvmon.dds", daemon=True)
         self._thread.start()
         return self
 
     def _drive(self) -> None:
         while not self._stops:
-            self._news.wait()
-            self._news.clear()
-            self._find()
+            self._waiting.wait(_LONG_NS)
             for reader, topic in self._readers.values():
-                for content in reader.take(N=_DEPTH):
-                    if content.sample_info.valid_data:
-                        self._feed.take(topic, content)
+                try:
+                    for content in reader.take(N=_AT_ONCE):
+                        if content.sample_info.valid_data:
+                            self._feed.take(topic, content)
+                except Exception as error:  # noqa: BLE001 - what others sent does not fit its type
+                    self._feed.lose(topic.name, f"it cannot be unpacked ({error})")
+            self._find()
+
+    def _wait_for(self, reader: Any) -> None:
+        """Have the thread wake when there is something to be taken."""
+        from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState
+
+        anything = SampleState.Any | ViewState.Any | InstanceState.Any
+        self._waiting.attach(ReadCondition(reader, anything))
 
     def _lose(self, reader: Any, _: object) -> None:
         for known, topic in tuple(self._readers.values()):
@@ -122,9 +136,15 @@ class DdsSource:
     def _find(self) -> None:
         """Read the topics that are wanted and published."""
         for one in self._finder.take(N=1_000):
-            name = getattr(one, "topic_name", "").removeprefix(_PREFIX)
+            name = (getattr(one, "topic_name", None) or "").removeprefix(_PREFIX)  # none: it left
             if name in self._wanted and name not in self._readers:
-                self._begin(name, one.type_name)
+                self._found[name] = one.type_name
+        ready = [one for one in self._found if self._feed.has_time or self._wanted[one] == CLOCK]
+        for name in ready:
+            try:
+                self._begin(name, self._found.pop(name))
+            except Exception as error:  # noqa: BLE001 - as above: the others go on
+                self._feed.lose(self._wanted[name], f"it cannot be read ({error})")
 
     def _begin(self, name: str, wire_type: str) -> None:
         from cyclonedds.core import Policy, Qos
@@ -138,11 +158,13 @@ class DdsSource:
                 self._told.add(name)
                 self._feed.lose(topic.name, f"{kind}: {topic.fault}")
             return
-        qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(_DEPTH))
+        # A history that keeps the last messages would replace others and tell nobody.
+        limits = Policy.ResourceLimits(_DEPTH, -1, -1)
+        qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepAll, limits)
         wire = DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions))
         reader = DataReader(self._participant, wire, qos=qos, listener=self._listener)
         self._readers[name] = reader, topic
-        self._news.set()  # for what came before the listener
+        self._wait_for(reader)
 
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
@@ -157,7 +179,7 @@ class DdsSource:
         trace: TracebackType | None,
     ) -> None:
         self._stops = True
-        self._news.set()
+        self._stop.set(True)
         self._thread.join()
 
 

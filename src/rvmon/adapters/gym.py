@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, SupportsFloat, TypeVar
 
 from rvmon.errors import RvmonError
@@ -22,8 +22,10 @@ if TYPE_CHECKING:
 _Observation = TypeVar("_Observation")
 _Action = TypeVar("_Action")
 
-Observe = Callable[[Any, Any, Mapping[str, Any]], Mapping[str, Any]]
-"""Gives the values of signals and events for an observation, the action before it, and its info."""
+Values = Mapping[str, Any]
+Observe = Callable[[Any, Any, Values], Values | Iterable[tuple[int, Values]]]
+"""Gives the values of signals and events for an observation, the action before it, and its info;
+or samples since the step before, each with its instant, ns since the episode began."""
 
 
 class Judged(
@@ -112,16 +114,24 @@ class Judged(
             terminated = True
         return observation, float(reward) + added, terminated, truncated, {**info, "rv": judged}
 
-    def _judge(self, values: Mapping[str, Any], *, over: bool) -> tuple[dict[str, Any], float]:
+    def _judge(
+        self, said: Values | Iterable[tuple[int, Values]], *, over: bool
+    ) -> tuple[dict[str, Any], float]:
         """What `info["rv"]` holds, and what is added to the reward."""
+        samples = [(self._t, said)] if isinstance(said, Mapping) else [*said]
         self._decided.clear()
-        self._monitor.step_ns(self._t, values)
-        verdicts = self._monitor.finish_ns().verdicts if over else self._monitor.verdicts
+        for t, values in samples:
+            self._monitor.step_ns(t, values)
+        self._monitor.advance_ns(self._t)
+        verdicts = self._monitor.finish_ns(self._t).verdicts if over else self._monitor.verdicts
         judged: dict[str, Any] = {"verdicts": dict(verdicts), "decided": [*self._decided]}
         if self._measuring is None or self._shaping is None:
             return judged, 0.0
-        figures = [*self._measuring.step_ns(self._t, values)]
+        figures: list[Measured] = []
+        for t, values in samples:
+            figures += self._measuring.step_ns(t, values)
+        figures += self._measuring.advance_ns(self._t)
         if over:
-            figures += self._measuring.finish_ns()
+            figures += self._measuring.finish_ns(self._t)
         judged["margins"] = figures
         return judged, float(self._shaping(figures))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 
 from rvmon.adapters.json_objects import JsonObjects, decoded_object
-from rvmon.errors import TraceError
+from rvmon.errors import RvmonError, TraceError
 from rvmon.readers.line_chunks import LONGEST_LINE
 
 _PIECE = 1 << 16
@@ -14,7 +15,9 @@ _PIECE = 1 << 16
 
 
 def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None = None) -> None:
-    """Offer what lines say, until there are no more; to be called in a thread of its own.
+    """Offer what lines say, until there are no more, or the driver is closed.
+
+    It is to be called in a thread of its own.
 
     Where lines have a time they wait while others are judged: a pipe that is faster than the
     monitors is read more slowly, and nothing is lost.
@@ -24,17 +27,18 @@ def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None =
         lines: each an object.
         robot: the field that names the robot of a line; `None`: there is one robot.
     """
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
-        name = "" if robot is None else None
-        try:
-            fields = decoded_object(line)
-            if robot is not None:
-                name = _name_of_robot(fields, robot)
-            objects.take(fields, name or "", wait=True)
-        except TraceError as error:
-            objects.lose(f"line {number}", error, name)
+    with suppress(RvmonError):  # it was closed, as when somebody ends it
+        for number, line in enumerate(lines, 1):
+            if not line.strip():
+                continue
+            name = "" if robot is None else None
+            try:
+                fields = decoded_object(line)
+                if robot is not None:
+                    name = _name_of_robot(fields, robot)
+                objects.take(fields, name or "", wait=True)
+            except TraceError as error:
+                objects.lose(f"line {number}", error, name)
 
 
 def _name_of_robot(fields: object, robot: str) -> str:

@@ -15,7 +15,7 @@ from rvmon.readers.jsonl_rows import decoded, read_object
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
 _log = logging.getLogger("rvmon.live.input")
 
@@ -61,12 +61,12 @@ class JsonObjects:
             TraceError: it cannot be read; nothing was offered.
         """
         t_ns, values = _read(fields, self._schema, self.ignored)
-        self._last[robot] = t_ns
         if self._clock is not None and t_ns is not None:
             now = self._clock.now_ns()
             if t_ns > now or t_ns < now - _JUMP_NS:
                 self._clock.set_ns(t_ns)
         self._driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
+        self._last[robot] = t_ns
 
     def lose(self, where: str, why: Exception, robot: str | None) -> None:
         """Have everything unknown that something may have said which cannot be read.
@@ -81,7 +81,8 @@ class JsonObjects:
         everything = dict.fromkeys((*self._schema.signals, *self._schema.events))
         for one in self._last if robot is None else [robot]:
             last = self._last.get(one)
-            t_ns = None if last is None else last + 1  # what came before stays known
+            # What came before stays known.
+            t_ns = None if last is None else min(last + 1, TIME_LIMIT - 1)
             self._driver.offer(everything, robot=one, t_ns=t_ns, wait=last is not None)
 
 

@@ -7,12 +7,16 @@ from collections.abc import Iterator
 from typing import Any
 
 from rvmon.errors import TraceError
+from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
 from rvmon.readers.messages.match import matched
 from rvmon.readers.messages.rows import MessageReaders
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import TIME_LIMIT
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
+
+CLOCK = "/clock"
+"""The topic that says what time it is where robots `use_sim_time`."""
 
 _log = logging.getLogger("rvmon.live.input")
 
@@ -29,9 +33,23 @@ class MessageFeed:
         driver: gets the samples.
         schema: the declared names, and which topics and fields feed them.
         robot: whose they are.
+        clock: of the driver, where it follows `/clock`; `None`: the driver's runs by itself.
+
+    Attributes:
+        has_time: whether it is known what time it is. Other topics than `/clock` are to be
+            subscribed to then: what came before could not be stamped.
     """
 
-    def __init__(self, driver: Driver, schema: Schema, robot: str = "") -> None:
+    def __init__(
+        self,
+        driver: Driver,
+        schema: Schema,
+        robot: str = "",
+        *,
+        clock: SimulatedClock | None = None,
+    ) -> None:
+        self.has_time = clock is None
+        self._clock = clock
         self._driver = driver
         self._schema = schema
         self._robot = robot
@@ -39,7 +57,12 @@ class MessageFeed:
         self._fed: dict[str, tuple[str, ...]] = {}
 
     def topics(self) -> Iterator[str]:
-        """The topics that may feed something: those of the binding, and those that names name."""
+        """The topics that may feed something: those of the binding, and those that names name.
+
+        Before them comes `/clock`, where the driver's clock follows it.
+        """
+        if self._clock is not None:
+            yield CLOCK
         bounds = self._schema.binding.bounds
         found = dict.fromkeys(bound.topic for bound in bounds.values())
         for name in (*self._schema.signals, *self._schema.events):
@@ -57,6 +80,9 @@ class MessageFeed:
             topic: of the message.
             content: an object with attributes, or a mapping.
         """
+        if topic.name == CLOCK and self._clock is not None:
+            self.set_time(content.clock.sec, content.clock.nanosec)
+            return
         try:
             readers = self._readers.get(topic.name) or self._reading(topic)
             for t, values in readers.take(topic, _NOW, content):
@@ -64,6 +90,12 @@ class MessageFeed:
                 self._driver.offer(values, robot=self._robot, t_ns=t_ns)
         except TraceError as error:
             self.lose(topic.name, str(error))
+
+    def set_time(self, seconds: int, nanoseconds: int) -> None:
+        """Have the clock follow what `/clock` says."""
+        if self._clock is not None:
+            self._clock.set_ns(seconds * TICKS_PER_SECOND + nanoseconds)
+            self.has_time = True
 
     def _reading(self, topic: Topic) -> MessageReaders:
         self._fed.setdefault(topic.name, ())

@@ -8,13 +8,11 @@ from typing import Any
 
 import msgspec
 
-from rvmon.adapters.messages import MessageFeed
+from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
-from rvmon.live.clock import SimulatedClock
 from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import bag_readers, ros_topic
 from rvmon.readers.messages.topic import Topic
-from rvmon.trace.time import TICKS_PER_SECOND
 
 
 class Ros1Source:
@@ -24,7 +22,6 @@ class Ros1Source:
 
     Args:
         feed: gets the messages.
-        clock: follows `/clock`; `None`: the clock of the driver runs by itself.
         verdicts: the topic on which verdicts are published, as JSON in `std_msgs/String`; `None`:
             none are.
 
@@ -36,20 +33,11 @@ class Ros1Source:
         self,
         feed: MessageFeed,
         *,
-        clock: SimulatedClock | None = None,
         verdicts: str | None = None,
     ) -> None:
-        try:
-            import rospy
-        except ImportError:
-            raise RvmonError(
-                "ROS 1 needs rospy, which is not there: source the setup of your ROS, or install "
-                "python3-rospy and add its folder to PYTHONPATH"
-            ) from None
+        self._rospy = _rospy()
         bag_readers()  # says what to install
-        self._rospy = rospy
         self._feed = feed
-        self._clock = clock
         self._verdicts = verdicts
         self._publisher: Any = None
         self._subscribers: list[Any] = []
@@ -71,12 +59,27 @@ class Ros1Source:
             from std_msgs.msg import String
 
             self._publisher = rospy.Publisher(self._verdicts, String, queue_size=100)
-        topics = [*self._feed.topics(), *(["/clock"] if self._clock is not None else [])]
-        self._subscribers = [
-            rospy.Subscriber(topic, rospy.AnyMsg, self._take, callback_args=topic, tcp_nodelay=True)
-            for topic in topics
-        ]
+        if self._feed.has_time:
+            self._subscribe()
+        else:
+            from rosgraph_msgs.msg import Clock  # rospy reads it, too: there is one type per topic
+
+            self._subscribers.append(rospy.Subscriber(CLOCK, Clock, self._tick, tcp_nodelay=True))
         return self
+
+    def _subscribe(self) -> None:
+        rospy = self._rospy
+        self._subscribers += [
+            rospy.Subscriber(topic, rospy.AnyMsg, self._take, callback_args=topic, tcp_nodelay=True)
+            for topic in self._feed.topics()
+            if topic != CLOCK
+        ]
+
+    def _tick(self, message: Any) -> None:
+        had_time = self._feed.has_time
+        self._feed.set_time(message.clock.secs, message.clock.nsecs)
+        if not had_time:
+            self._subscribe()
 
     def _take(self, message: Any, topic: str) -> None:
         header = message._connection_header  # rospy has no other way to the type of an AnyMsg
@@ -91,11 +94,7 @@ class Ros1Source:
         except Exception as error:  # noqa: BLE001 - code that was made of the definition
             self._feed.lose(topic, f"it does not fit its definition ({error})")
             return
-        if topic == "/clock" and self._clock is not None:
-            stamp = content.clock
-            self._clock.set_ns(stamp.sec * TICKS_PER_SECOND + stamp.nanosec)
-        else:
-            self._feed.take(known, content)
+        self._feed.take(known, content)
 
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
@@ -111,3 +110,27 @@ class Ros1Source:
         for subscriber in self._subscribers:
             subscriber.unregister()
         self._rospy.signal_shutdown("rvmon ends")
+
+
+def uses_sim_time() -> bool:
+    """Whether nodes of ROS 1 are told to take the time of `/clock`, by the parameter of that name.
+
+    Raises:
+        RvmonError: rospy is not there, or no master answers.
+    """
+    rospy = _rospy()
+    try:
+        return bool(rospy.get_param("/use_sim_time", False))
+    except OSError as error:
+        raise RvmonError(f"no master of ROS 1 answers (ROS_MASTER_URI): {error}") from None
+
+
+def _rospy() -> Any:
+    try:
+        import rospy
+    except ImportError:
+        raise RvmonError(
+            "ROS 1 needs rospy, which is not there: source the setup of your ROS, or install "
+            "python3-rospy and add its folder to PYTHONPATH"
+        ) from None
+    return rospy

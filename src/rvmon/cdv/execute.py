@@ -29,7 +29,7 @@ Progress = Callable[[int], None]
 def execute(
     plan: Plan,
     *,
-    jobs: int | None = None,
+    jobs: int | str | None = None,
     controls: bool = True,
     kept: Unfinished | None = None,
     progress: Progress | None = None,
@@ -41,7 +41,7 @@ def execute(
 
     Args:
         plan: what to play.
-        jobs: processes; default: one per core.
+        jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         controls: also play the controls of tests.
         kept: where each test is kept as soon as it was played; those before are not played again.
         progress: told as tests are finished.
@@ -49,14 +49,20 @@ def execute(
     Raises:
         RvmonError: a system cannot be made, or no process be begun.
     """
-    played = [] if kept is None else [*kept.played]
+    tests = plan.jobs() if kept is None else kept.jobs
+    known = {} if kept is None else kept.known
     begun = time.perf_counter() - (kept.seconds if kept is not None else 0)
-    left = plan.jobs()[len(played) :]
-    cut_short = ""
+    left = [job for job in tests if (job.test.name, job.robot) not in known]
+    played: list[Played] = []
+    cut_short = "" if kept is None or kept.shard is None else f"shard {kept.shard}"
     try:
         with closing(outcomes(plan.campaign, left, jobs=jobs, controls=controls)) as results:
-            for job, (outcome, beside) in zip(left, results, strict=True):
-                played.append(Played(job, outcome, beside))
+            for job in tests:
+                before = known.get((job.test.name, job.robot))
+                if before is not None:
+                    played.append(before)
+                    continue
+                played.append(Played(job, *next(results)))
                 if kept is not None:
                     kept.keep(played[-1], time.perf_counter() - begun)
                 if progress is not None:
@@ -67,14 +73,18 @@ def execute(
 
 
 def outcomes(
-    campaign: Campaign, tests: Iterable[Job], *, jobs: int | None = None, controls: bool = True
+    campaign: Campaign,
+    tests: Iterable[Job],
+    *,
+    jobs: int | str | None = None,
+    controls: bool = True,
 ) -> Generator[tuple[Outcome, Outcome | None], None, None]:
     """Play tests, in this order; each outcome comes with that of its control.
 
     Args:
         campaign: whose tests they are.
         tests: taken from as processes have time.
-        jobs: processes; default: one per core.
+        jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         controls: also play the controls of tests.
 
     Raises:

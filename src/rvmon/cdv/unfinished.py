@@ -18,12 +18,13 @@ from pathlib import Path
 import msgspec
 
 import rvmon
-from rvmon.cache import file_stamps
+from rvmon.cache import contents
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.outcome import Outcome, Played
 from rvmon.cdv.plan import Job, Plan
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
+from rvmon.execute.shard import Shard, shards_beside
 from rvmon.session import Spec
 from rvmon.spec.checked.plain_data import to_plain
 
@@ -59,13 +60,19 @@ class Unfinished:
 
     Attributes:
         path: of its file.
-        played: what was played before, in the order of the plan.
+        jobs: what it plays, in the order of the plan.
+        known: what of it was played before, by test and robot.
         seconds: that this took.
+        shards: files of shards that were played, from which something is known.
+        shard: what of the campaign this is; `None`: all.
     """
 
     path: Path
-    played: Sequence[Played] = ()
+    jobs: Sequence[Job]
+    known: Mapping[tuple[str, str], Played]
     seconds: float = 0.0
+    shards: Sequence[Path] = ()
+    shard: Shard | None = None
 
     def keep(self, one: Played, seconds: float) -> None:
         """Write down what was played: it stays, whatever ends this process.
@@ -77,8 +84,19 @@ class Unfinished:
         entry = _Entry(one.job.test.name, one.job.robot, one.outcome, one.control, seconds)
         journal.add(self.path, msgspec.json.encode(entry))
 
+    def remove(self) -> None:
+        """Delete the files, as all is played and written."""
+        for path in (self.path, *self.shards):
+            path.unlink(missing_ok=True)
 
-def unfinished(folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str) -> Unfinished:
+
+def unfinished(
+    folder: Path,
+    plan: Plan,
+    specs: Mapping[str, Spec],
+    command: str,
+    shard: Shard | None = None,
+) -> Unfinished:
     """A campaign in its folder, from where it was left.
 
     Args:
@@ -86,36 +104,46 @@ def unfinished(folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str
         plan: what it plays.
         specs: by robot, what judges it; empty if nothing is judged.
         command: that runs it.
+        shard: what is played of it; default: all, and what shards have played lies in the folder.
 
     Raises:
         RvmonError: what is unfinished there is another campaign.
     """
-    path = folder / NAME
+    path = folder / NAME if shard is None else shard.name(folder / NAME)
+    shards = shards_beside(path) if shard is None else []
     own = _Heading(_inputs(plan, specs), command)
+    jobs = {(job.test.name, job.robot): job for job in plan.jobs()}
+    places = {key: place for place, key in enumerate(jobs)}
+    known: dict[tuple[str, str], Played] = {}
+    seconds = 0.0
     try:
-        known = journal.entries(path)
-        if known is None:
-            known = [msgspec.json.encode(own)]
-        else:
-            _refuse_another(path, known[:1], own)
-        entries = list(_in_order(known[1:], plan.jobs()))
-        journal.begin(path, known[: 1 + len(entries)])
+        for one in (*shards, path):
+            left = journal.entries(one)
+            entries = [msgspec.json.encode(own)] if left is None else left
+            _refuse_another(one, entries[:1], own)
+            found = list(_in_order(entries[1:], places))
+            for key, entry in found:
+                known[key] = Played(jobs[key], entry.outcome, entry.control)
+            seconds += found[-1][1].seconds if found else 0.0
+        journal.begin(path, entries[: 1 + len(found)])
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror}: remove it, or name another --out") from None
-    played = [
-        Played(job, one.outcome, one.control)
-        for job, one in zip(plan.jobs(), entries, strict=False)
-    ]
-    return Unfinished(path, played, entries[-1].seconds if entries else 0.0)
+    chosen = [*jobs.values()] if shard is None else shard.of([*jobs.values()])
+    return Unfinished(path, chosen, known, seconds, shards, shard)
 
 
-def _in_order(entries: Sequence[bytes], jobs: Sequence[Job]) -> Iterator[_Entry]:
-    """What was played, up to the first that is not in its place: two may have written at once."""
-    for entry, job in zip(entries, jobs, strict=False):
+def _in_order(
+    entries: Sequence[bytes], places: Mapping[tuple[str, str], int]
+) -> Iterator[tuple[tuple[str, str], _Entry]]:
+    """What was played, up to the first that is not in its order: two may have written at once."""
+    last = -1
+    for entry in entries:
         one = msgspec.json.decode(entry, type=_Entry)
-        if (one.test, one.robot) != (job.test.name, job.robot):
+        key = (one.test, one.robot)
+        if places.get(key, -1) <= last:
             return
-        yield one
+        last = places[key]
+        yield key, one
 
 
 def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None:
@@ -141,7 +169,7 @@ def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
     said = [
         [(job.robot, msgspec.to_builtins(job.test)) for job in plan.jobs()],
         {robot: to_plain(spec.checked) for robot, spec in specs.items()},
-        [list(_stamps(path)) for path in (Path(rvmon.__file__).parent, *sources_of(campaign))],
+        [list(contents(path)) for path in (Path(rvmon.__file__).parent, *sources_of(campaign))],
         [sys.version, *map(_version, (*_PACKAGES, *campaign.packages))],
     ]
     return hashlib.sha256(json.dumps(said).encode()).hexdigest()
@@ -158,14 +186,6 @@ def sources_of(campaign: Campaign) -> list[Path]:
     files = {module.__file__ for module in modules if module is not None and module.__file__}
     models = (path for robot in campaign.robots.values() for path in robot.coverage)
     return [*map(Path, campaign.sources), *map(Path, sorted(files)), *map(Path, models)]
-
-
-def _stamps(path: Path) -> Iterator[tuple[str, int, int]]:
-    if path.is_dir():
-        yield from file_stamps(str(path))
-    else:
-        found = path.stat()
-        yield str(path), found.st_size, found.st_mtime_ns
 
 
 def _version(package: str) -> str:

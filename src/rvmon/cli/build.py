@@ -22,6 +22,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("-o", "--output", metavar="BINARY", required=True, help="the program")
+    parser.add_argument(
+        "--robustness",
+        action="store_true",
+        help="print the robustness of each attempt as well, as `rvmon run --robustness` does",
+    )
     add_only(parser)
     add_const(parser)
 
@@ -33,7 +38,9 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    path = built(program_build(spec.plan(only=ids_of(arguments.only, spec))))
+    measured = arguments.robustness
+    plan = spec.plan(only=ids_of(arguments.only, spec), robustness=measured)
+    path = built(program_build(plan, measured=measured))
     try:
         write_whole(arguments.output, path.read_bytes())
         if os.path.isfile(arguments.output):  # whoever may read it may run it

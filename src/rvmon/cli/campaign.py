@@ -14,7 +14,8 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cli import evidence, guarded
-from rvmon.cli.numbers import duration, number_or_folder, positive
+from rvmon.cli.numbers import duration, number_or_folder, positive, shard
+from rvmon.cli.options import add_dask
 from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
 from rvmon.report.folder import refuse_no_file, write_file
@@ -126,6 +127,13 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--evidence", metavar="FILE", help="keep tests, verdicts and what judged in one archive"
     )
+    parser.add_argument(
+        "--shard",
+        metavar="I/N",
+        type=shard,
+        help="with --out, play this share of the tests: 2/4; the same command without it joins "
+        "what shards have left in DIR",
+    )
     add_playing_options(parser)
 
 
@@ -133,6 +141,7 @@ def add_playing_options(parser: argparse.ArgumentParser) -> None:
     """Declare how tests are played, and where their results go."""
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
     parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+    add_dask(parser)
     parser.add_argument(
         "--out",
         metavar="DIR",
@@ -310,7 +319,7 @@ def _run(arguments: argparse.Namespace) -> int:
         write_file(arguments.junit, junit_xml(campaign.name, judgement, cut_short))
     for what in judgement.wrong:
         warn(f"not as expected: {what}")
-    return INTERRUPTED if cut_short else int(bool(judgement.wrong))
+    return INTERRUPTED if conducted.interrupted else int(bool(judgement.wrong))
 
 
 def _close(arguments: argparse.Namespace) -> int:

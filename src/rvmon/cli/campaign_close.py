@@ -57,7 +57,7 @@ def conduct_closing(
             seed=arguments.seed,
             strategies=strategies,
             budget=Budget(arguments.tests, arguments.seconds),
-            jobs=arguments.jobs,
+            jobs=arguments.dask or arguments.jobs,
             progress=lambda met, goals: tell(met / goals),
         )
     amount: list[object] = ["--tests", arguments.tests, "--seed", arguments.seed]

@@ -14,7 +14,7 @@ from rvmon.cdv.campaign_files import dated_files, left_over, write_tables, write
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.documents import to_json
 from rvmon.cdv.examples import choose_examples
-from rvmon.cdv.execute import execute
+from rvmon.cdv.execute import INTERRUPTED, execute
 from rvmon.cdv.files import TestError
 from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign
 from rvmon.cdv.outcome import Results
@@ -30,6 +30,7 @@ from rvmon.cdv.write_pages import write_pages
 from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say_json, warn
+from rvmon.errors import RvmonError
 from rvmon.loading import load
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
@@ -49,6 +50,11 @@ class Conducted:
     results: Results
     summary: CampaignSummary
     tables: Mapping[str, RobotTables]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether a person ended it before all was played."""
+        return self.results.cut_short == INTERRUPTED
 
     def judged(self, *, strict: bool) -> CampaignJudgement:
         """Hold the campaign against what was expected of it.
@@ -83,6 +89,10 @@ def conduct(
     Raises:
         TestError: there is nothing to be played.
     """
+    if arguments.shard is not None and not arguments.out:
+        raise RvmonError("--shard leaves what it played in a folder: name it by --out")
+    if arguments.shard is not None and arguments.evidence:
+        raise RvmonError("--evidence is of all tests: give it to the command that joins the shards")
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
     with told("generating tests"):
@@ -107,11 +117,15 @@ def conduct(
     again = typed(campaign.program, [*same, "--out", arguments.out])
     kept = None
     if folder is not None:
-        kept = unfinished(folder, chosen, specs, again)
-        if kept.played:
-            warn(f"{len(kept.played)} of {planned} tests were played before")
+        kept = unfinished(folder, chosen, specs, again, arguments.shard)
+        planned = len(kept.jobs)
+        if kept.known:
+            warn(f"{len(kept.known)} of {planned} tests were played before")
     with bar("tests", planned) as tell:
-        results = execute(chosen, jobs=arguments.jobs, kept=kept, progress=tell)
+        results = execute(chosen, jobs=arguments.dask or arguments.jobs, kept=kept, progress=tell)
+    if kept is not None and kept.shard is not None and len(results.played) == planned:
+        warn(f"{kept.path}: the same command without --shard joins what lies beside it")
+        return written(results, specs, None, arguments, again)
     conducted = written(results, specs, folder, arguments, again)
     if texts is not None and results.cut_short:
         warn(f"{arguments.evidence}: not written: evidence is of whole campaigns")
@@ -122,7 +136,7 @@ def conduct(
     if kept is not None and results.cut_short:
         warn(f"{kept.path}: the same command plays what is left")
     elif kept is not None:
-        kept.path.unlink(missing_ok=True)
+        kept.remove()
     return conducted
 
 

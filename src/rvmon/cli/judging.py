@@ -52,22 +52,26 @@ class Judged:
     seconds: float = 0.0
 
 
-def judge_all(spec: Spec, traces: Sequence[str], options: Options, jobs: int) -> Iterator[Judged]:
+def judge_all(
+    spec: Spec, traces: Sequence[str], options: Options, jobs: int | str
+) -> Iterator[Judged]:
     """Judge recordings, in their order.
 
     Args:
         spec: reads as the options say.
         traces: paths.
         options: how to judge.
-        jobs: processes; 1 judges here. If one of several is lost, so are the verdicts on what
-            comes behind the last that was judged in order, and each of these says so.
+        jobs: processes, 1 judges here; or the address of a scheduler of Dask. If one of several is
+            lost, so are the verdicts on what comes behind the last that was judged in order, and
+            each of these says so.
     """
     done = 0
     is_alone = len(traces) == 1
     begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
     try:
         with bar("recordings", len(traces)) as tell:
-            for one in execute(traces, begin, jobs=min(jobs, len(traces)), what="recording"):
+            jobs = jobs if isinstance(jobs, str) else min(jobs, len(traces))
+            for one in execute(traces, begin, jobs=jobs, what="recording"):
                 done += 1
                 if not is_alone:  # that one shows how far it is read
                     tell(done)

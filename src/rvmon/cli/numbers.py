@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from rvmon.errors import TraceError
+from rvmon.execute.shard import Shard
 from rvmon.trace.time import TICKS_PER_UNIT, ticks_of_seconds, ticks_of_text
 
 
@@ -23,6 +24,21 @@ def positive(text: str) -> int:
     if number < 1:
         raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, not {text}")
     return number
+
+
+def shard(text: str) -> Shard:
+    """Read which of how many shares of the work is to be done.
+
+    Raises:
+        argparse.ArgumentTypeError: it is none.
+
+    >>> print(shard("2/4"))
+    2/4
+    """
+    number, slash, count = text.partition("/")
+    if slash and positive(number) <= positive(count):
+        return Shard(int(number), int(count))
+    raise argparse.ArgumentTypeError(f"expected the second of four as 2/4, not {text}")
 
 
 def number_or_folder(text: str) -> int | Path:

@@ -48,6 +48,15 @@ def add_format(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_dask(parser: argparse.ArgumentParser) -> None:
+    """Declare `--dask`."""
+    parser.add_argument(
+        "--dask",
+        metavar="ADDRESS",
+        help="in the place of --jobs: do the work on the workers of this scheduler of Dask",
+    )
+
+
 def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
     parser.add_argument("--max-states", metavar="N", type=positive, help="give up after N states")

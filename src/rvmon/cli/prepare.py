@@ -23,6 +23,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="example: rvmon prepare specs/door.rv && rvmon run specs/door.rv *.csv --engine c",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
+    parser.add_argument(
+        "--robustness", action="store_true", help="also what measures robustness in streams"
+    )
     add_only(parser)
     add_const(parser)
     parser.add_argument(
@@ -37,9 +40,11 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.report.plain_table import plain_table
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    with bar("compiling", len(USES)) as tell:
-        done = count(1)
-        found = spec.prepare(only=ids_of(arguments.only, spec), ready=lambda _: tell(next(done)))
+    ids, done = ids_of(arguments.only, spec), count(1)
+    with bar("compiling", len(USES) - (not arguments.robustness)) as tell:
+        found = spec.prepare(
+            only=ids, ready=lambda _: tell(next(done)), robustness=arguments.robustness
+        )
     if arguments.format == "json":
         import json
 

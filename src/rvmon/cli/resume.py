@@ -7,14 +7,14 @@ import json
 import os
 import pickle
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import msgspec
 
 import rvmon
-from rvmon.cache import file_stamps
+from rvmon.cache import contents
 from rvmon.cli.beside import Options
 from rvmon.cli.judging import Judged
 from rvmon.coverage.hits import Hit
@@ -50,11 +50,13 @@ class Unfinished:
         path: of its file.
         stamps: what told the files of recordings from others when the run began, by path.
         known: the recordings that were judged before, by path.
+        shards: files of shards, from which something is known.
     """
 
     path: Path
     stamps: dict[str, tuple[int, int] | None]
     known: dict[str, Judged] = field(default_factory=dict)
+    shards: Sequence[Path] = ()
 
     def judged(self, traces: Sequence[str], fresh: Iterable[Judged]) -> Iterator[Judged]:
         """The recordings in their order, of which those that are fresh are kept."""
@@ -65,6 +67,11 @@ class Unfinished:
                 one = next(new)
                 self._keep(trace, one)
             yield one
+
+    def remove(self) -> None:
+        """Delete the files, as all is judged and written."""
+        for path in (self.path, *self.shards):
+            path.unlink(missing_ok=True)
 
     def _keep(self, trace: str, one: Judged) -> None:
         """Write down what was judged, unless it is to be tried again."""
@@ -87,6 +94,7 @@ def unfinished(
     *,
     reading: Sequence[str],
     resume: bool,
+    shards: Sequence[Path] = (),
 ) -> Unfinished:
     """A run whose verdicts go to a file.
 
@@ -98,28 +106,58 @@ def unfinished(
         reading: what says how recordings are read: words of the command line, files.
         resume: whether it goes on from where an earlier one was ended, if there is one; what
             judges, how, and by which program has to be the same, and so has each recording.
+        shards: files of shards to take what they judged from; their recordings may be elsewhere.
 
     Raises:
         RvmonError: what is unfinished was judged otherwise, or the file cannot be written.
     """
     path = path_of(out)
     heading = _heading(spec, options, reading)
+    stamps = {trace: _stamp(trace) for trace in traces}
+    known: dict[str, Judged] = {}
     try:
-        entries = journal.entries(path) if resume else None
-        if entries and entries[0] != heading:
-            raise RvmonError(
-                f"{path} was begun with another specification, other options or another rvmon: "
-                "leave out --resume to judge all anew"
-            )
-        known = [msgspec.json.decode(entry, type=_Entry) for entry in (entries or [])[1:]]
-        journal.begin(path, entries or [heading])
-    except msgspec.MsgspecError:
-        raise RvmonError(f"{path} is no unfinished run: leave out --resume") from None
+        for one in shards:
+            known |= _judged_before(_entries(one, heading), stamps, is_moved=True)
+        entries = _entries(path, heading) if resume else []
+        journal.begin(path, [heading, *map(msgspec.json.encode, entries)])
     except OSError as error:
         raise _cannot_write(path, error) from None
-    stamps = {trace: _stamp(trace) for trace in traces}
-    same = {one.trace: _judged(one) for one in known if one.stamp == stamps.get(one.trace)}
-    return Unfinished(path, stamps, same)
+    return Unfinished(path, stamps, known | _judged_before(entries, stamps), shards)
+
+
+def _entries(path: Path, heading: bytes) -> list[_Entry]:
+    found = journal.entries(path)
+    if found and found[0] != heading:
+        raise RvmonError(
+            f"{path} was begun with another specification, other options or another rvmon: "
+            "leave out --resume to judge all anew"
+        )
+    try:
+        return [msgspec.json.decode(entry, type=_Entry) for entry in (found or [])[1:]]
+    except msgspec.MsgspecError:
+        raise RvmonError(f"{path} is no unfinished run: leave out --resume") from None
+
+
+def _judged_before(
+    entries: Iterable[_Entry],
+    stamps: Mapping[str, tuple[int, int] | None],
+    *,
+    is_moved: bool = False,
+) -> dict[str, Judged]:
+    """What of a run was judged before, unless the file of the recording is another one since.
+
+    Args:
+        entries: of a journal.
+        stamps: of files now, by recording.
+        is_moved: whether the files may have been those of another machine: a copy has the size of
+            what it is copied from, and a time of its own; it may be missing.
+    """
+
+    def is_same(one: _Entry) -> bool:
+        now = stamps[one.trace]
+        return now == one.stamp or (is_moved and (now is None or now[0] == one.stamp[0]))
+
+    return {one.trace: _judged(one) for one in entries if one.trace in stamps and is_same(one)}
 
 
 def _judged(one: _Entry) -> Judged:
@@ -143,7 +181,7 @@ def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
         to_plain(spec.checked),
         [*reading, pickle.dumps(spec.schema.binding).hex()],  # its file may be another one since
         asdict(options),
-        list(file_stamps(str(Path(rvmon.__file__).parent))),
+        list(contents(Path(rvmon.__file__).parent)),
         sys.version,
     ]
     return hashlib.sha256(json.dumps(said).encode()).hexdigest().encode()

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.memory import add_max_memory
-from rvmon.cli.numbers import instant, positive
+from rvmon.cli.numbers import instant, positive, shard
 from rvmon.cli.options import (
     add_const,
+    add_dask,
     add_format,
     add_only,
     ids_of,
@@ -78,6 +79,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"
     )
+    add_dask(parser)
     parser.add_argument(
         "--robustness",
         action="store_true",
@@ -101,7 +103,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--resume",
         action="store_true",
-        help="with --out: go on from where the same command was ended",
+        help="with --out: go on from where the same command was ended, or join its shards",
+    )
+    parser.add_argument(
+        "--shard",
+        metavar="I/N",
+        type=shard,
+        help="with --out: judge this share of the recordings, as 2/4, into FILE named so as well; "
+        "the same command with --resume in its place joins all",
     )
     parser.add_argument(
         "--known",
@@ -157,6 +166,8 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
     _show_warnings(spec)
     traces = list(found_recordings(arguments.traces))
+    if arguments.shard is not None:
+        traces = _share(arguments, traces)
     _refuse_places(arguments, traces, spec)
     before = None
     if arguments.evidence is not None:
@@ -203,11 +214,13 @@ def _judged(
 ) -> list[Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
     from rvmon.cli.judging import judge_all
-    from rvmon.cli.resume import path_of, unfinished
+    from rvmon.cli.resume import unfinished
 
-    jobs = arguments.jobs
-    if arguments.out is None or len(traces) == 1:  # there is nothing to go on with
-        found = list(judge_all(spec, traces, options, jobs))
+    jobs = arguments.dask or arguments.jobs
+    shards = _shards(arguments)
+    begun = None
+    if arguments.out is None or (len(traces) == 1 and not (arguments.shard or shards)):
+        found = list(judge_all(spec, traces, options, jobs))  # there is nothing to go on with
         if case is not None:
             found = [as_known(one, case) for one in found]
     else:
@@ -215,7 +228,13 @@ def _judged(
         if arguments.binding is not None:
             reading.append(Path(arguments.binding).read_text("utf-8"))
         begun = unfinished(
-            arguments.out, traces, spec, options, reading=reading, resume=arguments.resume
+            arguments.out,
+            traces,
+            spec,
+            options,
+            reading=reading,
+            resume=arguments.resume,
+            shards=shards,
         )
         left = [trace for trace in traces if trace not in begun.known]
         if begun.known:
@@ -223,8 +242,34 @@ def _judged(
         found = list(begun.judged(traces, judge_all(spec, left, options, jobs)))
     if arguments.out is not None:
         write_results(arguments.out, spec, found)
-        path_of(arguments.out).unlink(missing_ok=True)
+    if arguments.shard is not None:
+        warn(f"{arguments.out}: --resume in the place of --shard joins what lies beside it")
+    elif begun is not None:
+        begun.remove()
     return found
+
+
+def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
+    """The recordings of a shard, whose verdicts go to a file of its own."""
+    if arguments.out is None:
+        raise RvmonError("--shard leaves its verdicts beside those of all: name the file by --out")
+    if arguments.evidence is not None:
+        raise RvmonError("--evidence is of all recordings: give it to the command with --resume")
+    arguments.out = str(arguments.shard.name(Path(arguments.out)))
+    share: list[str] = arguments.shard.of(traces)
+    if not share:
+        raise RvmonError(f"shard {arguments.shard}: there are {len(traces)} recordings: use fewer")
+    return share
+
+
+def _shards(arguments: argparse.Namespace) -> list[Path]:
+    """The files that keep what shards have judged, where they are to be joined."""
+    from rvmon.cli.resume import path_of
+    from rvmon.execute.shard import shards_beside
+
+    if not arguments.resume or arguments.shard is not None:
+        return []
+    return [path_of(str(part)) for part in shards_beside(Path(arguments.out))]
 
 
 def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: Spec) -> None:

@@ -19,7 +19,11 @@ from rvmon.errors import RvmonError, SpecError
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
+    from rvmon.adapters.dds import DdsSource
     from rvmon.adapters.json_objects import JsonObjects
+    from rvmon.adapters.messages import MessageFeed
+    from rvmon.adapters.ros1 import Ros1Source
+    from rvmon.adapters.ros2 import Ros2Source
     from rvmon.cli.watch_output import Output
     from rvmon.live import Clock, Judgement, Live
     from rvmon.session import Spec
@@ -50,9 +54,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         nargs="?",
         default="-",
         help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, whose "
-        "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (topics of ROS 1) or "
-        "dds:DOMAIN (those of ROS 2). What has a time (t, t_ns, --time) is judged at it, the "
-        "rest as it arrives",
+        "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (topics of ROS 1), "
+        "ros2: (those of ROS 2) or dds:DOMAIN (the same without an installation of ROS). What "
+        "has a time (t, t_ns, --time) is judged at it, the rest as it arrives",
     )
     add_only(parser)
     add_const(parser)
@@ -79,6 +83,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "later (default: 500ms): deadlines pass while no line comes, too",
     )
     parser.add_argument(
+        "--sim-time",
+        action="store_true",
+        help="the time is that of the topic /clock (`use_sim_time`); with ros1: this is the "
+        "default where the parameter of that name says so",
+    )
+    parser.add_argument(
         "--room",
         metavar="N",
         type=positive,
@@ -100,7 +110,12 @@ def run(arguments: argparse.Namespace) -> int:
     arguments.made = _age(arguments.spec)  # before it is read: no change is missed
     spec = _loaded(arguments)
     shown = output_named(arguments.format, failures_only=arguments.failures)
-    watch = next((one for start, one in _DOORS if arguments.source.startswith(start)), _watch_lines)
+    door = next((one for one in _DOORS if arguments.source.startswith(one)), "")
+    watch, idle = _DOORS[door]
+    for option, instead in idle.items():
+        if getattr(arguments, option):
+            name = option.replace("_", "-")
+            raise RvmonError(f"--{name} says nothing to {arguments.source}: {instead}")
     live = watch(arguments, spec, shown)
     shown.ended(live)
     verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
@@ -110,7 +125,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     from rvmon.adapters.json_lines import feed_lines, read_lines
     from rvmon.adapters.json_objects import JsonObjects, stamp_of
-    from rvmon.live import SimulatedClock, WallClock
+    from rvmon.live import SimulatedClock
 
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
@@ -119,7 +134,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
             raise RvmonError(f"error: {arguments.source}: there is no line: nothing was judged")
         began = stamp_of(first, spec.schema)
         followed = None
-        clock: Clock = WallClock(since_1970=arguments.realtime is not None)
+        clock = _own_clock(arguments)
         if began is not None and arguments.realtime is None:
             clock = followed = SimulatedClock(began)
         live = _live(arguments, spec, clock, shown.judged)
@@ -145,7 +160,7 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
     from rvmon.adapters.mqtt import MqttSource, address_of
 
     address = address_of(arguments.source)
-    live, hear = _live_here(arguments, spec, shown)
+    live, hear = _live_here(arguments, spec, shown, _own_clock(arguments))
     objects = JsonObjects(live, spec.schema)
     source = MqttSource(objects, address, verdicts=arguments.publish)
     hear(source.publish)
@@ -156,54 +171,103 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
 
 
 def _watch_ros1(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    from rvmon.adapters.messages import MessageFeed
-    from rvmon.adapters.ros1 import Ros1Source
+    from rvmon.adapters.ros1 import Ros1Source, uses_sim_time
 
-    live, hear = _live_here(arguments, spec, shown)
-    source = Ros1Source(MessageFeed(live, spec.schema), verdicts=arguments.publish)
-    hear(source.publish)
-    with live, source, shown:
-        _follow(arguments, live, shown)
-    return live
+    arguments.sim_time = arguments.sim_time or uses_sim_time()
+    return _watch_topics(
+        arguments, spec, shown, lambda feed: Ros1Source(feed, verdicts=arguments.publish)
+    )
+
+
+def _watch_ros2(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
+    from rvmon.adapters.ros2 import Ros2Source
+
+    return _watch_topics(
+        arguments, spec, shown, lambda feed: Ros2Source(feed, verdicts=arguments.publish)
+    )
 
 
 def _watch_dds(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     from rvmon.adapters.dds import DdsSource
-    from rvmon.adapters.messages import MessageFeed
 
     domain = arguments.source.partition(":")[2] or os.environ.get("ROS_DOMAIN_ID", "0")
     if not domain.isdecimal() or int(domain) > _LAST_DOMAIN:
         raise RvmonError(f"{arguments.source}: expected a domain of DDS, 0 to {_LAST_DOMAIN}")
-    live, hear = _live_here(arguments, spec, shown)
-    source = DdsSource(
-        MessageFeed(live, spec.schema),
-        domain=int(domain),
-        definitions=spec.schema.binding.definitions,
-        verdicts=arguments.publish,
+    return _watch_topics(
+        arguments,
+        spec,
+        shown,
+        lambda feed: DdsSource(
+            feed,
+            domain=int(domain),
+            definitions=spec.schema.binding.definitions,
+            verdicts=arguments.publish,
+        ),
     )
+
+
+def _watch_topics(
+    arguments: argparse.Namespace,
+    spec: Spec,
+    shown: Output,
+    made: Callable[[MessageFeed], Ros1Source | Ros2Source | DdsSource],
+) -> Live:
+    from rvmon.adapters.messages import CLOCK, MessageFeed
+    from rvmon.live import SimulatedClock
+
+    followed = None
+    if arguments.sim_time:
+        if arguments.realtime is not None:
+            raise RvmonError(f"--realtime: the time is that of {CLOCK} already: leave it out")
+        followed = SimulatedClock()
+    live, hear = _live_here(arguments, spec, shown, followed or _own_clock(arguments))
+    feed = MessageFeed(live, spec.schema, clock=followed)
+    source = made(feed)
     hear(source.publish)
     with live, source, shown:
+        if followed is not None:
+            shown.note(f"the time is that of {CLOCK}: nothing is judged before its first message")
         _follow(arguments, live, shown)
     return live
 
 
-_DOORS = (("mqtt:", _watch_mqtt), ("ros1:", _watch_ros1), ("dds:", _watch_dds))
+_ONE_ROBOT = "a domain or a master is one robot; start one for each"
+_NO_CLOCK = "there is no topic /clock; lines with stamps (t, t_ns, --time) bring their time along"
+_STAMPS = "a binding (--binding) says which field is the stamp"
+_DOORS: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
+    "mqtt:": (
+        _watch_mqtt,
+        {"robot": "the first + of the filter is the robot", "sim_time": _NO_CLOCK},
+    ),
+    "ros1:": (_watch_ros1, {"robot": _ONE_ROBOT, "time": _STAMPS}),
+    "ros2:": (_watch_ros2, {"robot": _ONE_ROBOT, "time": _STAMPS}),
+    "dds:": (_watch_dds, {"robot": _ONE_ROBOT, "time": _STAMPS}),
+    "": (
+        _watch_lines,
+        {"publish": "verdicts go to standard output (--format json)", "sim_time": _NO_CLOCK},
+    ),
+}
+"""By the beginning of a source what watches it, and the options that say nothing to it: what does
+instead."""
 
 
 def _live_here(
-    arguments: argparse.Namespace, spec: Spec, shown: Output
+    arguments: argparse.Namespace, spec: Spec, shown: Output, clock: Clock
 ) -> tuple[Live, Callable[[Callable[[Judgement], object]], object]]:
     """Monitors whose samples are stamped here, and how somebody else hears their verdicts."""
-    from rvmon.live import WallClock
-
     hearing: list[Callable[[Judgement], object]] = [shown.judged]
 
     def judged(judgement: Judgement) -> None:
         for one in hearing:
             one(judgement)
 
-    clock = WallClock(since_1970=arguments.realtime is not None)
     return _live(arguments, spec, clock, judged), hearing.append
+
+
+def _own_clock(arguments: argparse.Namespace) -> Clock:
+    from rvmon.live import WallClock
+
+    return WallClock(since_1970=arguments.realtime is not None)
 
 
 def _live(
@@ -245,7 +309,9 @@ def _follow(
                 time.sleep(_TURN)
             else:
                 feeding.join(_TURN)
-            if (age := _age(arguments.spec)) != arguments.made and age is not None:
+            if shown.broken is not None:
+                raise shown.broken
+            if (age := _age(arguments.spec)) != arguments.made:
                 arguments.made = age
                 try:
                     live.replace_spec(_loaded(arguments))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections import deque
+from collections import Counter, deque
+from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,9 @@ import msgspec
 
 from rvmon.cli.say import say, say_json, warn
 from rvmon.report.style import MARKS
+from rvmon.runtime.values import NEVER
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.verdict import Verdict, fold
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -21,8 +23,14 @@ if TYPE_CHECKING:
     from rvmon.live import Driver, Judgement, Status
     from rvmon.session import Spec
 
+_TOLD = 5
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
+_MOST_OPEN = 100
+_FRAME = 5
+"""Lines of a robot's table beside its rows."""
+_FEW = 4
+"""Rows that a robot has at least, before another robot is shown."""
 
 
 class Output(logging.Handler):
@@ -30,12 +38,17 @@ class Output(logging.Handler):
 
     Args:
         failures_only: whether what passed is left out.
+
+    Attributes:
+        broken: why verdicts cannot be said any more, as when their reader has left.
     """
 
     def __init__(self, *, failures_only: bool) -> None:
         super().__init__()
         self._failures_only = failures_only
         self._log = logging.getLogger("rvmon.live.input")
+        self._told = Counter[str]()
+        self.broken: OSError | None = None
 
     def __enter__(self) -> Output:
         self._log.addHandler(self)
@@ -52,13 +65,22 @@ class Output(logging.Handler):
         self._log.removeHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Say what is wrong with the input."""
-        self.note(record.getMessage())
+        """Say what is wrong with the input: of many of a kind the first, and each tenfold."""
+        self._told[record.msg] += 1
+        count = self._told[record.msg]
+        if count <= _TOLD:
+            self.note(record.getMessage())
+        elif count == 10 ** (len(str(count)) - 1):
+            self.note(f"{record.getMessage()}  (the {count:,}th of this kind; few are told)")
 
     def judged(self, judgement: Judgement) -> None:
         """Say a verdict, if it is asked for."""
-        if judgement.attempt.verdict is Verdict.FAIL or not self._failures_only:
+        if judgement.attempt.verdict is not Verdict.FAIL and self._failures_only:
+            return
+        try:
             self.say(judgement)
+        except OSError as error:  # in the thread of the monitors: others have to end
+            self.broken = error
 
     def say(self, judgement: Judgement) -> None:
         """Say a verdict."""
@@ -75,7 +97,7 @@ class Output(logging.Handler):
         """Say what came of it."""
         from rvmon.report.terminal import Terminal
 
-        Terminal().print(_tables(driver))
+        Terminal().print(tables(driver))
 
 
 class JsonOutput(Output):
@@ -135,19 +157,21 @@ class View(Output):
         self._screen.console.print(text)
 
     def show(self, driver: Driver) -> None:
-        """Show how it stands."""
-        self._screen.update(self._drawn(driver), refresh=True)
+        """Show how it stands, no longer than the terminal is high."""
+        lines = sum(-(-len(one) // self._screen.console.width) for one in self._failures)
+        height = max(1, self._screen.console.height - lines - 1)
+        self._screen.update(self._drawn(driver, height), refresh=True)
 
     def ended(self, driver: Driver) -> None:
         """Show how it stands at the end."""
         self._screen.console.print(self._drawn(driver))
 
-    def _drawn(self, driver: Driver) -> RenderableType:
+    def _drawn(self, driver: Driver, height: int | None = None) -> RenderableType:
         from rich.console import Group
         from rich.text import Text
 
         failures = [Text(line, style=MARKS[Verdict.FAIL].terminal) for line in self._failures]
-        return Group(_tables(driver), *failures)
+        return Group(tables(driver, height), *failures)
 
 
 def output_named(name: str | None, *, failures_only: bool) -> Output:
@@ -171,17 +195,43 @@ def _line(judgement: Judgement) -> str:
     return f"{robot}{format_ticks(decided)}  {attempt.name} {attempt.verdict} {sign}{reason}"
 
 
-def _tables(driver: Driver) -> RenderableType:
+def tables(driver: Driver, height: int | None = None) -> RenderableType:
+    """How robots and requirements stand, those first that need a look.
+
+    Args:
+        driver: of the robots.
+        height: so many lines there are; what finds none is counted. `None`: all requirements.
+    """
     from rich.console import Group
 
-    found = driver.status()
-    shown = dict(list(found.items())[:_SHOWN_ROBOTS])
-    rest = len(found) - len(shown)
-    more = [f"… and {rest} more robots"] if rest else []
-    return Group(*(_table(one, driver.spec) for one in shown.values()), *more)
+    found = driver.status(most_open=_MOST_OPEN)
+    robots = sorted(found.values(), key=lambda one: _need(fold(one.verdicts.values())))
+    requirements = len(driver.spec.requirements)
+    most, rows = _SHOWN_ROBOTS, requirements
+    if height is not None:
+        most = max(1, min(_SHOWN_ROBOTS, height // (_FRAME + min(requirements, _FEW))))
+        rows = max(1, height // max(1, min(most, len(robots))) - _FRAME)
+    more = [fold(one.verdicts.values()) for one in robots[most:]]
+    return Group(
+        *(_table(one, driver.spec, rows, is_cut=height is not None) for one in robots[:most]),
+        *_rest(more, "robots"),
+        *([] if robots else ["nothing has come yet"]),
+    )
 
 
-def _table(status: Status, spec: Spec) -> RenderableType:
+def _need(verdict: Verdict) -> int:
+    """Failures before what is inconclusive before the rest."""
+    return {Verdict.FAIL: 0, Verdict.INCONCLUSIVE: 1}.get(verdict, 2)
+
+
+def _rest(verdicts: Sequence[Verdict], of: str) -> Sequence[str]:
+    """What is not shown, in one line."""
+    counts = Counter(verdicts)
+    said = ", ".join(f"{counts[one]} {one.value}" for one in Verdict if counts[one])
+    return [f"… and {len(verdicts)} more {of}: {said}"] if verdicts else []
+
+
+def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> RenderableType:
     from rich import box
     from rich.console import Group
     from rich.table import Table
@@ -196,16 +246,24 @@ def _table(status: Status, spec: Spec) -> RenderableType:
     for column in ("", "verdict", "passed", "failed", "open", "until"):
         table.add_column(column, no_wrap=True)
     table.add_column("requirement", style="dim")
-    for name, verdict in status.verdicts.items():
-        owed = [attempt for attempt in status.open if attempt.requirement == name]
-        deadlines = [attempt.deadline for attempt in owed if attempt.deadline is not None]
+    until: dict[str, int] = {}
+    for one in status.open:
+        if one.deadline is not None:
+            until[one.requirement] = min(until.get(one.requirement, one.deadline), one.deadline)
+    names = [*status.verdicts]
+    if len(names) > rows:
+        rows = max(1, rows - 1)  # one line tells of the rest
+        names.sort(key=lambda name: (_need(status.verdicts[name]), until.get(name, NEVER)))
+    for name in names[:rows]:
         left = ""
-        if deadlines:
-            left = f"{max(0, min(deadlines) - status.now) / TICKS_PER_SECOND:.1f} s"
+        if name in until:
+            left = f"{max(0, until[name] - status.now) / TICKS_PER_SECOND:.1f} s"
         counts = [str(status.counts[name, one] or "") for one in (Verdict.PASS, Verdict.FAIL)]
-        text = spec.requirements[name].text
-        table.add_row(name, verdict_text(verdict), *counts, str(len(owed) or ""), left, text)
+        owed = f"{status.owed[name]:,}" if status.owed.get(name) else ""
+        text = Text(spec.requirements[name].text, no_wrap=is_cut, overflow="ellipsis")
+        table.add_row(name, verdict_text(status.verdicts[name]), *counts, owed, left, text)
     return Group(
         Text(f"{heading}{run}to {format_ticks(status.now)}, {status.samples:,} samples{lost}"),
         table,
+        *_rest([status.verdicts[name] for name in names[rows:]], "requirements"),
     )

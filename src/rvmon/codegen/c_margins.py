@@ -22,7 +22,7 @@ from rvmon.spec.checked.formula import Compare, CompareOp, Numeric, SignalValue
 from rvmon.spec.checked.formula import Literal as Number
 from rvmon.trace.schema import Kind
 
-_PARTS = ("queues", "windows", "joins", "gauge", "judge")
+_PARTS = ("queues", "windows", "joins", "gauge", "figures", "judge")
 
 _SIGNED = {
     CompareOp.LT: "-{}",
@@ -64,8 +64,6 @@ class Measures:
 
     def _tables(self) -> Iterator[str]:
         leaves = [core for plan in self.plans for _, core in plan.leaves]
-        most = max(len(plan.leaves) for plan in self.plans)
-        yield f"#define MEASURED_LEAVES {most}"
         yield from Forms(self._plan, self.plans).tables("measured_")
         yield "/* Per node, whether its value matters only where that of the formula is wanted. */"
         alone = [

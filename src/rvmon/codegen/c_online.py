@@ -22,10 +22,12 @@ from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_margins import Measures
 from rvmon.codegen.c_names import Names
+from rvmon.codegen.c_network import Networks
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array, lists
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
+from rvmon.dataflow.chain import reach_of
 from rvmon.errors import RvmonError
 from rvmon.formula.numeric import operands
 from rvmon.plan.plan import Plan
@@ -36,7 +38,11 @@ from rvmon.verdict.attempt import Attempt
 
 _PARTS = ("online.c.in", "online_calls.c.in", "online_type.c.in")
 _PARTS_MEASURED = (*_PARTS[:2], "online_margins.c.in", _PARTS[2])
-_PARTS_BESIDE = (*_PARTS[:2], "beside.c.in", "beside_state.c.in", _PARTS[2])
+_PARTS_BESIDE = (
+    *_PARTS[:2],
+    *(f"beside{part}.c.in" for part in ("_letters", "", "_state")),
+    _PARTS[2],
+)
 
 _MODULE = "rvmon_online"
 
@@ -330,7 +336,11 @@ def _noted(plan: Plan, names: Names) -> Iterator[str]:
     """What a module beside Python notes, and what it may take."""
     index = plan.graph.index
     leaves = [[index[leaf] for leaf in rule.noted or ()] for rule in plan.rules]
-    yield from lists("read_first", "read_leaves", leaves)
+    yield from lists("seen_first", "seen_leaves", leaves)
+    told = [[index[state] for state in rule.alphabet.propositions] for rule in plan.rules]
+    yield from lists("told_first", "told_places", told)
+    reaches = [reach_of(one) for one in Networks(plan).plans]
+    yield array("int64_t", "reaches", [reach or 0 for reach in reaches])
     compared = [state.leaf for state in plan.graph.nodes if isinstance(state.leaf, Compare)]
     sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
     parts = [part for side in sides for part in operands(side)]

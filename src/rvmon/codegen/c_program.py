@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from rvmon.codegen.c_build import THREADS, Build
 from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import EXACT, whole_limits
+from rvmon.codegen.c_margins import Measures
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_text import filled, template
@@ -45,25 +47,46 @@ _KINDS = {
 }
 
 
-def program_build(plan: Plan) -> Build:
+def program_build(plan: Plan, *, measured: bool = False) -> Build:
     """The program of a plan, for `rvmon.codegen.c_build.built`.
+
+    Args:
+        plan: what it judges.
+        measured: whether it prints robustness, too; the plan then says of what.
 
     Raises:
         RvmonError: a number of the specification is no double.
     """
+    if measured:  # under the specification's own name functions might be called alike
+        plan = replace(plan, spec=replace(plan.spec, name="rvmon"))
     made = c_files(plan)
     name = f"{made.prefix}_program.c"
-    texts = {**made.texts, name: program_source(plan)}
-    units = [f"{made.prefix}.c", *made.units, name]
-    return Build(texts, units, ".program", ["-O3", THREADS])
+    texts = {**made.texts, name: program_source(plan, measured=measured)}
+    main = f"{made.prefix}.c"
+    if measured:  # which includes that
+        main = f"{made.prefix}_margins.c"
+        texts[main] = _margins_source(plan)
+    return Build(texts, [main, *made.units, name], ".program", ["-O3", THREADS])
 
 
-def program_source(plan: Plan) -> str:
-    """The source of the program; it includes the header of `rvmon.codegen.c_source.c_files`."""
+def _margins_source(plan: Plan) -> str:
+    """The monitor, and what measures robustness beside it."""
+    places = {"MEASURING": Measures(plan).source(), "prefix": Names(plan).prefix}
+    return filled(template("margin_head.c.in") + template("program_margins.c.in"), places)
+
+
+def program_source(plan: Plan, *, measured: bool = False) -> str:
+    """The source of the program; it includes the header of `rvmon.codegen.c_source.c_files`.
+
+    Args:
+        plan: see `program_build`.
+        measured: see there.
+    """
     names = Names(plan)
     places = {
         "ENTRIES": "\n".join(_entries(plan, names)),
         "STEADY": str(int(_is_steady(plan))),
+        "MEASURES": str(int(measured)),
         "LAW": str(LAW),
         "SPEC": comment(plan.spec.name),
         "HEADER": f"{names.prefix}.h",

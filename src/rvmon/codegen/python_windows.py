@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from rvmon.codegen.python_visit import indented
-from rvmon.dataflow.chain import Chain, Windows
+from rvmon.dataflow.chain import Chain, Windows, reach_of
 from rvmon.dataflow.nodes import Junction, NetworkPlan
 from rvmon.runtime.values import NEVER
 
@@ -207,7 +207,7 @@ class _Writer:
             yield f"return value, max(at, {2 * self.gap} * position + 1)"
 
     def _forget(self) -> Iterator[str]:
-        yield f"start = position - {self.chain.reach // self.gap + 2}"
+        yield f"start = position - {(reach_of(self.plan) or 0) // self.gap + 2}"
         if self.sparse:
             yield "stamps = self.stamps"
             yield "del stamps[:min(bisect_left(stamps, start), len(stamps) - 1)]"

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Sweep, Window
+from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Sense
 
 
@@ -30,10 +30,38 @@ class Chain:
     windows: tuple[Window, ...]
     left: int | None
 
-    @property
-    def reach(self) -> int:
-        """Ticks after which a position is known at the latest, whatever letters come."""
-        return sum(window.over or 0 for window in self.windows)
+
+def reach_of(plan: NetworkPlan) -> int | None:
+    """Ticks after which a position is known at the latest, or only leads on to later ones.
+
+    Args:
+        plan: of a network.
+
+    Returns:
+        `None` if there is no such number, or the past is looked at.
+    """
+
+    def reach(node: Node) -> int | None:
+        match node:
+            case Leaf():
+                return 0
+            case Junction(operands=operands):
+                return greatest(*operands)
+            case Window(operand=operand, over=int(over)):
+                inner = greatest(operand)
+                return None if inner is None else inner + over
+            case Window() | Shift() | Sweep():
+                return None
+
+    def greatest(*places: int) -> int | None:
+        found = [reach(plan.nodes[place]) for place in places]
+        known = [one for one in found if one is not None]
+        return max(known) if len(known) == len(found) else None
+
+    root = plan.nodes[-1]
+    if isinstance(root, Sweep) and root.future:
+        return greatest(root.left, root.right)
+    return reach(root)
 
 
 def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:

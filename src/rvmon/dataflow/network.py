@@ -19,11 +19,9 @@ from rvmon.dataflow.news import Work, junction_work, shift_work
 from rvmon.dataflow.news_of_past import past_work
 from rvmon.dataflow.news_of_until import until_work
 from rvmon.dataflow.news_of_window import sampled_window_work, window_work
-from rvmon.dataflow.next_news import NOTHING, Ask, asks_of
 from rvmon.dataflow.nodes import Junction, Shift, Sweep, Window
 from rvmon.dataflow.piecewise import FAR, Piece
 from rvmon.dataflow.soonest_news import Soonest, soonest_of
-from rvmon.runtime.values import NEVER
 
 Noted = Sequence[tuple[int, Sequence[bool]]]
 """Positions with their letters."""
@@ -50,9 +48,6 @@ class Network(Knowledge):
 
     _works: Sequence[Work] | None = None
     """What works out the news of the nodes but for leaves, bound to what is known of them."""
-
-    _heeds: Sequence[Ask] | None = None
-    """What tells when those nodes have news by time alone."""
 
     _soonest: Soonest | None = None
     """What tells before when a position is not known, whatever letters come."""
@@ -157,31 +152,13 @@ class Network(Knowledge):
             self.tell(place, 0, sides[0])
             self.tell(place, 1, sides[1])
 
-    def next_news(self, wanted: int) -> int:
-        """An instant before which time alone makes nothing known that is waited for.
-
-        It may be in vain.
-
-        Args:
-            wanted: the instant of the first position whose value is waited for.
-        """
-        positions = self.positions
-        now = min((self.grown - 1) // positions.slope, positions.last)
-        asked = [*NOTHING * (len(self.plan.nodes) - 1), *2 * (wanted // positions.gap, now)]
-        found = NEVER
-        if self._heeds is None:
-            self._heeds = asks_of(self)
-        for ask in self._heeds:
-            found = ask(self, asked, now, found)
-        return found
-
     def soonest_news(self, wanted: int) -> int:
         """An instant before which nothing becomes known that is waited for, whatever letters come.
 
         But for one with a value that is watched for; see `is_roused`.
 
         Args:
-            wanted: as for `next_news`.
+            wanted: the instant of the first position whose value is waited for.
         """
         self.watched.clear()
         positions = self.positions

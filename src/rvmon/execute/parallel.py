@@ -37,7 +37,7 @@ def execute(
     tasks: Iterable[_Task],
     begin: Callable[[], Callable[[_Task], _Result]],
     *,
-    jobs: int,
+    jobs: int | str,
     what: str = "task",
     instead: Callable[[_Task, Ended], _Result] | None = None,
     timeout_s: float | None = None,
@@ -54,7 +54,8 @@ def execute(
         tasks: taken from as processes have time; for several processes what can be pickled.
         begin: called once in each process, before its first task; what it returns does a task.
             Where processes are not forked, it is pickled, once for each.
-        jobs: processes at most; 1: this process does all, unless `instead` is given.
+        jobs: processes at most; 1: this process does all, unless `instead` is given. Or the address
+            of a scheduler of Dask, whose workers do all.
         what: the word for a task in messages.
         instead: the result of a task whose process was ended; the other tasks are done all the
             same, by other processes.
@@ -72,6 +73,11 @@ def execute(
     >>> list(execute([1, 2, 3], lambda: abs, jobs=1))
     [1, 2, 3]
     """
+    if isinstance(jobs, str):
+        from rvmon.execute.on_dask import execute_on_dask
+
+        yield from execute_on_dask(tasks, begin, jobs, what, instead, timeout_s)
+        return
     if jobs > 1 or instead is not None:
         pool = _Pool(tasks, begin, jobs, what, instead, timeout_s, fresh)
         try:

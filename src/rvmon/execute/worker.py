@@ -47,26 +47,39 @@ def serve(
     threading.Thread(target=_receive, args=(connection, chunks), daemon=True).start()
     work: Callable[[Any], Any] | None = None
 
-    def answer(task: bytes) -> tuple[bool, bytes]:
+    def begun() -> Callable[[Any], Any]:
         nonlocal work
-        try:
-            if work is None:
-                work = begin()
-                connection.send(None)
-            return False, pickle.dumps(work(pickle.loads(task)))  # noqa: S301 - from the parent
-        except Exception as error:  # noqa: BLE001 - raised where the result is asked for
-            return True, _packed(error)
+        if work is None:
+            work = begin()
+            connection.send(None)
+        return work
 
     with suppress(OSError):  # nobody takes an answer any more
         while True:
             chunk = chunks.get()
             end = time.monotonic() + CHUNK_S
             for left, task in zip(reversed(range(len(chunk))), chunk, strict=True):
-                failed, result = answer(task)
+                failed, result = answer(begun, task)
                 is_last = not left or time.monotonic() >= end
                 connection.send((failed, is_last, result))
                 if is_last:
                     break
+
+
+def answer(begun: Callable[[], Callable[[Any], Any]], task: bytes) -> tuple[bool, bytes]:
+    """Do a task.
+
+    Args:
+        begun: what does it.
+        task: pickled.
+
+    Returns:
+        Whether it failed, and its result or error, pickled.
+    """
+    try:
+        return False, pickle.dumps(begun()(pickle.loads(task)))  # noqa: S301 - from the parent
+    except Exception as error:  # noqa: BLE001 - raised where the result is asked for
+        return True, packed_error(error)
 
 
 def _leave_signals(parent: int | None) -> None:
@@ -93,7 +106,7 @@ def _receive(connection: Connection, chunks: SimpleQueue[list[bytes]]) -> None:
         os._exit(1)
 
 
-def _packed(error: Exception) -> bytes:
+def packed_error(error: Exception) -> bytes:
     """An error that can be read elsewhere; what nobody expected says where it happened."""
     if not isinstance(error, RvmonError):
         error.add_note(traceback.format_exc())

@@ -1,13 +1,20 @@
-"""Calls of functions as events of a robot."""
+"""Calls of functions as events of a robot.
+
+A monitor stops no robot: what cannot be offered is logged, and the call goes on.
+"""
 
 from __future__ import annotations
 
 import functools
 import inspect
+import logging
 from collections.abc import Callable, Mapping
 from typing import Any, ParamSpec, TypeVar
 
+from rvmon.errors import RvmonError
 from rvmon.live.driver import Driver
+
+_log = logging.getLogger("rvmon.live.input")
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -23,12 +30,19 @@ def as_event(
 ) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
     """A decorator: each call of the function is an occurrence of an event.
 
+    That of a coroutine or a generator is when it begins to run.
+
     Args:
         driver: gets the events.
         event: occurs when the function is called.
-        ended: occurs when it has returned, or a coroutine has ended; not where it raises.
-        payload: gives the fields of both for the arguments of a call.
+        ended: occurs when it has returned, or a coroutine or generator has ended; not where it
+            raises, or is left before.
+        payload: gives the fields of both for the arguments of a call; where it raises, the event
+            is unknown at that instant.
         robot: whose events they are.
+
+    Raises:
+        RvmonError: what is decorated is a class or an asynchronous generator, or cannot be called.
 
     >>> from rvmon import loads
     >>> from rvmon.live import Driver, SimulatedClock, as_event
@@ -51,9 +65,34 @@ def as_event(
 
     def decorate(function: Callable[_P, _R]) -> Callable[_P, _R]:
         def occurs(name: str | None, *args: _P.args, **kwargs: _P.kwargs) -> None:
-            if name is not None:
-                value = True if payload is None else dict(payload(*args, **kwargs))
+            if name is None:
+                return
+            value: object = True
+            if payload is not None:
+                try:
+                    value = dict(payload(*args, **kwargs))
+                except Exception as error:  # noqa: BLE001 - it is not the call that has failed
+                    _log.warning("the payload of %s is unknown: %r", name, error)
+                    value = None
+            try:
                 driver.offer({name: value}, robot=robot)
+            except RvmonError as error:
+                _log.warning("%s is lost: %s", name, error)
+
+        if inspect.isclass(function) or not callable(function):
+            raise RvmonError(f"{function!r}: decorate a function, such as the method `__init__`")
+        if inspect.isasyncgenfunction(function):
+            raise RvmonError(f"{function!r}: decorate what this asynchronous generator awaits")
+        if inspect.isgeneratorfunction(function):
+
+            @functools.wraps(function)
+            def iterated(*args: _P.args, **kwargs: _P.kwargs) -> Any:
+                occurs(event, *args, **kwargs)
+                result = yield from function(*args, **kwargs)
+                occurs(ended, *args, **kwargs)
+                return result
+
+            return iterated
 
         if inspect.iscoroutinefunction(function):
 

@@ -38,6 +38,11 @@ _FAR_NS = 365 * 86_400 * TICKS_PER_SECOND
 """Stamps that are so far from the clock are of another epoch."""
 
 
+_AHEAD_NS = 10 * TICKS_PER_SECOND
+"""Stamps that are so far ahead of a clock that runs by itself are wrong: taken, they would make all
+others late until it has come there."""
+
+
 class Driver:
     r"""Judges samples of any number of robots, as they are offered and as time passes.
 
@@ -193,11 +198,13 @@ class Driver:
         return False
 
     def _near(self, t_ns: int) -> int:
-        if self._runs_by_itself and abs(t_ns - self._clock.now_ns()) > _FAR_NS:
+        now = self._clock.now_ns()
+        if self._runs_by_itself and not now - _FAR_NS < t_ns < now + _AHEAD_NS:
+            far = "years from" if abs(t_ns - now) > _FAR_NS else "ahead of"
             raise TraceError(
-                f"the stamp {format_ticks(t_ns)} is years from the clock, which says "
-                f"{format_ticks(self._clock.now_ns())}: give the driver the clock of the stamps, "
-                "such as WallClock(since_1970=True)"
+                f"the stamp {format_ticks(t_ns)} is {far} the clock, which says "
+                f"{format_ticks(now)}: set the clocks of the machines alike, or give the driver "
+                "the clock of the stamps, such as WallClock(since_1970=True)"
             )
         return t_ns
 
@@ -215,11 +222,16 @@ class Driver:
                 robot.end()
                 robot.begin(self._watch)
 
-    def status(self) -> dict[str, Status]:
-        """How each robot stands."""
+    def status(self, *, most_open: int | None = None) -> dict[str, Status]:
+        """How each robot stands; nothing is judged until that is put together.
+
+        Args:
+            most_open: of each robot so many records of what is open, the oldest of each requirement
+                first, as each takes a tenth of a millisecond; default all.
+        """
         with self._working:
             now = self._clock.now_ns()
-            return {name: robot.status(now) for name, robot in self._robots.items()}
+            return {name: robot.status(now, most_open) for name, robot in self._robots.items()}
 
     @property
     def waiting(self) -> int:
@@ -227,11 +239,11 @@ class Driver:
         return len(self._waiting)
 
     def _clock_was_set(self, before: int, now: int) -> None:
-        if now < before:
+        if now < before or now - before > _FAR_NS:  # as where a clock is set that began with 1970
             with self._lock:
                 self._stamped = now
-                why = f"a new run began: the clock went back by {format_ticks(before - now)}"
-                self._waiting.put_new_run(why)
+                way = f"back by {format_ticks(before - now)}" if now < before else "on by years"
+                self._waiting.put_new_run(f"a new run began: the clock went {way}")
         self.wake()
 
     # --- from whoever drives it --------------------------------------------------------------
@@ -272,6 +284,7 @@ class Driver:
 
     def _take(self, entry: Entry) -> None:
         if isinstance(entry, NewRun):
+            _input_log.warning("%s", entry.why)
             for robot in self._robots.values():
                 robot.restart(HealthKind.CLOCK, entry.why)
                 self._wakes.pop(robot.name, None)

@@ -229,9 +229,10 @@ class Robot:
             return self.floor + 1  # the sample is judged then
         return self._monitor.next_due
 
-    def status(self, t: int) -> Status:
-        """How it stands at an instant."""
+    def status(self, t: int, most: int | None) -> Status:
+        """How it stands at an instant, with so many records of what is open."""
         now = self._monitor.verdicts
+        owed, records = self._monitor.owed(most)
         return Status(
             robot=self.name,
             run=self.run,
@@ -239,7 +240,8 @@ class Robot:
             now=t,
             verdicts={name: fold([*self._before[name], now[name]]) for name in self._watch.ids},
             counts=self._counts.copy(),
-            open=tuple(self._monitor.open),
+            owed=owed,
+            open=tuple(records),
             samples=self._samples,
             lost=self._lost,
             refusal=self._refusal,

@@ -21,7 +21,8 @@ class Status:
         now: the instant to which time has come, ns.
         verdicts: of each requirement so far, over all runs.
         counts: how many attempts of a requirement had a verdict since it is watched.
-        open: the attempts that are owed now, with their deadlines.
+        owed: how many attempts of each requirement are open now; those without any may lack.
+        open: their records with their deadlines: all, or as many as were asked for.
         samples: so many were judged, over all runs.
         lost: so many were not.
         refusal: why the latest that was refused was.
@@ -33,6 +34,7 @@ class Status:
     now: int
     verdicts: Mapping[str, Verdict]
     counts: Counter[tuple[str, Verdict]]
+    owed: Mapping[str, int]
     open: tuple[Attempt, ...]
     samples: int
     lost: int

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Protocol
 
-from rvmon.errors import UnknownNameError
+from rvmon.errors import TraceError, UnknownNameError
 from rvmon.monitor.compiled.refusal import of_measured_c
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
@@ -52,18 +53,25 @@ def robustness_monitor(
         only: ids of the requirements; `None`: all.
         settle: see there.
         sources: see there.
-        engine: `auto` or `c`, compiled C.
+        engine: `c`, compiled C; or `auto`, which takes that where it was prepared.
         streams: see there.
 
     Raises:
         UnknownNameError: no such engine measures, or there is no such way to settle.
         RvmonError: compiled C does not measure a requirement, or there is no compiler.
     """
-    if not _is_c(engine):
+    if not _is_c(engine) and not _is_prepared(compiled, only):
         return RobustnessMonitor(compiled, only, settle, sources, streams=streams)
     from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
 
     return CompiledRobustnessMonitor(compiled, only, settle, sources, streams=streams)
+
+
+def _is_prepared(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
+    """Whether compiled C lies ready that measures the requirements as Python does."""
+    from rvmon.monitor.c.prepared import measuring_prepared
+
+    return measuring_prepared(compiled, compiled.chosen(only)) is not None
 
 
 def _is_c(engine: str) -> bool:
@@ -97,9 +105,13 @@ def margins_of(
     named = "" if reading.sources is None else "its sources are named"
     source = Source(recording, until, row_by_row=named)
     asked = Asked(None if only is None else tuple(only))
+    margins = None
     if _is_c(engine):
         margins = _in_c(compiled, source, asked, streams=streams)
-    else:
+    elif _is_prepared(compiled, asked.only):
+        with suppress(TraceError):  # what C does not take, or nobody: the others say so
+            margins = _in_c(compiled, source, asked, streams=streams)
+    if margins is None and not _is_c(engine):
         judge = engine_named("auto").judge
         found = _by_columns(compiled, source, asked, judge, streams=streams)
         margins = found and found[1]
@@ -160,13 +172,12 @@ def _by_samples(
 
 def _in_c(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins | None:
     """The figures by compiled C; `None` if the recording has no columns."""
-    from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
+    from rvmon.monitor.measure_in_c import margins_of_columns
 
+    chosen = compiled.chosen(asked.only)
     try:
         columns = columns_of(compiled, source, asked)
-        names = frozenset(columns.names)
-        monitor = CompiledRobustnessMonitor(compiled, asked.only, sources=names, streams=streams)
-        return monitor.fed(columns, source.end)
+        return margins_of_columns(compiled, chosen, columns, source.end, streams=streams)
     except NotPlainError:
         return None
 

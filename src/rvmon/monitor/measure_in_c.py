@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.c_online import OnlineLibrary, online_library
+from rvmon.codegen.c_online import Core, OnlineLibrary, online_library
 from rvmon.dataflow.margins import INFINITE
 from rvmon.monitor.c.monitor import CompiledMonitor
+from rvmon.monitor.c.prepared import measuring_prepared
 from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.monitor.compiled.refusal import of_measured_c, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
@@ -38,7 +38,6 @@ def measuring_library(
     key = ("margins in c", ids)
     found = compiled.forms.get(key)
     if not isinstance(found, OnlineLibrary):
-        refuse(requirements, of_measured_c, "the engine `c`, which measures,")
         plan = plan_alone(compiled, ids, measured=True)
         found = compiled.forms[key] = online_library(plan, optimised=optimised, measured=True)
     return found
@@ -67,12 +66,8 @@ class CompiledRun(CompiledMonitor):
         streams: bool,
     ) -> None:
         self._rest: Sequence[Measured] = ()
-        self._streams = streams
-        types = (Measured, Robustness)
-        measured = [part for one in types for part in (one, _slots(one))]
-        super().__init__(
-            library, compiled, requirements, settle, sources, measured=(streams, *measured)
-        )
+        measured = _types(streams=streams)
+        super().__init__(library, compiled, requirements, settle, sources, measured=measured)
 
     def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
         report, figures = super()._conclude(t_ns)
@@ -90,55 +85,6 @@ class CompiledRun(CompiledMonitor):
     def open_figures(self) -> Sequence[Measured]:
         """What is known of the open attempts."""
         return _figures(self.open)
-
-    def fed(self, columns: Columns, end: int | None) -> Margins:
-        """Measure a recording by its columns, and end the run.
-
-        Args:
-            columns: of the recording.
-            end: of the trace in ticks; `None`: its last row.
-
-        Raises:
-            TraceError: a whole number is larger than C computes with exactly.
-            TimeOrderError: an instant is not after the one before.
-        """
-        import numpy as np
-
-        from rvmon.codegen.c_batch import exact_columns
-        from rvmon.monitor.c.batch import out_of_order
-
-        plan = self._library.plan
-        names = (*plan.signals, *plan.events)
-        rows = 0
-        for block in columns.read():
-            laid = exact_columns(plan, self._library.limits, block.times, block.columns)
-            times = np.ascontiguousarray(block.times)
-            taken = self._core.feed(times, tuple(laid.get(name) for name in names))
-            rows += taken
-            if taken < len(times):
-                raise out_of_order(rows, int(times[taken]))
-        self._core.close(end)
-        found = np.frombuffer(self._core.figures(), np.dtype(_FIGURE, align=True))
-        attempts: tuple[dict[Key, Robustness], dict[Key, Robustness]] = ({}, {})
-        for judge, (owner, _) in enumerate(plan.judges):
-            for sure in (True, False):
-                some = found[(found["judge"] == judge) & (found["sure"] == sure)]
-                some = some[some["vanished"] == 0]
-                # What nothing triggered owes nothing.
-                high = some["high"] if sure else np.full(len(some), INFINITE)
-                figures = map(
-                    Robustness, some["low"].tolist(), high.tolist(), some["kept"].tolist()
-                )
-                keys = ((self._ids[owner], number) for number in some["number"].tolist())
-                attempts[not sure].update(zip(keys, figures, strict=True))
-        streams = {name: self._stream(n) for n, name in enumerate(self._ids) if self._streams}
-        return Margins(*attempts, streams)
-
-    def _stream(self, requirement: int) -> Stream:
-        import numpy as np
-
-        times, *bounds = self._core.series(requirement)
-        return Stream(np.frombuffer(times, np.int64), *map(np.frombuffer, bounds))
 
     def finished(self, t_ns: int | None) -> Sequence[Measured]:
         """End the run; gives the figures that are left."""
@@ -165,14 +111,95 @@ class CompiledRobustnessMonitor(RobustnessMonitor):
         streams: bool,
     ) -> CompiledRun:
         """See `RobustnessMonitor`."""
-        library = measuring_library(compiled, chosen)
+        library = _library(compiled, chosen)
         run = CompiledRun(library, compiled, chosen, settle, sources, streams=streams)
         vars(self).update(step=run.step, step_ns=run.step_ns)  # with nothing in between
         return run
 
-    def fed(self, columns: Columns, end: int | None) -> Margins:
-        """See `CompiledRun`."""
-        return self._run.fed(columns, end)
+
+def margins_of_columns(
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    columns: Columns,
+    end: int | None,
+    *,
+    streams: bool,
+) -> Margins:
+    """Measure a recording by its columns.
+
+    Args:
+        compiled: the specification.
+        requirements: chosen from it.
+        columns: of the recording.
+        end: of the trace in ticks; `None`: its last row.
+        streams: whether each row is measured, and not the attempts alone.
+
+    Raises:
+        RvmonError: there is no C compiler, or a requirement cannot be measured by compiled C.
+        TraceError: a whole number is larger than C computes with exactly.
+        TimeOrderError: an instant is not after the one before.
+    """
+    import numpy as np
+
+    from rvmon.codegen.c_batch import exact_columns
+    from rvmon.monitor.c.batch import out_of_order
+
+    library = _library(compiled, requirements)
+    plan = library.plan
+    names = (*plan.signals, *plan.events)
+    core = library.core(
+        frozenset(names) - {*columns.names},
+        look_closer=_not_stepped,
+        look_closer_ns=_not_stepped,
+        measured=_types(streams=streams),
+    )
+    core.reset()
+    rows = 0
+    for block in columns.read():
+        laid = exact_columns(plan, library.limits, block.times, block.columns)
+        times = np.ascontiguousarray(block.times)
+        taken = core.feed(times, tuple(laid.get(name) for name in names))
+        rows += taken
+        if taken < len(times):
+            raise out_of_order(rows, int(times[taken]))
+    core.close(end)
+    found = np.frombuffer(core.figures(), np.dtype(_FIGURE, align=True))
+    found = found[found["vanished"] == 0]
+    ids = [one.requirement.id for one in requirements]
+    owners = [ids[owner] for owner, _ in plan.judges]
+    attempts: tuple[dict[Key, Robustness], dict[Key, Robustness]] = ({}, {})
+    for sure in (True, False):
+        some = found[found["sure"] == sure]
+        # What nothing triggered owes nothing.
+        high = some["high"] if sure else np.full(len(some), INFINITE)
+        keys = zip(
+            [owners[n] for n in some["judge"].tolist()], some["number"].tolist(), strict=True
+        )
+        figures = map(Robustness, some["low"].tolist(), high.tolist(), some["kept"].tolist())
+        attempts[not sure].update(zip(keys, figures, strict=True))
+    return Margins(*attempts, {name: _stream(core, n) for n, name in enumerate(ids) if streams})
+
+
+def _not_stepped(_: float, __: Mapping[str, Any]) -> Sequence[Attempt]:
+    raise AssertionError("it takes rows")
+
+
+def _stream(core: Core, requirement: int) -> Stream:
+    import numpy as np
+
+    times, *bounds = core.series(requirement)
+    return Stream(np.frombuffer(times, np.int64), *map(np.frombuffer, bounds))
+
+
+def _library(compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]) -> OnlineLibrary:
+    """What was prepared, or else what is compiled now."""
+    found = measuring_prepared(compiled, requirements)
+    return measuring_library(compiled, requirements) if found is None else found
+
+
+def _types(*, streams: bool) -> tuple[Any, ...]:
+    """What `OnlineLibrary.core` is told of figures."""
+    return (streams, *(part for one in (Measured, Robustness) for part in (one, _slots(one))))
 
 
 def _figures(returned: Sequence[Any]) -> Sequence[Measured]:

@@ -48,6 +48,7 @@ class Rule(Starts):
         restless: whether attempts may move at the next position though the letters stay.
         slides: whether a clock moves along while an attempt loops.
         watches: whether it has to see positions though no attempt is open.
+        leaps: whether attempts may begin at positions that time has passed.
     """
 
     __slots__ = (
@@ -99,6 +100,7 @@ class Rule(Starts):
         self.letter = self.other = 0
 
     watches = False
+    leaps = False
 
     def begin(self, t: int, triggered: int) -> None:
         """Start an attempt at the position `t`, at which the values are."""

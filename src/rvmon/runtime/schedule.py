@@ -244,7 +244,7 @@ class Schedule:
             while (due := self.next_due()) <= stop:
                 rule = self.rules[self.dues[0][1]]
                 # What fails may be followed by another attempt at once.
-                reached = due if rule.episodic else stop
+                reached = due if rule.episodic and not rule.leaps else stop
                 rule.pass_to(reached)
                 if rule.due <= reached:
                     raise AssertionError("what has passed is due again: no run comes to stand so")

@@ -126,6 +126,21 @@ def test_what_two_have_written_at_once_is_not_mixed(whole, here, played):
     assert played[0] == 5
 
 
+def test_shards_are_joined(whole, here, played, capsys):
+    """What is played of each is not played again, be it half of one; what is missing is."""
+    assert main((*WORDS, "--shard", "3/3")) == 0
+    assert main((*WORDS, "--shard", "1/3")) == 0
+    told = capsys.readouterr()
+    assert "shard 1/3: 4 of 12 tests were finished" in " ".join(told.out.split())
+    journal = here / "unfinished.shard-1-of-3.journal"
+    journal.write_bytes(b"".join(journal.read_bytes().splitlines(keepends=True)[:3]))
+    assert sorted(path.suffix for path in here.iterdir()) == [".journal", ".journal"]
+    played.clear()
+    assert main(WORDS) == 0
+    assert files(here) == whole[0]
+    assert len(played) == 6
+
+
 def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
     """What its partial tables and pages were is written over."""
 

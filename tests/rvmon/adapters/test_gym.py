@@ -81,6 +81,24 @@ def test_the_reward_can_be_shaped_by_robustness():
     assert total == steps + 100.0 * figures
 
 
+def test_samples_within_a_step_have_their_instants():
+    """And a deadline is decided in the step in which it passes, though nothing comes."""
+    from rvmon.adapters.gym import Judged
+
+    decided = []
+
+    def observe(_, action, __):
+        is_first = action is not None and not decided
+        return [(30_000_000, {"pushed_right": True})] if is_first else []
+
+    env = Judged(gymnasium.make("CartPole-v1"), loads(SPEC), observe, step_s=0.04)
+    env.reset(seed=1)
+    for action in (1, 0, 1, 0, 1, 0):
+        *_, info = env.step(action)
+        decided.append([(one.name, one.triggered, one.decided) for one in info["rv"]["decided"]])
+    assert decided == [[], [], [], [], [], [("P2#1", 30_000_000, 230_000_001)]]
+
+
 def test_a_step_takes_time():
     """Else nothing could ever be due."""
     from rvmon.adapters.gym import Judged

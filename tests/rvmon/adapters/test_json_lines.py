@@ -69,6 +69,24 @@ def test_lines_without_a_time_are_stamped_as_they_arrive():
     assert driver.close()[""][0].attempts[0].decided == 7
 
 
+def test_a_stamp_of_another_epoch_is_told_and_stops_nothing():
+    """The clock runs by itself: what the line said is unknown, the next one is judged."""
+    spec = loads(SPEC)
+    driver = Driver(spec)
+    source = JsonObjects(driver, spec.schema)
+    lines = [b'{"x": 0}', b'{"x": 0, "t": 1800000000}', b'{"x": 2}']
+    assert _verdicts(driver, lines, source) == {"": Verdict.FAIL}
+    assert source.unread == 1
+
+
+def test_lines_that_come_after_the_end_are_nobodys(live):
+    """Who reads them ends, without a complaint."""
+    driver, _, source = live
+    driver.close()
+    feed_lines(source, iter([b'{"t": 0, "x": 0}', b"nonsense"]))
+    assert source.unread == 0
+
+
 def test_a_field_names_the_robot():
     """A line without it is of nobody known: it may be of any."""
     spec, clock = loads(SPEC), SimulatedClock()

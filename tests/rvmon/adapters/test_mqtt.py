@@ -1,14 +1,11 @@
 """MQTT, by a real broker."""
 
 import json
-import os
-import shutil
-import socket
-import subprocess
 import threading
 import time
 
 import pytest
+from tests.tools.servers import LONG, Broker, missing, mosquitto
 
 from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.json_objects import JsonObjects
@@ -25,52 +22,14 @@ requirement R2
   upon stop
   then within 20 ms arm.speed == 0
 """
-LONG = 30.0
-
-
-def _mosquitto():
-    found = shutil.which("mosquitto") or shutil.which("/usr/sbin/mosquitto")
-    if found is None and os.environ.get("CI"):
-        pytest.fail("mosquitto is not installed")
-    return found or pytest.skip("mosquitto is not installed: apt install mosquitto")
-
-
-class Broker:
-    """A broker that can be stopped and started again at its port."""
-
-    def __init__(self, folder) -> None:
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
-        self._settings = folder / "mosquitto.conf"
-        self._settings.write_text(f"listener {self.port} 127.0.0.1\nallow_anonymous true\n")
-        self._program = _mosquitto()
-        self.start()
-
-    def start(self) -> None:
-        """Begin, and be there."""
-        self._process = subprocess.Popen(  # noqa: S603
-            [self._program, "-c", str(self._settings)], stderr=subprocess.DEVNULL
-        )
-        end = time.monotonic() + LONG
-        while time.monotonic() < end:
-            try:
-                socket.create_connection(("127.0.0.1", self.port), 1).close()
-                return
-            except OSError:
-                time.sleep(0.02)
-        pytest.fail("the broker does not answer")
-
-    def stop(self) -> None:
-        """End."""
-        self._process.terminate()
-        self._process.wait(LONG)
 
 
 @pytest.fixture
 def broker(tmp_path):
     """A broker on a port of its own."""
     pytest.importorskip("paho.mqtt.client")
+    if mosquitto() is None:
+        missing("mosquitto")
     made = Broker(tmp_path)
     yield made
     made.stop()

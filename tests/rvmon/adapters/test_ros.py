@@ -2,17 +2,17 @@
 
 import json
 import os
-import shutil
 import signal
-import socket
 import subprocess
 import sys
 import threading
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from tests.rvmon.adapters.talkers import DDS, ROS1
+from tests.rvmon.adapters.talkers import SIMULATOR
+from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster
 
 from rvmon import RvmonError, loads
 from rvmon.adapters.messages import MessageFeed
@@ -30,23 +30,11 @@ requirement R2
   upon stop
   then within 300 ms base.speed == 0
 """
+EXAMPLES = Path(__file__).parents[3] / "examples"
 LONG = 60.0
 """Seconds after which a process is ended that does not end."""
 
-SYSTEM = "/usr/lib/python3/dist-packages"
 WATCH = f"import sys; sys.path.append({SYSTEM!r}); from rvmon.cli import main; sys.exit(main())"
-LO = (
-    '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="false"/>'
-    "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>"
-    '<ParticipantIndex>auto</ParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers>'
-    "</Discovery></Domain></CycloneDDS>"
-)
-
-
-def _missing(what):
-    if os.environ.get("CI"):
-        pytest.fail(f"{what} is not installed")
-    pytest.skip(f"{what} is not installed")
 
 
 @contextmanager
@@ -64,9 +52,9 @@ def _ended(process):
 
 def _failures(folder, source, talker, environment):
     """What `rvmon watch` says of a source by the second failure; then it is ended by Ctrl-C."""
-    (folder / "s.rv").write_text(SPEC)
     environment = {**os.environ, **environment}
-    command = [sys.executable, "-c", WATCH, "watch", "s.rv", source, "--format", "json"]
+    watch = ["watch", EXAMPLES / "base.rv", source, "--format", "json"]
+    command = [sys.executable, "-c", WATCH, *watch]
     with (
         _ended(subprocess.Popen(talker, env=environment)),  # noqa: S603
         _ended(
@@ -79,29 +67,17 @@ def _failures(folder, source, talker, environment):
         watching.send_signal(signal.SIGINT)
         last = json.loads(watching.communicate(timeout=LONG)[0].splitlines()[-1])
     assert watching.returncode == 1
-    assert last["verdicts"] == {"R1": "F", "R2": "F"}
+    assert last["verdicts"] == {"B1": "F", "B2": "F"}
     return [(line["attempt"], line["verdict"]) for line in lines]
 
 
 @pytest.fixture
 def master():
     """The address of a master of ROS 1."""
-    program = shutil.which("rosmaster")
-    if program is None or not Path(SYSTEM, "rospy").exists():
-        _missing("rosmaster, or rospy")
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    command = [program, "--core", "-p", str(port)]
-    with _ended(subprocess.Popen(command, **quiet)) as process:  # noqa: S603
-        while True:
-            try:
-                socket.create_connection(("127.0.0.1", port), 1).close()
-                break
-            except OSError:
-                assert process.poll() is None
-        yield f"http://127.0.0.1:{port}"
+    if rosmaster() is None:
+        missing("rosmaster, or rospy")
+    with master_of_ros1() as address:
+        yield address
 
 
 @pytest.mark.process
@@ -109,8 +85,8 @@ def test_topics_of_ros_1_are_judged(tmp_path, master):
     """Names lead to topics; types come with the messages."""
     pytest.importorskip("rosbags")
     environment = {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_HOME": str(tmp_path)}
-    talker = ["/usr/bin/python3", "-c", ROS1]
-    assert _failures(tmp_path, "ros1:", talker, environment) == [("R1#1", "F"), ("R2#1", "F")]
+    talker = ["/usr/bin/python3", EXAMPLES / "ros1" / "talker.py"]
+    assert _failures(tmp_path, "ros1:", talker, environment) == [("B1#1", "F"), ("B2#1", "F")]
 
 
 @pytest.mark.process
@@ -118,9 +94,9 @@ def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
     """Without an installation of ROS, in a domain of its own."""
     pytest.importorskip("cyclonedds")
     domain = str(100 + os.getpid() % 100)
-    talker = [sys.executable, "-c", DDS, domain]
-    found = _failures(tmp_path, f"dds:{domain}", talker, {"CYCLONEDDS_URI": LO})
-    assert found == [("R1#1", "F"), ("R2#1", "F")]
+    talker = [sys.executable, EXAMPLES / "dds" / "talker.py", domain]
+    found = _failures(tmp_path, f"dds:{domain}", talker, {"CYCLONEDDS_URI": LOOPBACK})
+    assert found == [("B1#1", "F"), ("B2#1", "F")]
 
 
 def test_what_is_not_there_is_told(tmp_path, monkeypatch):
@@ -162,3 +138,39 @@ def test_a_message_that_does_not_fit_is_unknown(feed):
     (report,) = driver.close()[""]
     assert report.verdicts["R1"] == "I"
     assert [one.name for one in report.health if one.kind == "none"] == ["base.speed"]
+
+
+def test_the_clock_follows_the_topic_of_that_name():
+    """It is known what time it is from its first message on; back is a new run, and is told."""
+    spec, clock = loads(SPEC), SimulatedClock()
+    driver = Driver(spec, clock=clock)
+    messages = MessageFeed(driver, spec.schema, clock=clock)
+    ticks = Topic("/clock", "rosgraph_msgs/msg/Clock", {})
+    assert (messages.has_time, next(messages.topics())) == (False, "/clock")
+
+    def tick(seconds):
+        time = SimpleNamespace(sec=seconds, nanosec=5)
+        messages.take(ticks, SimpleNamespace(clock=time))
+        driver.work()
+
+    tick(1000)
+    assert messages.has_time
+    messages.take(FLOAT, {"data": 2.0})
+    tick(1001)
+    tick(3)
+    messages.take(FLOAT, {"data": 0.5})
+    first, second = driver.close()[""]
+    assert [one.decided for one in first.attempts] == [1000 * 10**9 + 5]
+    assert (first.verdicts["R1"], second.verdicts["R1"]) == ("F", "P")
+
+
+@pytest.mark.process
+def test_robots_of_a_simulator_are_judged_by_its_clock(tmp_path, master):
+    """`use_sim_time` of ROS 1: a deadline of simulated time, whatever the machine needs."""
+    pytest.importorskip("rosbags")
+    environment = {"ROS_MASTER_URI": master, "ROS_IP": "127.0.0.1", "ROS_HOME": str(tmp_path)}
+    told = ["/usr/bin/python3", "-c", "import rospy; rospy.set_param('/use_sim_time', True)"]
+    subprocess.run(told, env={**os.environ, **environment}, check=True, timeout=LONG)  # noqa: S603
+    talker = ["/usr/bin/python3", "-c", SIMULATOR]
+    found = _failures(tmp_path, "ros1:", talker, environment)
+    assert found == [("B1#1", "F"), ("B2#1", "F")]

@@ -121,7 +121,7 @@ def test_engines_are_told_on_demand(write, capsys):
     assert main(["check", path, "--engines"]) == 0
     shown = capsys.readouterr().out
     assert re.search(r"^R1 +python +columns$", shown, re.MULTILINE)
-    why = "columns, python, automaton, prepared: has no automaton (more than 6 clocks)"
+    why = "columns, python, automaton: has no automaton (more than 6 clocks)"
     assert re.search(rf"^R2 +network +network +{re.escape(why)}$", shown, re.MULTILINE)
     assert main(["check", path, "--engines", "--format", "json"]) == 0
     found = json.loads(capsys.readouterr().out)

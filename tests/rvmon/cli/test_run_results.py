@@ -73,6 +73,54 @@ def test_a_run_that_was_ended_goes_on(folder, capsys, monkeypatch, resume):
     assert (folder / "v.csv").read_text() == table
 
 
+def test_shards_are_joined(folder, capsys):
+    """Wherever each was judged; what broke off, and a shard that is missing, is judged here."""
+    recordings = ["good.csv", "bad.csv", "cut.csv", "more.csv", "last.csv"]
+    for copy in recordings[3:]:
+        (folder / copy).write_text((folder / "bad.csv").read_text())
+    words = ["run", "s.rv", *recordings, "--out"]
+    assert main([*words, "whole.csv"]) == 2
+    assert main([*words, "v.csv", "--shard", "1/3"]) == 1
+    assert main([*words, "v.csv", "--shard", "3/3"]) == 2
+    parts = [[row.recording for row in read_results(part)] for part in folder.glob("v.shard-*.csv")]
+    assert sorted(map(set, parts), key=len) == [{"cut.csv"}, {"good.csv", "more.csv"}]
+    (folder / "more.csv").unlink()  # as it is on another machine
+    capsys.readouterr()
+    assert main([*words, "v.csv", "--resume"]) == 2
+    assert "2 of 5 recordings were judged before" in capsys.readouterr().err
+    assert (folder / "v.csv").read_text() == (folder / "whole.csv").read_text()
+    assert not list(folder.glob("*.unfinished"))
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--shard", "1/2"], "name it by --out"),
+        (["--out", "v.csv", "--shard", "3/9"], "there are 2 recordings"),
+    ],
+)
+def test_a_share_of_nothing_is_refused(folder, capsys, words, told):
+    """With what mends it."""
+    assert main(["run", "s.rv", "good.csv", "bad.csv", *words]) == 2
+    assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "1/", "/2"])
+def test_no_share_is_refused(folder, capsys, text):
+    """Before anything is judged."""
+    assert main(["run", "s.rv", "good.csv", "--shard", text]) == 2
+    assert "--shard" in capsys.readouterr().err
+
+
+def test_shards_of_another_specification_are_refused(folder, capsys):
+    """It is told which file."""
+    words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
+    assert main([*words, "--shard", "2/2"]) == 1
+    (folder / "s.rv").write_text(SPEC.replace("1 s", "2 s"))
+    assert main([*words, "--resume"]) == 2
+    assert "v.shard-2-of-2.csv.unfinished" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("option", ["--out", "--junit"])
 def test_what_is_judged_is_not_written_over(folder, capsys, option):
     """By whatever name it is called."""

@@ -6,10 +6,15 @@ import signal
 import subprocess
 import sys
 import threading
+from io import StringIO
 
 import pytest
 
+from rvmon import loads
 from rvmon.cli import main
+from rvmon.cli.watch_output import tables
+from rvmon.live import Driver, SimulatedClock
+from rvmon.report.terminal import Terminal
 
 SPEC = """
 spec door "A door"
@@ -62,6 +67,37 @@ def test_the_view_holds_what_failed(door, capsys):
     assert "D1#1 F ✗" in capsys.readouterr().out
 
 
+def test_of_many_complaints_of_a_kind_few_are_told(door, capsys):
+    """The first ones, and each tenfold."""
+    (door / "a.jsonl").write_text(FAILS + "nonsense\n" * 123)
+    assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
+    told = [line for line in capsys.readouterr().err.splitlines() if "not taken" in line]
+    assert [line.split()[1] for line in told] == ["3", "4", "5", "6", "7", "12", "102"]
+    assert "the 100th of this kind" in told[-1]
+
+
+def test_a_view_of_much_fits_and_begins_with_what_failed():
+    """Robots as well as requirements; what is left out is counted."""
+    text = "spec s\nsignal x : real\nevent e\n" + "".join(
+        f"requirement R{number}\n  upon e\n  then within {100 + number} s x > {number}\n"
+        for number in range(100)
+    )
+    clock = SimulatedClock()
+    driver = Driver(loads(text + "requirement LAST\n  always x < 0\n"), clock=clock)
+    for robot in ("left", "right"):
+        driver.offer({"x": 0.0 if robot == "right" else -1.0, "e": True}, robot=robot)
+    clock.set_ns(1)
+    driver.work()
+    page = StringIO()
+    Terminal(file=page, width=80).print(tables(driver, 22))
+    lines = page.getvalue().splitlines()
+    assert len(lines) <= 22
+    shown = [line.split()[0] for line in lines if line.split()]
+    assert shown[0] == "right"  # it has failed
+    assert shown.index("LAST") < shown.index("R0")
+    assert "… and 96 more requirements: 96 NT" in lines
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [
@@ -71,6 +107,11 @@ def test_the_view_holds_what_failed(door, capsys):
         (["watch", "none.rv", "a.jsonl"], "none.rv"),
         (["watch", "door.rv", "a.jsonl", "--only", "D2"], "D2"),
         (["watch", "door.rv", "a.jsonl", "--map", "sped=x"], "sped"),
+        (["watch", "door.rv", "a.jsonl", "--publish", "v"], "--format json"),
+        (["watch", "door.rv", "mqtt://localhost/x", "--robot", "id"], "first +"),
+        (["watch", "door.rv", "mqtt://localhost/x", "--sim-time"], "/clock"),
+        (["watch", "door.rv", "dds:1", "--robot", "id"], "start one for each"),
+        (["watch", "door.rv", "dds:1", "--time", "t:ms"], "--binding"),
     ],
 )
 def test_wrong_input_is_told(door, capsys, words, why):
@@ -102,6 +143,8 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
             (door / "new.rv").write_text(text)
             os.replace("new.rv", "door.rv")
             assert any(said in line for line in iter(process.stdout.readline, ""))
+        os.replace("door.rv", "gone.rv")
+        assert any("former" in line for line in iter(process.stdout.readline, ""))
         process.stdin.write('{"knock": true, "closed": false}\n')
         process.stdin.flush()
         assert any("D1#1" in line for line in iter(process.stdout.readline, ""))
@@ -110,3 +153,18 @@ def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
     alarm.cancel()
     assert "run 2" in rest
     assert process.returncode == 0
+
+
+@pytest.mark.process
+def test_it_ends_when_nobody_reads_what_it_says(door):
+    """As `head` leaves a pipe, while the robot goes on."""
+    command = [sys.executable, "-m", "rvmon", "watch", "door.rv", "--format", "json"]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen(command, **pipes) as process:  # noqa: S603
+        alarm = threading.Timer(60, process.kill)
+        alarm.start()
+        process.stdout.close()
+        process.stdin.write(b'{"closed": true}\n{"knock": true, "closed": false}\n')
+        process.stdin.flush()
+        assert process.wait(60) == 0
+        alarm.cancel()

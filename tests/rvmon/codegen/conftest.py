@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from tests.tools.gcc import SANITIZED, STRICT
 
 from rvmon.cli import main
 
@@ -77,15 +78,6 @@ def program(request, tmp_path_factory) -> Program:
     changed, more = request.param
     spec.write_text(changed(SPEC.replace('"at work"', "working")))
     with pytest.MonkeyPatch.context() as patch:
-        flags = (
-            "-std=c99",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-pedantic",
-            "-fsanitize=address,undefined",
-            *more,
-        )
-        patch.setattr("rvmon.codegen.c_build.FLAGS", flags)
+        patch.setattr("rvmon.codegen.c_build.FLAGS", (*STRICT, *SANITIZED, *more))
         assert main(["build", str(spec), "-o", str(folder / "watch")]) == 0
     return Program(spec, folder / "watch")

@@ -4,6 +4,7 @@ import json
 import subprocess
 
 import pytest
+from tests.tools.gcc import SANITIZED, STRICT
 
 import rvmon
 from rvmon.cli import main
@@ -112,10 +113,8 @@ def test_a_capacity_that_is_too_small_is_told(tmp_path):
         """
     )
     sources = [f"{made.prefix}.c", *made.units, "main.c"]
-    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
-    check = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
     for small in ("", "-DS_INSTANCES=4", "-DS_ATTEMPTS=4", "-DS_KEYS=4", "-DS_HISTORY=4"):
-        words = ["gcc", *flags, *check, *small.split(), *sources, "-o", "main"]
+        words = ["gcc", *STRICT, *SANITIZED, *small.split(), *sources, "-o", "main"]
         subprocess.run(words, cwd=tmp_path, check=True)  # noqa: S603
         done = subprocess.run([tmp_path / "main"], check=False)  # noqa: S603
         assert done.returncode == bool(small), small

@@ -51,7 +51,7 @@ def test_they_judge_as_tables_do(time, count, monkeypatch):
     monkeypatch.setattr(
         Unit, "meets", lambda unit, t, cone: met.add(found := meets(unit, t, cone)) or found
     )
-    for seed in range(25):
+    for seed in range(10):
         rng = random.Random(f"{time}/{count}/{seed}")
         text, samples = many(rng, time, count)
         spec = rvmon.loads(text)
@@ -64,7 +64,7 @@ def test_they_judge_as_tables_do(time, count, monkeypatch):
 def test_they_judge_as_tables_do_however_deep_blocks_stand(count, deepest, monkeypatch):
     """What depends on one node alone stands within its block, or behind it and asks for it."""
     monkeypatch.setattr(python_leaf_cases, "_DEEPEST", deepest)
-    for seed in range(15):
+    for seed in range(6):
         text, samples = many(random.Random(f"deep/{count}/{seed}"), "held", count)
         spec = rvmon.loads(text)
         assert judged(spec, samples, "python") == judged(spec, samples, "automaton"), text

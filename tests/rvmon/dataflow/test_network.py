@@ -181,6 +181,31 @@ def test_letters_that_decide_nothing_are_but_noted(time, monkeypatch):
     assert (failed.verdict.value, failed.decided) == ("F", 5 * SECOND + SECOND // 100)
 
 
+def test_a_letter_that_stays_is_soon_not_looked_at(monkeypatch):
+    """However many samples say the same, what time brings is worked out once."""
+    grown, original = [], Network.grow
+    monkeypatch.setattr(Network, "grow", lambda *given: grown.append(original(*given)))
+    monitor = spec_of("always (a -> (not b) U[2 s, 10 s] b)").monitor(engine="network")
+    decided = [one for k in range(1200) for one in monitor.step(k / 100, {"a": k == 0, "b": False})]
+    assert [(one.triggered, one.decided) for one in decided] == [(0, 10 * SECOND + 1)]
+    assert len(grown) <= 12
+
+
+def test_time_that_passes_in_one_go_leaves_out_no_failure():
+    """Within a silence each failure is followed by the next attempt, though an older one waits."""
+    owed = "always (a -> (c and F[1 s, 20 s] b) or F[1 s, 3 s] b)"
+    spec = rvmon.loads(f"spec s\nsignal a, b, c : bool\nrequirement R1\n  {owed}\n")
+    begun = [
+        (0, {"a": True, "b": False, "c": True}),
+        (1, {"a": False}),
+        (2, {"a": True, "c": False}),
+    ]
+    found = outcomes(spec, [*begun, (15, {})])
+    assert found == outcomes(spec, [*begun, *((2 + k / 2, {}) for k in range(1, 27))])
+    assert (0, None, "I") in found
+    assert len(found) == 6
+
+
 def test_time_decides_under_another_letter_before_the_next_position():
     """What an unknown occurrence left open is known as soon as another one is told."""
     spec = spec_of("whenever e then F[1 ns, 1 ns] true", "sampled every 4 ns")

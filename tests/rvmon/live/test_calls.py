@@ -1,10 +1,11 @@
 """Calls of functions as events."""
 
 import asyncio
+import threading
 
 import pytest
 
-from rvmon import Verdict, loads
+from rvmon import RvmonError, Verdict, loads
 from rvmon.live import Driver, SimulatedClock, as_event
 
 SPEC = """
@@ -61,3 +62,60 @@ def test_a_coroutine_ends_when_it_was_awaited(driver):
 
     assert asyncio.run(close_gripper(3.0)) == 3.0
     assert _verdict(driver) is Verdict.PASS
+
+
+def test_a_generator_ends_when_it_has_given_all():
+    """Not when it is made, nor where it is left before."""
+    clock = SimulatedClock()
+    driver = Driver(loads(SPEC), clock=clock)
+
+    @as_event(driver, "grip", ended="gripped", payload=lambda width: {"width": width})
+    def close_gripper(width):
+        yield from range(2)
+        return width
+
+    close_gripper(1.0)
+    left = close_gripper(2.0)
+    next(left)
+    left.close()
+    clock.set_ns(1)
+    assert list(close_gripper(3.0)) == [0, 1]
+    clock.set_ns(2)
+    driver.work()
+    status = driver.status()[""]
+    assert (status.counts["R", Verdict.PASS], status.owed["R"], status.samples) == (1, 1, 3)
+
+
+def test_a_monitor_stops_no_call(driver, caplog):
+    """Neither a payload that cannot be made nor one that was closed: both are told."""
+
+    @as_event(driver, "grip", payload=lambda width: {"width": 1 / width})
+    def close_gripper(width):
+        return width
+
+    assert close_gripper(0) == 0
+    assert _verdict(driver) is Verdict.INCONCLUSIVE
+    assert close_gripper(1) == 1
+    assert [record.args[0] for record in caplog.records if record.args] == ["grip", "grip"]
+
+
+def test_what_is_no_function_is_refused(driver):
+    """When it is decorated, with what to do."""
+
+    async def asynchronous():
+        yield 1
+
+    for what in (Verdict, asynchronous, 3):
+        with pytest.raises(RvmonError, match="decorate"):
+            as_event(driver, "grip")(what)
+
+
+def test_calls_of_many_threads_are_all_events(driver):
+    """Whoever calls."""
+    call = as_event(driver, "grip", payload=lambda: {"width": 1.0})(lambda: None)
+    threads = [threading.Thread(target=lambda: [call() for _ in range(100)]) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert driver.waiting == 400

@@ -217,6 +217,17 @@ def test_a_clock_that_goes_back_begins_a_new_run():
     assert door.driver.close()[""][1].verdicts["D2"] is Verdict.PASS
 
 
+def test_a_clock_that_leaps_by_years_begins_a_new_run(caplog):
+    """A machine that has no battery learns what time it is: nothing was owed all that time."""
+    door = Door(DOOR.replace("always speed", "always within 1 s speed"))
+    door.driver.offer({"speed": 3.0, "knock": True})
+    with caplog.at_level(logging.WARNING, "rvmon.live.input"):
+        door.at(1_800_000_000)
+    assert "went on by years" in caplog.text
+    status = door.driver.status()[""]
+    assert (status.run, status.verdicts["D1"], status.verdicts["D2"]) == (2, "I", "I")
+
+
 def test_another_specification_is_taken_up_at_once():
     """The former run ends; what it showed does not count for the new one."""
     door = Door()
@@ -299,11 +310,15 @@ def test_wrong_arguments_are_told_when_it_is_made():
         Door(sources=["sped"])
 
 
-def test_stamps_of_another_epoch_are_refused():
-    """By a clock that began with 0, deadlines of stamps since 1970 would never pass."""
+def test_stamps_of_another_epoch_or_of_the_future_are_refused():
+    """By a clock that began with 0, deadlines of stamps since 1970 would never pass.
+
+    After a stamp of the next hour all others would be late.
+    """
     driver = Driver(loads(DOOR))
-    with pytest.raises(TraceError, match="since_1970"):
-        driver.offer({"speed": 0.0}, t_ns=1_700_000_000 * S)
+    for seconds in (1_700_000_000, 3_600):
+        with pytest.raises(TraceError, match="since_1970"):
+            driver.offer({"speed": 0.0}, t_ns=seconds * S)
 
 
 def test_a_sample_is_values_by_name():

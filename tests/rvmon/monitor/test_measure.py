@@ -35,7 +35,7 @@ from rvmon.spec.checked.specification import (
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.schema import Kind
 
-PAIRS = 120
+PAIRS = 40
 UNARY = (
     *(UnaryOp.NOT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY),
     *(UnaryOp.NEXT, UnaryOp.PREVIOUS),

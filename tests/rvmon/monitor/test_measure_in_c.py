@@ -85,13 +85,13 @@ def test_random_cases_are_measured_alike(time):
     """C gives each attempt the bounds that Python gives it, by samples and by columns."""
     profile = Profile(time=time, captures=False, for_each=False)
     measured = 0
-    for number in range(4):
+    for number in range(2):
         for case in cases_of(f"measured by c {number}", profile, TraceProfile(), 8):
             spec = Spec(case.spec)
             found = WAYS["c"].measure(spec, case)
             assert found is None or found == WAYS["samples"].measure(spec, case), show_case(case)
             measured += found is not None
-    assert measured > 12
+    assert measured > 6
 
 
 @pytest.mark.parametrize("streams", [True, False])

@@ -50,7 +50,7 @@ def close(
     seed: int = 1,
     strategies: Sequence[str] = (),
     budget: Budget = Budget(),
-    jobs: int | None = None,
+    jobs: int | str | None = None,
     progress: Progress | None = None,
 ) -> Closed:
     """Close the holes of a campaign's coverage, beginning with nothing.
@@ -66,7 +66,7 @@ def close(
         seed: everything follows from it.
         strategies: tests are drawn from; default: those that the campaign closes with.
         budget: when to give up.
-        jobs: processes; default: one per core.
+        jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         progress: told how far it is.
 
     Raises:

@@ -41,7 +41,7 @@ def judge_of(
     if compiled.is_beside or compiled.engine(engine) == "network":
         if compiled.windows is None:
             return NetworkJudge(compiled, standing, clerk, captured, **kind)
-        return WindowJudge(*compiled.windows, compiled, standing, clerk, captured, **kind)
+        return WindowJudge(compiled.windows, compiled, standing, clerk, captured, **kind)
     return MachineJudge(compiled, compiled.machine(engine), standing, clerk, captured, **kind)
 
 

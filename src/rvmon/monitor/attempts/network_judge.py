@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from rvmon.automaton.location import FAILED, PASSED
@@ -13,17 +13,21 @@ from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import FOREVER, Network
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.piecewise import Pieces, stamp
-from rvmon.dataflow.ranges import Range, merged
+from rvmon.dataflow.ranges import merged
 from rvmon.dataflow.sweep import Carried
 from rvmon.dataflow.time_decisions import Moment
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
-from rvmon.monitor.attempts.network_letters import Letters, letter_reader
+from rvmon.monitor.attempts.network_letters import Clear, Letters, Noted, journal_of, letter_reader
+from rvmon.monitor.attempts.waiting import learnt, position_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.standing import Standing
 from rvmon.plan.stood import Stood
 from rvmon.runtime.values import NEVER
 from rvmon.trace.sample import Scalar
+
+PATIENCE = 6
+"""So often it is looked before it is worked out what time brings if the letter stays."""
 
 WAITING = PASSED + 1
 """In the place of a location: neither `FAILED` nor `PASSED`.
@@ -47,6 +51,8 @@ class NetworkJudge(AttemptJudge):
 
     STATE = (*AttemptJudge.STATE, "worse", "better", "now", "sleeps", "_letters", "_held")
 
+    leaps = True
+
     def __init__(
         self,
         compiled: CompiledRequirement,
@@ -63,14 +69,16 @@ class NetworkJudge(AttemptJudge):
         self._held: Pieces | None = None
         self._journals: list[Journal | None] = [None, None]
         self._stood: tuple[tuple[int, ...], Stood] | None = None
-        self._bounded_at = -FOREVER
-        """The stamp as of which `due` holds for all that begins then, too."""
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
         """Those that were asked for last, of each network one."""
         self.now = -1 << 64
-        self.sleeps = -NEVER
-        self._vain = 0
-        """How often it was woken in vain since the letter changed."""
+        self.sleeps, self._clear = -NEVER, Clear(compiled.reach, flow.gap)
+        self._bounded_at = -FOREVER
+        """The stamp as of which `sleeps` holds for all that begins then, too."""
+        self._looks = 0
+        """How often it was looked since the letter changed."""
+        self._ahead: list[tuple[bool, Pieces]] | None = None
+        """What time alone makes known of attempts, the letter staying, if that was worked out."""
         self.texts = tuple(text for _, text in self.leaves)
         self._read = letter_reader(self.plan, flow.graph)
 
@@ -106,13 +114,14 @@ class NetworkJudge(AttemptJudge):
         if open_still and self.worse and self._judge(attempt, self.worse, self.better):
             self.attempts.pop()
             self._rest()
-        elif self._bounded_at != self.now:
+        elif self._bounded_at != 2 * t + 1:
             self._rest()
 
     def _begin_network(self) -> None:
         if self.worse is None:
             self.worse = Network(self.plan, self.flow.gap)
             self._letters = None
+            self._clear.forget()
             self._journals = [None, None]
             self.now = -1 << 64
             self.sleeps = -NEVER if self.plan.looks_back else NEVER
@@ -127,6 +136,7 @@ class NetworkJudge(AttemptJudge):
         self.position = t
         if self.worse is not None:
             roused = False
+            self._clear.note(t, letters)
             if letters != self._letters or self.flow.gap is None:
                 self._turn(t, self.worse, letters)
                 roused = any(map(Network.is_roused, self._networks, letters))
@@ -139,7 +149,7 @@ class NetworkJudge(AttemptJudge):
         self._rest()
 
     def _turn(self, t: int, worse: Network, letters: Letters) -> None:
-        self._letters, self._vain = letters, 0
+        self._letters, self._looks, self._ahead = letters, 0, None
         if self.better is None and letters[0] != letters[1]:
             self.better, self._journals[1] = worse.copy(), None
         self._note_doubt()
@@ -165,6 +175,7 @@ class NetworkJudge(AttemptJudge):
     def _look(self, limit: int) -> None:
         """Let time come to a stamp, and hear of the decisions that this brings."""
         if self.now < limit and self.worse is not None:
+            self._looks += 1
             for network in self._networks:
                 wanted = self._first_waiting(better=network is self.better)
                 wanted = limit // 2 if wanted is None else wanted
@@ -197,9 +208,7 @@ class NetworkJudge(AttemptJudge):
         worse, better = self.worse, self.better
         if worse is None:
             return
-        found = list(self._learnt(worse))
-        if better is not None:
-            found += self._learnt(better)
+        found = [one for network in self._networks for one in learnt(self.attempts, network)]
         for start, end in reversed(merged(found) if len(found) > 1 else found):
             asked = self.attempts[start : end + 1]
             kept = [attempt for attempt in asked if not self._judge(attempt, worse, better)]
@@ -207,35 +216,58 @@ class NetworkJudge(AttemptJudge):
 
     def _rest(self) -> None:
         """Forget all if nothing is waited for; set when time alone may make known what is."""
+        self._bounded_at = -FOREVER
         if not self._is_waited_for:
             self.due = NEVER
             if not self.plan.looks_back:
                 self.worse = self.better = self._letters = None
-        elif self.plan.looks_back and self.flow.gap is not None:
-            self._foresee()
+        elif self._looks > PATIENCE:
+            self.due = min((at // 2 for _, at in self._coming()), default=NEVER)
         else:
-            self._bounded_at = self.now
-            if not self.plan.looks_back:
-                self.sleeps = self._bound(Network.soonest_news)
-            if self._vain or self.sleeps <= self.now // 2 + (self.flow.gap or 1):
-                self.due = self._bound(Network.next_news)
-            else:
-                self.due = self.sleeps
+            if self._looks == 1 and not self.plan.looks_back:
+                self.sleeps, self._bounded_at = self._soonest(), self.now
+            # Mostly another letter comes first: it is not worked out what is next.
+            self.due = max((self.now + 1) // 2, self.sleeps)
         self.restless = self.flow.gap is None and self.worse is not None
 
-    def _bound(self, bound_of: Callable[[Network, int], int]) -> int:
-        """The least bound of the networks, for what is waited for in each."""
+    def lent(self) -> Sequence[Noted] | None:
+        """The letters that what is open may depend on; `None`: not all of them are known."""
+        if not self.attempts:
+            return ()
+        return self._clear.since(position_of(self.attempts[0]), self.position)
+
+    def take_back(self, attempts: list[Open], noted: Sequence[Noted], limit: int) -> None:
+        """Go on with attempts that were judged elsewhere.
+
+        Args:
+            attempts: all of which wait.
+            noted: the letters that they may depend on.
+            limit: the stamp that time has come to.
+        """
+        self.attempts, self.better, self._journals = attempts, None, [None, None]
+        self.worse = self._letters = self._stood = self._ahead = None
+        self.now, self.due, self._looks, self._bounded_at = limit, NEVER, 0, -FOREVER
+        if attempts:
+            self._go_on(noted, limit)
+
+    def _go_on(self, noted: Sequence[Noted], limit: int) -> None:
+        """Have a network know what letters tell."""
+        journal = journal_of(self.plan, self.flow.gap, noted, position_of(self.attempts[0]))
+        journal.grow(None, limit)
+        self.worse = journal.after(len(journal)).copy()
+        self._letters = self._read(self.flow.values)
+        self._clear.take(noted)
+        self.sleeps = -NEVER
+        self._rest()
+
+    def _soonest(self) -> int:
+        """An instant before which no network has news of what is waited for in it."""
         found = NEVER
         for network in self._networks:
             first = self._first_waiting(better=network is self.better)
             if first is not None:
-                found = min(found, bound_of(network, first))
+                found = min(found, network.soonest_news(first))
         return found
-
-    def _foresee(self) -> None:
-        """Set when time alone gives an attempt a value in a network, if the letter stays."""
-        self.due = min((at // 2 for _, at in self._coming()), default=NEVER)
-        self._bounded_at = -FOREVER
 
     @property
     def stood(self) -> tuple[tuple[int, ...], Stood]:
@@ -259,30 +291,6 @@ class NetworkJudge(AttemptJudge):
         return any(
             WAITING in (attempt.token[0], (attempt.better or _NONE)[0]) for attempt in self.attempts
         )
-
-    def _learnt(self, network: Network) -> Iterator[Range]:
-        """The attempts, by first and last index, whose value became known last."""
-        attempts, gap = self.attempts, network.positions.gap
-        if not attempts:
-            return
-        oldest, youngest = (position_of(attempts[end]) // gap for end in (0, -1))
-        for pieces in network.news[-2:]:
-            start, position = 0, oldest
-            for left, right, _, _ in pieces:
-                if right < position:
-                    continue
-                if left > youngest:
-                    break
-                if left > position:
-                    start = bisect_left(attempts, left * gap, start, key=position_of)
-                    position = position_of(attempts[start]) // gap
-                    if right < position:
-                        continue
-                end = bisect_right(attempts, right * gap, start, key=position_of)
-                yield start, end - 1
-                if end == len(attempts):
-                    break
-                start, position = end, position_of(attempts[end]) // gap
 
     def _judge(self, attempt: Open, worse: Network, better: Network | None) -> bool:
         """Look at one attempt; returns whether it was decided."""
@@ -316,18 +324,28 @@ class NetworkJudge(AttemptJudge):
             Whether that decides the attempt, and the stamp; of attempts that one piece of what
             comes speaks of, those of the first one, which is the soonest.
         """
-        attempts = self.attempts
+        if self._ahead is None:
+            self._ahead = list(self._foreseen())
+        attempts, gap, now = self.attempts, self.flow.gap or 1, self.now
+        for decides, pieces in self._ahead:
+            for left, right, at, slope in pieces:
+                if slope:
+                    left = max(left, (now - at) // slope + 1)
+                elif at <= now:
+                    continue
+                index = bisect_left(attempts, left * gap, key=position_of)
+                if index < len(attempts):
+                    t = position_of(attempts[index]) // gap
+                    if t <= right:
+                        yield decides, at + slope * t
+
+    def _foreseen(self) -> Iterator[tuple[bool, Pieces]]:
+        """What time alone makes known of positions, and whether that decides their attempts."""
         for network in self._networks:
             ahead = network.copy()
             ahead.grow(FOREVER)
-            gap = network.positions.gap
             for value, pieces in zip((True, False), ahead.news[-2:], strict=True):
-                for left, right, at, slope in pieces:
-                    index = bisect_left(attempts, left * gap, key=position_of)
-                    if index < len(attempts):
-                        t = position_of(attempts[index]) // gap
-                        if t <= right:
-                            yield self._decides(network, value), at + slope * t
+                yield self._decides(network, value), pieces
 
     def _decides(self, network: Network, value: bool) -> bool:
         """Whether a value in a network decides an attempt."""
@@ -342,19 +360,8 @@ class NetworkJudge(AttemptJudge):
         self._wait(2 * t)
 
     def _wait(self, limit: int) -> None:
-        count = len(self.attempts)
         self._look(limit)
         self._rest()
-        if count == len(self.attempts) and self.due < NEVER:
-            # Woken in vain, it sees to it that this does not go on while nothing changes.
-            self._vain += 1
-            if self._vain > 1 or self.plan.looks_back:
-                self._foresee()
-            else:
-                self.due = self._bound(Network.next_news)
-        if limit % 2 == 0 and self._is_waited_for and not self.plan.looks_back:
-            # What is next was worked out without the letter of the instant that time has come to.
-            self.due = min(self.due, max(self.sleeps, limit // 2 + 1))
 
     @property
     def next_due(self) -> int:
@@ -388,11 +395,6 @@ class NetworkJudge(AttemptJudge):
         if self._held is None:
             self._held = held_at_end(self.worse, end, reached)
         return stamp(self._held, position_of(attempt) // self.worse.positions.gap) is not None
-
-
-def position_of(attempt: Open) -> int:
-    """The instant of the position whose value is an attempt's."""
-    return attempt.token[1][0]
 
 
 _NONE: Token = (FAILED, ())

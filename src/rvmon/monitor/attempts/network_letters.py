@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from operator import itemgetter
 
+from rvmon.dataflow.journal import Journal
+from rvmon.dataflow.network import Network
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.core import Constant, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
@@ -12,6 +15,9 @@ from rvmon.plan.graph import Graph
 
 Letters = tuple[Sequence[bool], Sequence[bool]]
 """The truth of a plan's leaves, the unknown taken for the worse and for the better."""
+
+Noted = tuple[int, Sequence[bool]]
+"""An instant and the letter from there on."""
 
 _MOST = 256
 """So many letters are kept."""
@@ -63,3 +69,77 @@ def letter_reader(plan: NetworkPlan, graph: Graph) -> Callable[[Sequence[int]], 
         return found
 
     return read
+
+
+_LEAST = 64
+"""So many letters are noted at least before it is looked which of them still matter."""
+
+
+class Clear:
+    """The letters since nothing is unknown, as far as they may matter.
+
+    Args:
+        reach: ticks after which a position does not matter any more; `None`: none are noted.
+        gap: ticks between two positions; `None` if only samples are positions.
+    """
+
+    def __init__(self, reach: int | None, gap: int | None) -> None:
+        self._reach, self._gap = reach, gap
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self.noted: list[Noted] = []
+        self._most = _LEAST
+
+    def take(self, noted: Sequence[Noted]) -> None:
+        """Go on behind letters."""
+        self.noted = [*noted]
+        self._most = _LEAST + 2 * len(noted)
+
+    def note(self, t: int, letters: Letters) -> None:
+        """Take the letters at a position."""
+        if letters[0] != letters[1] or self._reach is None:
+            self.noted.clear()
+            return
+        noted = self.noted
+        if not noted or noted[-1][1] != letters[0] or self._gap is None:
+            noted.append((t, letters[0]))
+        if len(noted) > self._most:
+            self.take(self._from(t - self._reach))
+
+    def is_over(self, t: int) -> bool:
+        """Whether at `t` all that was unknown is too long ago to matter."""
+        return self._reach is not None and bool(self.noted) and t - self.noted[0][0] > self._reach
+
+    def since(self, first: int, t: int) -> Sequence[Noted] | None:
+        """What positions from `first` on may depend on at `t`; `None`: not all of it is known."""
+        if self._reach is None or not self.noted:
+            return None
+        start = max(first, t - self._reach)
+        return self._from(start) if self.noted[0][0] <= start else None
+
+    def _from(self, t: int) -> list[Noted]:
+        """The letters from `t` on; where all instants are positions, the first one at `t`."""
+        noted = self.noted
+        count = max(bisect_right(noted, t, key=itemgetter(0)), 1)
+        at, letter = noted[count - 1]
+        return [(at if self._gap is None else max(t, at), letter), *noted[count:]]
+
+
+def journal_of(
+    plan: NetworkPlan, gap: int | None, noted: Sequence[Noted], first: int | None
+) -> Journal:
+    """A journal of the letters that attempts may depend on.
+
+    Args:
+        plan: of the network.
+        gap: ticks between two positions; `None` if only samples are positions.
+        noted: the letters.
+        first: the instant of the first position that is waited for; `None`: none is.
+    """
+    t, letter = noted[0]
+    network = Network(plan, gap)
+    if first is not None and first < t:
+        network.begin_at(t // (gap or 1), first // (gap or 1), letter)
+    return Journal(network, noted)

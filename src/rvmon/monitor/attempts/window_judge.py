@@ -13,14 +13,12 @@ from typing import Any
 
 from rvmon.dataflow.chain import Windows
 from rvmon.dataflow.journal import Journal
-from rvmon.dataflow.network import FOREVER, Network
+from rvmon.dataflow.network import Network
 from rvmon.monitor.attempts.attempt_judge import Open
-from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge, position_of
-from rvmon.monitor.attempts.network_letters import Letters
+from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge
+from rvmon.monitor.attempts.network_letters import Letters, Noted, journal_of
+from rvmon.monitor.attempts.waiting import position_of
 from rvmon.runtime.values import NEVER
-
-Noted = tuple[int, Sequence[bool]]
-"""An instant and the letter from there on."""
 
 
 class WindowJudge(NetworkJudge):
@@ -28,17 +26,14 @@ class WindowJudge(NetworkJudge):
 
     Args:
         windows: the class of that code.
-        reach: ticks after which what was unknown does not matter to it any more.
         *args: as for `NetworkJudge`.
         **kind: the same.
     """
 
-    def __init__(self, windows: type[Windows], reach: int, *args: Any, **kind: Any) -> None:
-        self._made, self._reach = windows, reach
+    def __init__(self, windows: type[Windows], *args: Any, **kind: Any) -> None:
+        self._made = windows
         self._network: Network | None = None
         self._windows: Windows | None = None
-        self._clear: list[Noted] = []
-        """What was noted, while networks judge, since nothing is unknown."""
         self._torn = False
         """Whether the code is at work; else, if an interrupt left it with a part of a position."""
         super().__init__(*args, **kind)
@@ -70,8 +65,8 @@ class WindowJudge(NetworkJudge):
             self._mend()
         if self._windows is None and not (self._network is None and self._is_waited_for):
             super().visit(t)
-            if self._network is not None and self._letters is not None:
-                self._note_clear(t, self._letters)
+            if self._network is not None and self._clear.is_over(t):
+                self._use_windows(t)
             return
         letters = self._read(self.flow.values)
         if letters[0] == letters[1]:
@@ -114,23 +109,36 @@ class WindowJudge(NetworkJudge):
 
     def _journal_of(self, noted: Sequence[Noted]) -> Journal:
         """A journal that begins with what may still be asked for."""
-        gap, (t, letter) = self.flow.gap or 1, noted[0]
-        network = Network(self.plan, self.flow.gap)
-        first = self._first_waiting(better=False)
-        if first is not None and first < t:
-            network.begin_at(t // gap, first // gap, letter)
-        return Journal(network, noted)
+        return journal_of(self.plan, self.flow.gap, noted, self._first_waiting(better=False))
+
+    def lent(self) -> Sequence[Noted] | None:
+        """See `NetworkJudge`."""
+        windows, journal = self._windows, self._journals[0]
+        if not self.attempts or self._torn or windows is None or journal is None:
+            return None if self._torn else super().lent()
+        gap = self.flow.gap or 1
+        return journal.noted_since(windows.forget(self.position // gap) * gap)
+
+    def take_back(self, attempts: list[Open], noted: Sequence[Noted], limit: int) -> None:
+        """See `NetworkJudge`."""
+        self._windows, self._torn, self.restless = None, False, False
+        super().take_back(attempts, noted, limit)
+
+    def _go_on(self, noted: Sequence[Noted], limit: int) -> None:
+        self._begin_windows(noted)
+        self._letters = self._read(self.flow.values)
+        self._look(limit)
 
     def _fall_back(self) -> None:
         """Have networks judge what is open."""
-        self._clear = []
+        self._clear.forget()
         if self._windows is None:
             super()._begin_network()
             return
         network = self.worse
         self._network, self._windows = network and network.copy(), None
         self._journals = [None, None]
-        self._bounded_at = -FOREVER
+        self._ahead = None
 
     def _mend(self) -> None:
         """Go on by networks behind an interrupt: those are told of whole positions."""
@@ -138,24 +146,17 @@ class WindowJudge(NetworkJudge):
             self._fall_back()
         self._torn = False
 
-    def _note_clear(self, t: int, letters: Letters) -> None:
+    def _use_windows(self, t: int) -> None:
         """Go back to generated code once all that was unknown is too long ago to matter.
 
         What is known of all positions before then leaves an attempt open for good, or only leads on
         to them.
         """
-        clear = self._clear
-        if letters[0] != letters[1]:
-            clear.clear()
-            return
-        if not clear or clear[-1][1] != letters[0] or self.flow.gap is None:
-            clear.append((t, letters[0]))
-        if t - clear[0][0] <= self._reach:
-            return
-        self._clear = []
         if not any(one.better is not None and _waits(one) for one in self.attempts):
+            noted = self._clear.noted
+            self._clear.forget()
             self._network = self.better = None
-            self._begin_windows(clear)
+            self._begin_windows(noted)
             self._look(2 * t + 1)
 
     def _join(self, attempt: Open, t: int) -> None:

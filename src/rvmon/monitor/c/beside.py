@@ -7,20 +7,19 @@ the state back: so nobody can tell the two apart but by the time they take.
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.c_online import NOT_YET, OnlineLibrary
+from rvmon.codegen.c_online import OnlineLibrary
 from rvmon.errors import OverlapError
 from rvmon.monitor.c.exchange import Exchange
+from rvmon.monitor.c.noted_reasons import NotedReasons
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.generated import Forms, GeneratedMonitor
 from rvmon.monitor.online.one_call import overlap
-from rvmon.monitor.records.deferred_reasons import DeferredReasons
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.plan import Plan
 from rvmon.plan.planning import plan_of
@@ -47,19 +46,6 @@ def plan_beside(plan: Plan) -> Plan:
     return plan_of(plan.spec, known)
 
 
-class _NotedReasons(DeferredReasons):
-    """Tells of decisions of compiled C, from the numbers that it noted."""
-
-    def of_words(self, attempt: Attempt, words: bytes) -> Mapping[str, Any]:
-        """See `DeferredReasons.details`; `note_decision` of `beside.c.in` has the order."""
-        seen, t, letter, position, location, clocks, *rest = array("q", words)
-        split = clocks + len(self.leaves) + 2 * len(self.places)
-        until = (None if one == NOT_YET else one for one in rest[split:])
-        before = (location, tuple(rest[:clocks]))
-        noted = (seen, t, before, letter, letter, position, *rest[clocks:split], *until)
-        return self._details(attempt, noted)
-
-
 @dataclass(frozen=True, slots=True)
 class Beside:
     """What monitors of one choice of requirements need of compiled C.
@@ -82,8 +68,8 @@ def beside(forms: Forms, library: OnlineLibrary) -> Beside:
         forms: what was generated.
         library: compiled of its `plan_beside`.
     """
-    reasons = [_NotedReasons(one, forms.plan, Ledger()) for one in forms.requirements]
-    return Beside(library, Exchange(forms, library), tuple(one.of_words for one in reasons))
+    details = [NotedReasons(one, forms.plan, Ledger()).details for one in forms.requirements]
+    return Beside(library, Exchange(forms, library), tuple(details))
 
 
 class LendingMonitor(GeneratedMonitor):
@@ -229,9 +215,9 @@ class LendingMonitor(GeneratedMonitor):
         self._have_back()
         return super()._put_away()
 
-    def _open(self) -> Sequence[Attempt]:
+    def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
         self._have_back()
-        return super()._open()
+        return super()._owed(most)
 
     def _next_due(self) -> int | None:
         self._have_back()

@@ -65,6 +65,7 @@ class Exchange:
             if state is not rule.unborn
         }
         self._unborn = [index[rule.unborn] for rule in plan.rules if rule.unborn is not None]
+        self._is_clocked = plan.gap not in (None, 1)
         self._texts = {number: text for text, number in names.labels.items()}
 
     # Lending.
@@ -82,18 +83,23 @@ class Exchange:
             return None
         if not self._is_known(unit) or not all(map(is_plain, unit.rules)):
             return None
-        if unit.gathered:
+        if unit.gathered and not self._is_clocked:
             unit.leave()  # what nobody reads has occurred
         times = (max(last, reached - 1), reached, last)
         try:
-            return array("q", self._words(unit, evaluators.counts, times)).tobytes()
+            return array("q", self._words(unit, evaluators.numbered, times)).tobytes()
         except OverflowError:  # no instant of a run, but of a snapshot that was forged
             return None
 
     def _is_known(self, unit: Unit) -> bool:
         """Whether all that matters is known, and will be if all that comes is."""
         v, w = unit.v, unit.w
-        if unit.origin is None or unit.dirty or unit.news or unit.looking:
+        if unit.origin is None or unit.news or unit.looking:
+            return False
+        if self._is_clocked:
+            if UNKNOWN in unit.o or UNKNOWN in unit.c.values():
+                return False
+        elif unit.dirty:
             return False
         if any(v[place] == UNKNOWN for place in self._asked):
             return False
@@ -161,8 +167,35 @@ class Exchange:
             one = unit.marked[place]
             yield from (int(one.left), int(one.right), int(one.growing), len(one.runs))
             yield from (bounded(bound) for stretch in one.runs for bound in stretch)
+        if self._is_clocked:
+            yield from self._awaited_words(unit)
         for rule, count in zip(unit.rules, counts, strict=False):
             yield from rule_words(rule, count)
+
+    def _awaited_words(self, unit: Unit) -> Iterator[int]:
+        """What samples brought that no position has seen yet."""
+        plan = self._plan
+        yield from (int(unit.gathered), bounded(unit.awaited))
+        # Which nodes are parts of which is not the same: if one is to be worked out, all are.
+        yield from [int(unit.dirty != 0)] * group_count(plan)
+        yield from (int(name in unit.u) for name in (*plan.signals, *plan.events))
+        yield from (unit.c.get(signal, FALSE) for signal in range(len(plan.signals)))
+        yield from unit.o
+
+    def _take_awaited(self, unit: Unit, words: Iterator[int], last: int) -> int:
+        """Go on with that; returns the position at which it will show."""
+        plan, gap = self._plan, unit.GAP or 1
+        unit.gathered = bool(next(words))
+        next(words)
+        soiled = [next(words) for _ in range(group_count(plan))]
+        unit.dirty = unit.KEPT if any(soiled) else 0
+        unit.u = {name for name in (*plan.signals, *plan.events) if next(words)}
+        changed = [next(words) for _ in plan.signals]
+        unit.c = {signal: truth for signal, truth in enumerate(changed) if truth}
+        unit.o[:] = [next(words) for _ in plan.events]
+        unit.p = [[{}] if truth == TRUE else [] for truth in unit.o]
+        awaited = -(-last // gap) * gap
+        return awaited if awaited > unit.position else NEVER
 
     def _remembering(self, kind: Memory) -> Iterator[tuple[int, State]]:
         """The nodes that remember something of a kind; their places in Python's plan."""
@@ -197,7 +230,8 @@ class Exchange:
         unit = evaluators.unit
         words = iter(array("q", state))
         taken, _, unit.position, unit.before = (next(words) for _ in range(4))
-        _, reached, _, _ = (next(words) for _ in range(4))
+        after, reached, last, _ = (next(words) for _ in range(4))
+        limit = 2 * reached + (after == reached)
         v, since, until = unit.v, unit.since, unit.until
         for place in self._places:
             truth = next(words)
@@ -210,14 +244,17 @@ class Exchange:
         self._set_timers(unit, [instant(next(words)) for _ in self._timed])
         self._take_values(unit, words)
         self._take_memories(unit, words)
+        awaited = self._take_awaited(unit, words, last) if self._is_clocked else NEVER
         for place, state_ in self._rest:
             self._see(unit, place, state_)
         unit.fading = sum(
             1 << place for place in self._places if v[place] and unit.momentary >> place & 1
         )
         for index, rule in enumerate(unit.rules[: len(self._plan.rules)]):
-            evaluators.counts[index] = take_rule(rule, words, reached)
+            evaluators.number_from(index, take_rule(rule, words, reached, limit))
         unit.resume()
+        unit.awaited = awaited
+        unit.set_alarm()
         return taken
 
     def _set_timers(self, unit: Unit, wakes: Sequence[int]) -> None:

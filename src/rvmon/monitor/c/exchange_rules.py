@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from typing import Any
 
 from rvmon.codegen.c_online import NEVER as C_NEVER
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import Open
+from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge
+from rvmon.monitor.attempts.network_letters import Noted
+from rvmon.monitor.online.unit_clerks import reopened
 from rvmon.runtime.bulk import BulkRule, Run, packed, unpacked
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.solo import SoloRule
@@ -25,22 +29,28 @@ def instant(word: int) -> int:
     return NEVER if word == C_NEVER else word
 
 
+def signed(word: int) -> int:
+    """A word of 64 bits, as it stands among numbers that have a sign."""
+    return word - (1 << 64) if word >> 63 else word
+
+
 def is_plain(rule: Rule) -> bool:
     """Whether no attempt of a rule is in doubt, or will be."""
     if rule.hidden:
         return not (rule.attempts or rule.running or rule.watches or rule.before == UNKNOWN)
     if rule.clouded or rule.looking or rule.before == UNKNOWN:
         return False
+    if any(
+        not one.sure or one.clouded or one.void or one.better or one.doubt for one in rule.attempts
+    ):
+        return False
+    tokens = [one.token for one in rule.attempts]
+    if isinstance(rule, NetworkJudge):
+        return rule.lent() is not None and all(token[0] == WAITING for token in tokens)
     cuts = rule.machine.cuts_of
     return 0 <= rule.letter < len(rule.machine.class_of) and all(
-        one.sure
-        and not one.clouded
-        and not one.void
-        and one.better is None
-        and one.doubt is None
-        and PASSED < one.token[0] < len(cuts)
-        and len(one.token[1]) == len(cuts[one.token[0]])
-        for one in rule.attempts
+        PASSED < location < len(cuts) and len(anchors) == len(cuts[location])
+        for location, anchors in tokens
     )
 
 
@@ -54,11 +64,33 @@ def rule_words(rule: Rule, count: int) -> Iterator[int]:
         location, anchors = one.token
         yield from (one.triggered, one.number, location, packed(one.seen))
         yield int(one.triggered == rule.current)
-        yield from anchors
+        if not isinstance(rule, NetworkJudge):
+            yield from anchors
+    if isinstance(rule, NetworkJudge):
+        letters = rule.lent() or ()
+        yield len(letters)
+        for t, letter in letters:
+            yield from (t, signed(sum(true << leaf for leaf, true in enumerate(letter))))
 
 
-def take_rule(rule: Rule, words: Iterator[int], reached: int) -> int:
-    """Have a rule go on; returns the number of its last attempt."""
+def letters_of(words: Iterable[int], leaves: int) -> list[Noted]:
+    """The letters that were noted: of each its instant, then a bit for each leaf."""
+    each = iter(words)
+    return [
+        (t, tuple([bool(word >> leaf & 1) for leaf in range(leaves)]))
+        for t, word in zip(each, each, strict=True)
+    ]
+
+
+def take_rule(rule: Rule, words: Iterator[int], reached: int, limit: int) -> int:
+    """Have a rule go on; returns the number of its last attempt.
+
+    Args:
+        rule: as it was when its state was lent.
+        words: as `rule_words` has them.
+        reached: the instant that time has come to.
+        limit: the stamp of that, by which one knows whether its letter is known.
+    """
     before, running, count, due, restless = (next(words) for _ in range(5))
     slides, position, letter, failed_at, size = (next(words) for _ in range(5))
     rule.before, rule.running = before, bool(running)
@@ -69,10 +101,20 @@ def take_rule(rule: Rule, words: Iterator[int], reached: int) -> int:
     found = []
     for _ in range(size):
         triggered, number, location, seen, is_current = (next(words) for _ in range(5))
-        anchors = tuple([next(words) for _ in rule.machine.cuts_of[location]])
+        clocks = () if isinstance(rule, NetworkJudge) else rule.machine.cuts_of[location]
+        anchors = tuple([next(words) for _ in clocks])
         if is_current:
             rule.current = triggered
         found.append((triggered, number, (location, anchors), seen))
+    if isinstance(rule, NetworkJudge):
+        leaves, plan = len(rule.leaves), rule.plan
+        own = [
+            reopened(number, t, (WAITING, (t,)), unpacked(seen, leaves))
+            for t, number, _, seen in found
+        ]
+        noted = islice(words, 2 * next(words))
+        rule.take_back(own, letters_of(noted, len(plan.leaves)), limit)
+        return count
     rule.due, rule.restless = (instant(due), bool(restless)) if found else (NEVER, False)
     # The compiled monitor asks some attempts sooner than has to be.
     if rule.gap is None or isinstance(rule, BulkRule):

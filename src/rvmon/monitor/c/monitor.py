@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -172,9 +173,10 @@ class CompiledMonitor(Monitor):
             "a compiled monitor cannot be put away: use the engine `auto` for snapshots"
         )
 
-    def _open(self) -> Sequence[Attempt]:
-        """See `Monitor.open`; without deadlines and forecasts."""
-        return [] if self._report is not None else self._core.open()
+    def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
+        """See `Monitor.owed`; without deadlines and forecasts."""
+        found = [] if self._report is not None else self._core.open()
+        return Counter(one.requirement for one in found), found[:most]
 
     def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:

@@ -12,7 +12,7 @@ from rvmon.codegen.c_batch import batch_build
 from rvmon.codegen.c_build import built
 from rvmon.codegen.c_online import online_build
 from rvmon.errors import RvmonError
-from rvmon.monitor.c.prepared import prepare_beside
+from rvmon.monitor.c.prepared import prepare_beside, prepare_measuring
 from rvmon.monitor.c.program import program_of
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.readers.blocks import NotPlainError
@@ -27,7 +27,7 @@ class Prepared:
 
     Attributes:
         use: `auto`: the engine that takes it in streams; `streams`, `columns`, or `short files`:
-            what the engine `c` judges by it.
+            what the engine `c` judges by it; `robustness`: what both measure by it.
         path: of the file.
         size: bytes.
         seconds: that it took, few if it was there.
@@ -39,11 +39,14 @@ class Prepared:
     seconds: float
 
 
-USES = ("auto", "streams", "columns", "short files")
+USES = ("auto", "streams", "columns", "short files", "robustness")
 
 
 def prepare(
-    compiled: CompiledSpec, only: Sequence[str] | None, ready: Callable[[Prepared], object]
+    compiled: CompiledSpec,
+    only: Sequence[str] | None,
+    ready: Callable[[Prepared], object],
+    robustness: bool = False,
 ) -> tuple[Prepared, ...]:
     """Compile what is not in the cache.
 
@@ -51,16 +54,18 @@ def prepare(
         compiled: the specification.
         only: ids of the requirements; `None`: all.
         ready: told each file when it is there.
+        robustness: whether that will be measured as well.
 
     Raises:
         RvmonError: there is no compiler or no cache, or a requirement is beyond generated code.
     """
-    plan = plan_alone(compiled, only)
+    plan, chosen = plan_alone(compiled, only), compiled.chosen(only)
     makers: tuple[Callable[[], Path | None], ...] = (
-        lambda: prepare_beside(compiled, compiled.chosen(only)),
+        lambda: prepare_beside(compiled, chosen),
         lambda: built(online_build(plan)),
         lambda: built(batch_build(plan)),
         lambda: program_of(compiled, only),
+        lambda: prepare_measuring(compiled, chosen) if robustness else None,
     )
     found: list[Prepared] = []
     for use, make in zip(USES, makers, strict=True):

@@ -8,7 +8,7 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.errors import UnknownNameError
 from rvmon.formula.core import Literal
 from rvmon.formula.state import State
-from rvmon.monitor.compiled.refusal import of_c, of_tables, refuse
+from rvmon.monitor.compiled.refusal import of_c, of_measured_c, of_tables, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan, PlannedRule
@@ -106,6 +106,9 @@ def plan_alone(
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     chosen = compiled.chosen(ids)
-    refuse(chosen, of_c, "generated code")
+    if measured:
+        refuse(chosen, of_measured_c, "compiled C, which measures,")
+    else:
+        refuse(chosen, of_c, "generated code")
     rules = [_rule(one, explained=False, measured=measured) for one in chosen]
     return plan_in_units(compiled.checked, rules)

@@ -22,6 +22,7 @@ from rvmon.spec.checked.formula import (
     ProbeAtom,
     SignalValue,
 )
+from rvmon.trace.schema import Kind
 
 if TYPE_CHECKING:
     from rvmon.formula.state import Leaf, State
@@ -69,8 +70,13 @@ MOST_GENERATED = 2000
 _MOST_LEAVES = 39
 """So many truth values fit into a number of 64 bits."""
 
+_MOST_BITS = 64
+"""So many of them stand in a letter that is noted."""
+
 _MOST_STRETCHES = 64
 """So many stretches of time a past operator of compiled code remembers."""
+
+_MANY = "remembers more than 60 stretches of time"
 
 _MODERATE = 1e50
 """Sums and a few products of numbers up to this magnitude are finite."""
@@ -171,16 +177,32 @@ def of_measured_c(one: CompiledRequirement) -> Refusal | None:
 
 def of_prepared(one: CompiledRequirement) -> Refusal | None:
     """What `auto` does not have compiled C judge, be that prepared: Python does all of it."""
-    generated = of_generated(one)
+    generated = _of_captured(one) if one.automaton is None else of_generated(one)
     reason = _beyond_prepared(one) if generated is None else generated.reason
     return Refusal(reason, _AUTO, "python") if reason else None
 
 
+def of_prepared_margins(one: CompiledRequirement) -> Refusal | None:
+    """What `auto` does not have compiled C measure, be that prepared."""
+    refusal = of_measured_c(one)
+    kinds = {one.spec.signals[name].type.kind for name in one.reads & {*one.spec.signals}}
+    reason = ""
+    if Kind.INT in kinds:  # C has doubles alone
+        reason = "reads whole numbers"
+    elif any(map(_keeps_many, one.shared_graph.nodes)):
+        reason = _MANY
+    return refusal or (Refusal(reason, _AUTO, "python") if reason else None)
+
+
 def _beyond_prepared(one: CompiledRequirement) -> str:
+    if one.automaton is None and one.reach is None:
+        return f"has no automaton ({one.refusal}), nor bounds within what `always` demands"
+    if len(one.network_plan.leaves) > _MOST_BITS and one.automaton is None:
+        return f"tells more than {_MOST_BITS} propositions apart"
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
-    if one.gap not in (None, 1):
-        return "is clocked (`sampled every`)"
+    if one.gap not in (None, 1) and one.single_payloads:
+        return "has a clock (`sampled every`) and reads payloads"
     if len(one.leaves) > _MOST_LEAVES:
         return f"reads more than {_MOST_LEAVES} propositions"
     obligation = one.obligation
@@ -191,7 +213,7 @@ def _beyond_prepared(one: CompiledRequirement) -> str:
     if _may_be_unknown(known, asked):
         return "compares what may be unknown though all signals are known"
     if any(map(_keeps_many, known.nodes)):
-        return "remembers more than 60 stretches of time"
+        return _MANY
     hidden = one.hidden
     if (hidden is not None and hidden.network_plan.looks_back) or any(map(_remembers, others)):
         return "remembers what it needs for attempts in doubt only"

@@ -17,7 +17,7 @@ from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.codegen.python_windows import windows_class
-from rvmon.dataflow.chain import Windows, chain_of
+from rvmon.dataflow.chain import Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.soonest_news import delay_of
@@ -224,12 +224,15 @@ class CompiledRequirement:
         return plan_of(self.obligation.owed, self.gap)
 
     @cached_property
-    def windows(self) -> tuple[type[Windows], int] | None:
-        """What follows its network's windows, and their reach; `None` if they are no chain."""
+    def windows(self) -> type[Windows] | None:
+        """What follows its network's windows; `None` if they are no chain."""
         chain = None if self.is_beside else chain_of(self.network_plan, self.gap)
-        if chain is None:
-            return None
-        return windows_class(self.network_plan, chain, self.gap), chain.reach
+        return None if chain is None else windows_class(self.network_plan, chain, self.gap)
+
+    @cached_property
+    def reach(self) -> int | None:
+        """See `reach_of`, of its network."""
+        return reach_of(self.network_plan)
 
     @cached_property
     def measured_plan(self) -> NetworkPlan:

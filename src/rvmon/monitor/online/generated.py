@@ -173,6 +173,22 @@ class GeneratedEvaluators(Evaluators):
             return rule
         return self._clerks[rule.index].judge_now(rule)
 
+    @property
+    def numbered(self) -> Sequence[int]:
+        """Per requirement, the number of its last attempt."""
+        pairs = zip(self._clerks, self.unit.rules, self.counts, strict=False)
+        return [
+            self.ledger.count_of(clerk.id) if isinstance(rule, AttemptJudge) else count
+            for clerk, rule, count in pairs
+        ]
+
+    def number_from(self, index: int, count: int) -> None:
+        """Go on behind the last attempt of a requirement, which was numbered elsewhere."""
+        if isinstance(self.unit.rules[index], AttemptJudge):
+            self.ledger.count_to(self._clerks[index].id, count)
+        else:
+            self.counts[index] = count
+
     def take_along(self, t: int) -> None:
         """See `Evaluators`."""
         for rule in self.unit.rules:

@@ -16,6 +16,7 @@ from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.listeners import Callback, Listeners
 from rvmon.monitor.online.one_call import OneCall
 from rvmon.monitor.online.options import Options
+from rvmon.monitor.online.owed import owed_now
 from rvmon.monitor.online.retention import Kept
 from rvmon.monitor.online.snapshot import snapshot
 from rvmon.monitor.online.torn import capped, not_passed
@@ -373,19 +374,18 @@ class Monitor:
     @property
     def open(self) -> Sequence[Attempt]:
         """The attempts that are undecided now."""
-        return self.one_call(self._open)
+        return self.owed()[1]
 
-    def _open(self) -> Sequence[Attempt]:
+    def owed(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
+        """How many attempts of each requirement are open, and `open` or the oldest of it."""
+        return self.one_call(self._owed, most)
+
+    def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
         if self._reached is None:
-            return []
+            return {}, []
         known = self._reached == self._last
-        now = 2 * self._reached + known
         self._evaluators.take_along(self._reached - (not known))
-        return [
-            self._ledger.open_record(judge, attempt, now)
-            for judge in self._evaluators.judges
-            for attempt in judge.attempts
-        ] + [*self._ledger.void_records]
+        return owed_now(self._evaluators, self._ledger, 2 * self._reached + known, most)
 
     @property
     def next_due(self) -> int | None:

@@ -148,10 +148,7 @@ class UnitClerk(DeferredReasons):
         self, _: Rule, number: int, triggered: int, token: Token, seen: tuple[int, ...] | int
     ) -> Open:
         """An attempt that was moved together with others, by itself."""
-        attempt = Open(triggered, token, self.unpacked(seen))
-        attempt.number = number
-        attempt.sure = True
-        return attempt
+        return reopened(number, triggered, token, self.unpacked(seen))
 
     def parted(self, rule: Rule, attempt: Open, apart: bool) -> None:
         """Hear that unknown input made the two runs of an attempt part, or that they met."""
@@ -204,6 +201,14 @@ class UnitClerk(DeferredReasons):
             self.id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
         )
         self._tell((decided, self._rank, number, record))
+
+
+def reopened(number: int, triggered: int, token: Token, seen: tuple[int, ...]) -> Open:
+    """An attempt that was no object for a while, and is sure."""
+    attempt = Open(triggered, token, seen)
+    attempt.number = number
+    attempt.sure = True
+    return attempt
 
 
 def _picking(places: tuple[int, ...]) -> Pick:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -29,6 +29,7 @@ class DeferredReasons:
     Attributes:
         leaves: the nodes of the plan that it reads of the input.
         places: the nodes of the plan that its letters are made of.
+        texts: of the leaves.
     """
 
     def __init__(self, compiled: CompiledRequirement, plan: Plan, clerk: Clerk) -> None:
@@ -39,8 +40,8 @@ class DeferredReasons:
         self.places = tuple(index[state] for state in compiled.alphabet.propositions)
         read = [(index[leaf], text) for leaf, text in compiled.leaves if leaf in index]
         self.leaves = tuple(leaf for leaf, _ in read)
-        self._texts = tuple(text for _, text in read)
-        self.details = self._details
+        self.texts = tuple(text for _, text in read)
+        self.details: Callable[[Attempt, Any], Mapping[str, Any]] = self._details
 
     @cached_property
     def _machine(self) -> Machine:
@@ -69,23 +70,33 @@ class DeferredReasons:
         """The values of the leaves, where they may be packed."""
         return unpacked(seen, len(self.leaves)) if isinstance(seen, int) else seen
 
-    def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
-        """All that a record says beside the verdict, from what was noted at the decision."""
-        seen_then, t, before, letter, other, position, *rest = noted
-        seen_then = self.unpacked(seen_then)
-        if before[1] == FROM_TRIGGER:
-            before = (before[0], (attempt.triggered,))
+    def stood(self, noted: Sequence[Any], position: int) -> tuple[tuple[int, ...], Stood]:
+        """What was read of the input at a position, and how the propositions stood.
+
+        Args:
+            noted: the truths of the leaves, then those of the propositions, since when they had
+                them, and when they were false and true before.
+            position: ticks.
+        """
         leaves, count = len(self.leaves), len(self.places)
-        seen = tuple(rest[:leaves])
-        values, since = rest[leaves:][:count], rest[leaves + count :][:count]
-        until = rest[leaves + 2 * count :]
+        seen = tuple(noted[:leaves])
+        values, since = noted[leaves:][:count], noted[leaves + count :][:count]
+        until = noted[leaves + 2 * count :]
         nodes: dict[int, int] = dict(zip(self.leaves, seen, strict=True))
         nodes |= zip(self.places, values, strict=True)
         instants = {}
         for index, place in enumerate(self.places):
             instants[3 * place], instants[3 * place + 2] = until[2 * index : 2 * index + 2]
         kept = dict(zip(self.places, since, strict=True))
-        flow = Stood(self._plan, nodes, kept, instants, {}, position)
+        return seen, Stood(self._plan, nodes, kept, instants, {}, position)
+
+    def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
+        """All that a record says beside the verdict, from what was noted at the decision."""
+        seen_then, t, before, letter, other, position, *rest = noted
+        seen_then = self.unpacked(seen_then)
+        if before[1] == FROM_TRIGGER:
+            before = (before[0], (attempt.triggered,))
+        seen, flow = self.stood(rest, position)
         passed = attempt.verdict is Verdict.PASS
         letter = letter if passed else other
         token = just_before(self._machine, before, letter, position, t, self._plan.gap)
@@ -93,8 +104,8 @@ class DeferredReasons:
         return {
             "reason": why.reason,
             "deadline": why.deadline,
-            "at_trigger": truths_shown(self._texts, seen_then),
-            "at_decision": truths_shown(self._texts, seen),
+            "at_trigger": truths_shown(self.texts, seen_then),
+            "at_decision": truths_shown(self.texts, seen),
             "owed": why.owed,
             "captured": {},
             "blame": why.blame,

@@ -87,7 +87,7 @@ class Gauged(Ledger):
             over: whether the run is; before, those in doubt may still vanish or become sure.
         """
         if not self._found:
-            return []
+            return ()
         found, self._found = self._found, []
         settled = []
         for one in sorted(found, key=lambda one: (one[2], one[0].compiled.rank, one[1] is None)):

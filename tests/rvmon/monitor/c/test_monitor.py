@@ -400,7 +400,7 @@ def test_nothing_to_judge(spec):
 def test_the_oracle_agrees():
     """On random cases, at each call: what it returns, and that it refuses what is wrong."""
     profile = Profile(mixed=False, captures=False, for_each=False)
-    seeds = [f"online/{number}" for number in range(7)]
+    seeds = [f"online/{number}" for number in range(4)]
     tally = campaign(Maker("c"), seeds, profile, TraceProfile(), each=8, online_every=2)
-    assert tally.pairs >= 16
+    assert tally.pairs >= 10
     assert not tally.disagreements, tally.disagreements[0]

@@ -2,15 +2,19 @@
 
 import json
 
+import numpy as np
 import pytest
 
 import rvmon
 from rvmon.cli import main
+from rvmon.monitor.compiled.refusal import of_prepared_margins
+from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
+from rvmon.monitor.robustness.monitor import RobustnessMonitor
 
 pytestmark = pytest.mark.compiler
 
 SPEC = "spec s\nsignal p : bool\nrequirement R1\n  always p\nrequirement R2\n  upon p then p\n"
-USES = ["auto", "streams", "columns", "short files"]
+USES = ["auto", "streams", "columns", "short files", "robustness"]
 TRACE = {"t": [0.0, 1.0], "p": [True, False]}
 
 
@@ -22,7 +26,7 @@ def home(tmp_path_factory):
         patch.setenv("XDG_CACHE_HOME", str(folder))
         patch.delenv("RVMON_CACHE", raising=False)
         told = []
-        found = rvmon.loads(SPEC).prepare(ready=told.append)
+        found = rvmon.loads(SPEC).prepare(ready=told.append, robustness=True)
         assert [one.use for one in found] == USES
         assert tuple(told) == found
         assert all(one.size == one.path.stat().st_size for one in found)
@@ -65,7 +69,7 @@ def test_what_is_not_prepared_is_told(capsys, tmp_path):
 def test_the_command_says_what_is_ready(form, tmp_path, capsys):
     """A line for each file: what for, how long it took, how large it is, and where."""
     (tmp_path / "s.rv").write_text(SPEC)
-    assert main(["prepare", str(tmp_path / "s.rv"), "--format", form]) == 0
+    assert main(["prepare", str(tmp_path / "s.rv"), "--robustness", "--format", form]) == 0
     told = capsys.readouterr().out
     if form == "json":
         assert [one["use"] for one in json.loads(told)] == USES
@@ -99,6 +103,47 @@ def test_auto_takes_what_is_compiled_and_gives_reasons():
     report = monitor.finish()
     assert report.engine == monitor.judged_by == "c"
     assert all(attempt.reason for attempt in report.attempts)
+
+
+def test_auto_measures_by_what_is_compiled(monkeypatch):
+    """The figures of each call are those of Python, also of values that are lost."""
+    spec = rvmon.loads(SPEC)
+
+    def figures():
+        monitor = spec.robustness_monitor(streams=True)
+        values = (True, None, False, True)
+        found = [list(monitor.step(float(t), {"p": value})) for t, value in enumerate(values)]
+        return type(monitor), [*found, list(monitor.open), list(monitor.finish(9.0))]
+
+    ready, ours = figures()
+    monkeypatch.setattr("rvmon.monitor.c.prepared._maker", lambda: "another version")
+    spec = rvmon.loads(SPEC)
+    python, theirs = figures()
+    assert (ready, python) == (CompiledRobustnessMonitor, RobustnessMonitor)
+    assert ours == theirs
+
+
+def test_auto_measures_columns_by_what_is_compiled(monkeypatch):
+    """It is no other figure, and needs no arrays."""
+    spec = rvmon.loads(SPEC)
+    trace = {name: np.array(column) for name, column in TRACE.items()}
+    with monkeypatch.context() as patch:
+        patch.setattr("rvmon.monitor.measure._by_columns", None)
+        ours = spec.robustness(trace)
+    monkeypatch.setattr("rvmon.monitor.measure._is_prepared", lambda *_: False)
+    theirs = spec.robustness(trace)
+    assert ours.attempts == theirs.attempts
+    assert {n: [*one] for n, one in ours.streams.items()} == {
+        n: [*one] for n, one in theirs.streams.items()
+    }
+
+
+@pytest.mark.parametrize("kind", ["int", "real"])
+def test_auto_measures_whole_numbers_in_python(kind):
+    """Doubles do not hold all of them."""
+    spec = rvmon.loads(f"spec s\nsignal x : {kind}\nrequirement R\n  always x > 1\n")
+    refusal = of_prepared_margins(spec._compiled.requirements["R"])
+    assert (refusal is not None) == (kind == "int")
 
 
 def test_what_auto_cannot_take_is_left_to_python():

@@ -83,6 +83,11 @@ class _Strike:
             raise KeyboardInterrupt
 
 
+def _some(places: dict[Place, None], engine: str) -> list[Place]:
+    """All places of the engine that people have, and a third of those of the others."""
+    return [*places][:: 1 if engine == "auto" else 3]
+
+
 def _begun(spec: rvmon.Spec, engine: str) -> Monitor:
     monitor = spec.monitor(engine=engine)
     monitor.step_ns(1 * _S, {"x": 1.0, "y": 1.0, "e": False, "p": False, "f": True, "q": False})
@@ -132,7 +137,7 @@ def test_an_interrupt_leaves_the_monitor_open(engine: str) -> None:
         _struck(monitor, whole)
         expected = _untouched(_judged_on(monitor))
     assert len(whole.passed) > 50
-    for place in whole.passed:
+    for place in _some(whole.passed, engine):
         monitor = _begun(spec, engine)
         with pytest.raises(KeyboardInterrupt):
             _struck(monitor, _Strike(place))
@@ -177,7 +182,8 @@ def test_after_a_torn_step_nothing_passes(
     assert skipped.verdicts["R1"] == "P"
     assert whole.verdicts["R1"] == "F"
     torn = 0
-    for place in places.passed:
+    struck = _some(places.passed, engine)
+    for place in struck:
         monitor = _begun(spec, engine)
         with pytest.raises(KeyboardInterrupt):
             _struck(monitor, _Strike(place), make)
@@ -187,7 +193,7 @@ def test_after_a_torn_step_nothing_passes(
         monitor.reset()
         monitor.step_ns(0, {"x": 1.0})
         assert monitor.finish_ns(1).verdicts["R1"] == "P"
-    assert torn > len(places.passed) / 2
+    assert torn > len(struck) / 2
 
 
 @pytest.mark.parametrize("engine", ["auto", "network"])

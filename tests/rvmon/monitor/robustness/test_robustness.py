@@ -111,8 +111,8 @@ def online(requirement, **options):
 def test_a_figure_is_given_as_soon_as_its_window_is_over():
     """What is known of an open attempt draws closer, until nothing can change it."""
     monitor = online("upon e then within 3 s x > 10 cm")
-    assert monitor.step(0, {"x": 2, "e": True}) == []
-    assert monitor.step(1, {"x": 12}) == []
+    assert not monitor.step(0, {"x": 2, "e": True})
+    assert not monitor.step(1, {"x": 12})
     [known] = monitor.open
     assert (known.number, known.robustness.low) == (1, pytest.approx(0.02))
     assert known.robustness.high == INFINITE
@@ -120,14 +120,14 @@ def test_a_figure_is_given_as_soon_as_its_window_is_over():
     assert (found.requirement, found.number, found.t) == ("R1", 1, 0)
     assert found.robustness.low == found.robustness.high == pytest.approx(0.02)
     assert monitor.open == []
-    assert monitor.finish() == []
+    assert not monitor.finish()
 
 
 def test_time_alone_settles_a_figure():
     """A window is over when time has passed its end, whether or not a sample came."""
     monitor = online("upon e then within 3 s x > 10 cm")
     monitor.step(0, {"x": 2, "e": True})
-    assert monitor.advance(3) == []
+    assert not monitor.advance(3)
     [found] = monitor.advance(3.5)
     assert found.robustness.high == pytest.approx(-0.08)
 

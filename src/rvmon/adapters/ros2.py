@@ -1,0 +1,170 @@
+"""Live data of ROS 2 by a node of rclpy, and verdicts back.
+
+No rclpy can be installed where this is tested: it has run with a stub of rclpy alone, made after
+the sources of rclpy 8. What reads ROS 2 without an installation of it is `rvmon.adapters.dds`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from threading import Thread
+from types import TracebackType
+from typing import Any
+
+import msgspec
+
+from rvmon.adapters.messages import CLOCK, MessageFeed
+from rvmon.errors import RvmonError
+from rvmon.live.robot import Judgement
+from rvmon.readers.messages.topic import Topic
+from rvmon.trace.schema import Kind
+
+_DEPTH = 1_000
+"""Messages of a topic that wait at most within the middleware."""
+
+_TURN_S = 0.2
+"""Seconds between two looks for topics that nobody has published yet."""
+
+_ARRAY = re.compile(r"sequence<(?P<of>.+?)(, \d+)?>|(?P<of_fixed>.+)\[\d+\]")
+"""`sequence<double>`, `sequence<double, 3>`, `double[9]`."""
+
+
+class Ros2Source:
+    """A node of ROS 2 that offers what the topics of a feed say, from `with` on.
+
+    Topics are found as somebody publishes them, with their types, whose packages have to be
+    installed. Of what is published reliably, or latched, nothing is missed.
+
+    Args:
+        feed: gets the messages; where it follows `/clock`, the node has `use_sim_time`.
+        verdicts: the topic on which verdicts are published, as JSON in `std_msgs/String`; `None`:
+            none are.
+
+    Raises:
+        RvmonError: rclpy is not there.
+    """
+
+    def __init__(self, feed: MessageFeed, *, verdicts: str | None = None) -> None:
+        try:
+            import rclpy
+        except ImportError:
+            raise RvmonError(
+                "ROS 2 needs rclpy, which is not there: source the setup of your ROS; or read "
+                "dds:DOMAIN, which needs no ROS"
+            ) from None
+        self._rclpy = rclpy
+        self._feed = feed
+        self._verdicts = verdicts
+        self._publisher: Any = None
+        self._found: set[str] = set()
+
+    def __enter__(self) -> Ros2Source:
+        """Begin the node, in a thread and a context of its own: that of a program goes on."""
+        from rclpy.clock import Clock, ClockType
+        from rclpy.executors import SingleThreadedExecutor
+
+        rclpy = self._rclpy
+        self._context = rclpy.Context()
+        rclpy.init(context=self._context)
+        simulated = rclpy.Parameter("use_sim_time", value=CLOCK in self._feed.topics())
+        self._node = rclpy.create_node(
+            "rvmon", context=self._context, parameter_overrides=[simulated]
+        )
+        if self._verdicts is not None:
+            from std_msgs.msg import String
+
+            self._publisher = self._node.create_publisher(String, self._verdicts, 100)
+        # By a clock that runs where nobody publishes the simulated one, too.
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._node.create_timer(_TURN_S, self._find, clock=steady)
+        self._find()
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._thread = Thread(target=self._executor.spin, name="rvmon.ros2", daemon=True)
+        self._thread.start()
+        return self
+
+    def _find(self) -> None:
+        """Subscribe to the topics that are wanted and published."""
+        wanted = {*self._feed.topics()} if self._feed.has_time else {CLOCK}
+        wanted -= self._found
+        for name, types in self._node.get_topic_names_and_types():
+            publishers = self._node.get_publishers_info_by_topic(name) if name in wanted else ()
+            if publishers:
+                self._found.add(name)
+                self._begin(name, types, [one.qos_profile for one in publishers])
+
+    def _begin(self, name: str, types: list[str], published: list[Any]) -> None:
+        from rclpy.event_handler import SubscriptionEventCallbacks
+        from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+        from rosidl_runtime_py.utilities import get_message
+
+        try:
+            if len(types) > 1:
+                raise ValueError(f"it has several types, {', '.join(types)}")
+            kind = get_message(types[0])
+            topic = Topic(name, types[0], dict(_leaves(kind)))
+        except (ImportError, AttributeError, ValueError) as error:
+            self._feed.lose(name, f"{error}: is the package of {types[0]} installed?")
+            return
+        # Who asks for more than is promised gets nothing at all.
+        reliable, latched = ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL
+        is_reliable = all(one.reliability == reliable for one in published)
+        is_latched = all(one.durability == latched for one in published)
+        qos = QoSProfile(
+            depth=_DEPTH,
+            reliability=reliable if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+            durability=latched if is_latched else DurabilityPolicy.VOLATILE,
+        )
+        self._node.create_subscription(
+            kind,
+            name,
+            lambda content: self._take(topic, content),
+            qos,
+            event_callbacks=SubscriptionEventCallbacks(
+                message_lost=lambda _: self._feed.lose(name, "some before it were lost")
+            ),
+        )
+
+    def _take(self, topic: Topic, content: Any) -> None:
+        had_time = self._feed.has_time
+        self._feed.take(topic, content)
+        if not had_time:
+            self._find()
+
+    def publish(self, judgement: Judgement) -> None:
+        """Publish a verdict: to be called by a driver, as its `on_judged`."""
+        if self._publisher is not None:
+            from std_msgs.msg import String
+
+            said = msgspec.json.encode(judgement.to_dict()).decode()
+            self._publisher.publish(String(data=said))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._executor.shutdown()
+        self._thread.join()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+
+_KINDS = {"boolean": Kind.BOOL, "float": Kind.REAL, "double": Kind.REAL}
+
+
+def _leaves(kind: Any, prefix: str = "") -> Iterator[tuple[str, Kind]]:
+    """The fields of a class of messages that are no messages themselves, as in `Topic`."""
+    from rosidl_runtime_py.utilities import get_message
+
+    for name, said in kind.get_fields_and_field_types().items():
+        path, array = f"{prefix}{name}", _ARRAY.fullmatch(said)
+        if array is not None:
+            path, said = f"{path}[]", array["of"] or array["of_fixed"]
+        if "/" in said:
+            yield from _leaves(get_message(said.replace("/", "/msg/")), f"{path}.")
+        else:
+            yield path, Kind.LABEL if "string" in said else _KINDS.get(said, Kind.INT)

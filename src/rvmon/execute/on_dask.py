@@ -1,0 +1,238 @@
+"""`parallel.execute` on the workers of a scheduler of Dask, wherever these are.
+
+A worker that is lost costs nothing but time: Dask gives what it had to another. Each does one task
+at a time, however many threads it has.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import sys
+import threading
+import time
+import uuid
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import Any
+
+from rvmon.cache import contents
+from rvmon.errors import RvmonError, WorkerLostError
+from rvmon.execute.ended import Ended
+from rvmon.execute.worker import answer, packed_error
+
+CONNECT_S = 10
+"""Seconds in which a scheduler has to answer."""
+
+NO_WORKERS_S = 60.0
+"""Seconds for which one waits for a worker where there is none."""
+
+TRIES = 3
+"""How often a task is given out that is not known to have begun; Dask tries it some times each."""
+
+_POLL_S = 0.5
+"""Seconds after which one looks again for what takes too long."""
+
+
+def execute_on_dask(
+    tasks: Iterable[Any],
+    begin: Callable[[], Callable[[Any], Any]],
+    address: str,
+    what: str,
+    instead: Callable[[Any, Ended], Any] | None,
+    timeout_s: float | None,
+) -> Iterator[Any]:
+    """Do tasks; the results come in their order.
+
+    Args:
+        tasks: taken from as workers have time; what can be pickled.
+        begin: called once in each worker; what it returns does a task.
+        address: of the scheduler, such as `tcp://10.0.0.5:8786`.
+        what: the word for a task in messages.
+        instead: the result of a task whose worker was lost again and again, or took too long.
+        timeout_s: with `instead`, seconds after which a worker is begun anew.
+
+    Raises:
+        WorkerLostError: there is no worker; or those that had a task were lost, and there is no
+            `instead`.
+        RvmonError: Dask is not installed, no scheduler answers, a worker has another rvmon, or a
+            task cannot be pickled.
+        Exception: what `begin` or a task raised.
+    """
+    try:
+        import cloudpickle
+        from distributed import Client
+    except ImportError:
+        raise RvmonError("Dask is not installed: pip install 'rvmon[dask]'") from None
+    try:
+        client = Client(address, timeout=CONNECT_S, set_as_default=False)
+    except (OSError, ValueError) as error:
+        told = str(error).splitlines()[0]
+        raise RvmonError(
+            f"no scheduler of Dask answers at {address} ({told}): begin one by `dask scheduler`, "
+            f"and workers by `dask worker {address} --nthreads 1`"
+        ) from None
+    with client:
+        yield from _Work(client, cloudpickle.dumps(begin), what, instead, timeout_s).results(tasks)
+
+
+class _Work:
+    """What workers have, and what they have done; `execute_on_dask` says what the arguments are."""
+
+    def __init__(
+        self,
+        client: Any,
+        begin: bytes,
+        what: str,
+        instead: Callable[[Any, Ended], Any] | None,
+        timeout_s: float | None,
+    ) -> None:
+        self._client = client
+        self._what = what
+        self._instead = instead
+        self._timeout_s = timeout_s
+        self._name = f"rvmon-{uuid.uuid4().hex}"
+        # A task rather than data that is handed out: it is done again where its worker is lost.
+        self._begin = client.submit(bytes, begin, key=f"{self._name}-begin")
+        self._tasks: dict[Any, tuple[int, bytes]] = {}
+        self._begun: dict[int, tuple[float, str]] = {}
+        self._finished: SimpleQueue[Any] = SimpleQueue()
+        self._tries: Counter[int] = Counter()
+        self._done: dict[int, tuple[bool, bytes]] = {}
+        client.subscribe_topic(self._name, self._note)
+
+    def results(self, tasks: Iterable[Any]) -> Iterator[Any]:
+        """The results in order."""
+        left = self._packed(tasks)
+        number = 0
+        seen = time.monotonic()
+        while True:
+            threads = sum(self._client.nthreads().values())
+            seen = time.monotonic() if threads else seen
+            if time.monotonic() - seen > NO_WORKERS_S:
+                raise WorkerLostError("the scheduler of Dask has no worker: begin one")
+            for one in islice(left, max(0, 2 * threads - len(self._tasks))):
+                self._submit(*one)
+            if number in self._done:
+                failed, result = self._done.pop(number)
+                if failed:
+                    raise pickle.loads(result)  # noqa: S301 - from a worker of ours
+                yield pickle.loads(result)  # noqa: S301 - as above
+                number += 1
+            elif self._tasks:
+                with suppress(Empty):
+                    self._take(self._finished.get(timeout=_POLL_S))
+                self._end_late()
+            elif threads:
+                return
+            else:
+                time.sleep(_POLL_S)
+
+    def _packed(self, tasks: Iterable[Any]) -> Iterator[tuple[int, bytes]]:
+        """Tasks by number; what cannot be taken, or pickled, is raised in its turn."""
+        import cloudpickle
+
+        number = 0
+        try:
+            for task in tasks:
+                yield number, cloudpickle.dumps(task)
+                number += 1
+        except Exception as error:  # noqa: BLE001 - as in `parallel`
+            self._done[number] = (True, packed_error(error))
+
+    def _submit(self, number: int, task: bytes) -> None:
+        arguments = (self._name, number, program(), os.getcwd(), self._begin, task)
+        future = self._client.submit(_do, *arguments, pure=False, priority=-number)
+        self._tasks[future] = (number, task)
+        future.add_done_callback(self._finished.put)
+
+    def _note(self, event: tuple[float, tuple[int, str]]) -> None:
+        """A worker begins a task: take down when, and which worker; or it has ended it."""
+        number, worker = event[1]
+        if worker:
+            self._begun[number] = (time.monotonic(), worker)
+        else:
+            self._begun.pop(number, None)
+
+    def _take(self, future: Any) -> None:
+        from distributed import CancelledError, KilledWorker
+
+        if future not in self._tasks:  # given up before
+            return
+        number, task = self._tasks.pop(future)
+        try:
+            self._done[number] = future.result()
+        except (KilledWorker, CancelledError):
+            self._tries[number] += 1
+            if number in self._begun or self._tries[number] == TRIES:
+                self._lose(number, task, "the workers that had it were lost", timed_out=False)
+            else:  # it was waiting, or its result was, where another task was done
+                self._submit(number, task)
+        self._begun.pop(number, None)
+
+    def _end_late(self) -> None:
+        """Begin those workers anew whose tasks take too long."""
+        if self._timeout_s is None:
+            return
+        for future, (number, task) in [*self._tasks.items()]:
+            since, worker = self._begun.get(number, (time.monotonic(), ""))
+            if time.monotonic() - since > self._timeout_s and not future.done():
+                del self._tasks[future]
+                future.cancel(force=True)
+                self._client.restart_workers([worker], raise_for_error=False)
+                self._lose(number, task, f"it took more than {self._timeout_s:g} s", timed_out=True)
+
+    def _lose(self, number: int, task: bytes, why: str, *, timed_out: bool) -> None:
+        """Do without the result of a task."""
+        if self._instead is None:
+            error = WorkerLostError(f"{self._what} {number + 1} was not done: {why}")
+            self._done[number] = (True, pickle.dumps(error))
+            return
+        now = time.monotonic()
+        ended = Ended(timed_out, why, now - self._begun.get(number, (now, ""))[0])
+        result = self._instead(pickle.loads(task), ended)  # noqa: S301 - packed here
+        self._done[number] = (False, pickle.dumps(result))
+
+
+@cache
+def program() -> str:
+    """What tells a program whose results can be mixed with these from others."""
+    import hashlib
+
+    said = [sys.version, *contents(Path(__file__).parents[1])]
+    return hashlib.sha256(repr(said).encode()).hexdigest()
+
+
+_ONE_AT_A_TIME = threading.Lock()
+_WORK: dict[str, Callable[[Any], Any]] = {}
+"""In a worker: what does tasks, by the name of the work; the last one."""
+
+
+def _do(
+    name: str, number: int, wanted: str, folder: str, begin: bytes, task: bytes
+) -> tuple[bool, bytes]:
+    """Do a task in a worker, in the folder of who has the work if there is one; say when."""
+    from distributed import get_worker
+
+    def begun() -> Callable[[Any], Any]:
+        worker = get_worker()
+        if name not in _WORK:
+            if program() != wanted:
+                where = worker.address
+                raise RvmonError(f"the worker {where} has another rvmon or Python: use one version")
+            _WORK.clear()
+            with suppress(OSError):
+                os.chdir(folder)
+            _WORK[name] = pickle.loads(begin)()  # noqa: S301 - from who has the work
+        worker.log_event(name, (number, worker.address))
+        return _WORK[name]
+
+    with _ONE_AT_A_TIME:
+        answered = answer(begun, task)
+        get_worker().log_event(name, (number, ""))
+        return answered

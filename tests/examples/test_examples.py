@@ -1,0 +1,161 @@
+"""The examples print what their table says; those of ROS run with their adapters."""
+
+import runpy
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from tests.rvmon.adapters import rclpy_stub
+from tests.tools.servers import Broker, missing, mosquitto
+
+from rvmon import load
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture
+def play(monkeypatch, capsys):
+    """Runs an example as a program, and gives the lines that it prints."""
+
+    def play(path, *words):
+        monkeypatch.setattr(sys, "argv", [path, *map(str, words)])
+        runpy.run_path(str(EXAMPLES / path), run_name="__main__")
+        return capsys.readouterr().out.splitlines()
+
+    return play
+
+
+def test_a_stream_in_another_program(play):
+    """Each verdict as it falls, then the requirements."""
+    lines = play("base_live.py")
+    assert [line.split(" at ")[0] for line in lines if "#" in line] == [
+        "B1 #1 FAIL",
+        "B2 #1 PASS",
+        "B2 #2 FAIL",
+    ]
+    assert lines[-2:] == ["B1 F", "B2 F"]
+
+
+def test_a_loop_of_asyncio(play):
+    """A deadline passes in the loop, while nothing comes."""
+    (line,) = play("asyncio_loop/drive.py")
+    assert line.startswith("B2#1 F `for 1 s speed <= 0.001 m/s` had to come true")
+
+
+@pytest.mark.parametrize(("wind", "verdicts"), [(3, "P NT NT"), (5, "F F F")])
+def test_a_fence_of_a_drone(play, wind, verdicts):
+    """It is left where the wind is stronger than the drone, and by how much is told."""
+    *_, one, two, three, margin = play("geofence/fly.py", wind)
+    assert [one, two, three] == [
+        f"G{number} {verdict}" for number, verdict in enumerate(verdicts.split(), 1)
+    ]
+    assert margin.startswith("to the fence: -") == ("F" in verdicts)
+
+
+@pytest.mark.campaign
+def test_an_agent_that_learns(play, tmp_path):
+    """It finds a hand in the gripper; what it found is a test that fails again."""
+    from handover.driver import run_test
+    from handover.generator.abstract_test import AbstractTest
+    from rvmon import cdv
+
+    pytest.importorskip("gymnasium")
+    lines = play("learning/search.py", tmp_path / "found.json")
+    rewards = [float(line.split("reward ")[1].split(",")[0]) for line in lines]
+    assert rewards == sorted(rewards)
+    assert lines[-1].endswith("R5 F")
+    run = run_test(cdv.files.load(tmp_path / "found.json", AbstractTest))
+    spec = load(EXAMPLES / "learning" / "grip.rv")
+    declared = {*spec.schema.signals, *spec.schema.events}
+    samples = [
+        (t / 1e9, {n: v for n, v in values.items() if n in declared}) for t, values in run.samples
+    ]
+    assert spec.evaluate(samples).verdicts == {"R5": "F"}
+
+
+@pytest.mark.process
+def test_tests_of_a_base():
+    """Five tests pass: three that simulate, and two requirements on a recording."""
+    told = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist"],
+        cwd=EXAMPLES / "pytest_plugin",
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert told.returncode == 0, told.stdout
+    assert "S1      3      1" in told.stdout
+
+
+@pytest.mark.process
+def test_a_fleet_over_mqtt(play, tmp_path):
+    """Each robot by itself: one does not stop, the other does."""
+    pytest.importorskip("paho.mqtt.client")
+    from rvmon.adapters.json_objects import JsonObjects
+    from rvmon.adapters.mqtt import MqttSource, address_of
+    from rvmon.live import Live
+
+    if mosquitto() is None:
+        missing("mosquitto")
+    broker = Broker(tmp_path)
+    spec = load(EXAMPLES / "base.rv")
+    address = address_of(f"mqtt://localhost:{broker.port}/robots/+/#")
+    with Live(spec) as live:
+        with MqttSource(JsonObjects(live, spec.schema), address):
+            play("mqtt/fleet.py", broker.port)
+            end = time.monotonic() + 20  # seconds that a busy machine may take
+            while not live.status()["right"].counts and time.monotonic() < end:
+                time.sleep(0.02)
+        counts = {name: dict(status.counts) for name, status in live.status().items()}
+    broker.stop()
+    assert counts == {
+        "left": {("B1", "F"): 1, ("B2", "F"): 1},
+        "right": {("B2", "P"): 1},
+    }
+
+
+@pytest.mark.process
+def test_a_microcontroller(play):
+    """The exported C on a Cortex-M4 under QEMU says what rvmon says; it compares them itself."""
+    for program in ("arm-none-eabi-gcc", "qemu-system-arm"):
+        if shutil.which(program) is None:
+            pytest.skip(f"needs the program `{program}`")  # too large for CI
+    with pytest.raises(SystemExit) as ended:
+        play("microcontroller/run.py")
+    assert not ended.value.code
+
+
+def test_a_test_of_launch_testing(monkeypatch, request):
+    """It fails where the base does, or is not heard; with stand-ins: ROS cannot be installed."""
+    request.config.addinivalue_line("markers", "launch_test: as launch_testing has it")
+    graph = rclpy_stub.install(monkeypatch)
+    graph.types = {"std_msgs/msg/Float64": rclpy_stub.message(data="double")}
+    for name in ("launch", "launch_ros.actions", "launch_testing.actions"):
+        package, _, part = name.partition(".")
+        monkeypatch.setitem(sys.modules, package, ModuleType(package))
+        if part:
+            monkeypatch.setitem(sys.modules, name, ModuleType(name))
+    told = {}
+    for metres in (None, 0.8, 0.4):
+        monkeypatch.setattr(time, "sleep", lambda _, metres=metres: _drive(graph, metres))
+        test = runpy.run_path(str(EXAMPLES / "launch_testing" / "test_base.py"))["TestBase"]
+        result = unittest.TestResult()
+        test("test_requirements").run(result)
+        told[metres] = [text for _, text in result.failures]
+        assert not result.errors
+    assert "nothing was heard" in told[None][0]
+    assert told[0.8] == []
+    assert "B1 #1 FAIL" in told[0.4][0]
+
+
+def _drive(graph, metres):
+    """A base that comes so near to an obstacle, if it is there at all."""
+    for topic, value in (("/speed", 0.8), ("/obstacle", metres)):
+        graph.publishers[topic] = ("std_msgs/msg/Float64", [rclpy_stub.QoSProfile()])
+        if metres is not None:
+            graph.call(graph.timers[-1])
+            graph.publish(topic, data=value)

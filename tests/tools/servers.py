@@ -1,0 +1,106 @@
+"""Brokers and masters on ports of their own, started and ended by who needs them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NoReturn
+
+import pytest
+
+LONG = 30.0
+"""Seconds in which a server has to answer."""
+
+SYSTEM = "/usr/lib/python3/dist-packages"
+"""Where Debian has rospy."""
+
+LOOPBACK = (
+    '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="false"/>'
+    "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>"
+    '<ParticipantIndex>auto</ParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers>'
+    "</Discovery></Domain></CycloneDDS>"
+)
+"""`CYCLONEDDS_URI` for processes of this machine alone."""
+
+
+def mosquitto() -> str | None:
+    """The path of the broker, if it is installed."""
+    return shutil.which("mosquitto") or shutil.which("/usr/sbin/mosquitto")
+
+
+def rosmaster() -> str | None:
+    """The path of the master of ROS 1, if it is installed with rospy."""
+    return shutil.which("rosmaster") if Path(SYSTEM, "rospy").exists() else None
+
+
+def missing(what: str) -> NoReturn:
+    """Do without a test for want of a server; where all is to be installed it fails."""
+    if os.environ.get("CI"):
+        pytest.fail(f"{what} is not installed")
+    pytest.skip(f"{what} is not installed")
+
+
+def _free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port: int = free.getsockname()[1]
+        return port
+
+
+def _started(command: list[str], port: int) -> subprocess.Popen[bytes]:
+    """A server that answers at its port."""
+    quiet = subprocess.DEVNULL
+    process = subprocess.Popen(command, stdout=quiet, stderr=quiet)  # noqa: S603
+    end = time.monotonic() + LONG
+    while time.monotonic() < end and process.poll() is None:
+        try:
+            socket.create_connection(("127.0.0.1", port), 1).close()
+        except OSError:
+            time.sleep(0.02)
+        else:
+            return process
+    process.kill()
+    raise TimeoutError(f"{command[0]} does not answer")
+
+
+class Broker:
+    """A broker of MQTT that can be stopped and started again at its port.
+
+    Args:
+        folder: for its settings.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.port = _free_port()
+        self._settings = folder / "mosquitto.conf"
+        self._settings.write_text(
+            f"listener {self.port} 127.0.0.1\nallow_anonymous true\nsys_interval 1\n"
+        )
+        self.start()
+
+    def start(self) -> None:
+        """Begin, and be there."""
+        self._process = _started([str(mosquitto()), "-c", str(self._settings)], self.port)
+
+    def stop(self) -> None:
+        """End."""
+        self._process.terminate()
+        self._process.wait(LONG)
+
+
+@contextmanager
+def master_of_ros1() -> Iterator[str]:
+    """The address of a master of ROS 1."""
+    port = _free_port()
+    process = _started([str(rosmaster()), "--core", "-p", str(port)], port)
+    try:
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        process.kill()
+        process.wait(LONG)
