@@ -131,8 +131,7 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         "--shard",
         metavar="I/N",
         type=shard,
-        help="with --out, play this share of the tests: 2/4; the same command without it joins "
-        "what shards have left in DIR",
+        help="with --out, play this share, as 2/4; the same without it joins what shards left",
     )
     add_playing_options(parser)
 
@@ -262,13 +261,9 @@ def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, 
     if listed is None:
         return tuple(known)
     names = tuple(dict.fromkeys(name.strip() for name in listed.split(",") if name.strip()))
-    there_are = f"there are {', '.join(known)}"
-    for name in names:
-        if name not in known:
-            raise UnknownNameError(f"no {what} `{name}`: {there_are}")
     if not names:
-        raise UnknownNameError(f"--{what} names none: {there_are}")
-    return names
+        raise UnknownNameError(f"--{what} names none: there are {', '.join(known)}")
+    return tuple(one_of(name, known, what) for name in names)
 
 
 def one_of(named: str | None, known: Sequence[str], what: str) -> str:

@@ -95,7 +95,7 @@ def test_shards_are_joined(folder, capsys):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["--shard", "1/2"], "name it by --out"),
+        (["--shard", "1/2"], "name the file by --out"),
         (["--out", "v.csv", "--shard", "3/9"], "there are 2 recordings"),
     ],
 )
