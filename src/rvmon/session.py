@@ -187,8 +187,7 @@ class Spec:
             data: from `Monitor.snapshot`.
 
         Raises:
-            SnapshotError: the bytes are no snapshot, are damaged, or come from another
-                specification or another version of rvmon.
+            SnapshotError: they are none, damaged, of another specification, or of another rvmon.
         """
         from rvmon.monitor.restore import restore
 
