@@ -216,9 +216,7 @@ def main() -> None:
     for way, (_, formula) in there.items():
         with Peer(environment.python, WORKER) as peer:
             peer.ask("many", peer=way, formula=formula.replace("NAME", "v_x"), count=1)  # imports
-            found = peer.ask(
-                "many", peer=way, formula=formula.replace("NAME", "v_x"), count=KEYS
-            )
+            found = peer.ask("many", peer=way, formula=formula.replace("NAME", "v_x"), count=KEYS)
         print(f"| {way}, a monitor for each | {_cost(found['seconds'], found['kib'])} |")
 
 

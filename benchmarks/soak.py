@@ -151,9 +151,7 @@ def program(folder: Path) -> Path:
     header = (folder / "soak.h").read_text()
     places = {name: f".{kind.lower()}[{n}]" for kind, n, name in _NUMBERED.findall(header)}
     values = {name: place.replace("signal", "value") for name, place in places.items()}
-    rows = ",\n".join(
-        f"{{{', '.join(_initialisers(row, places, values))}}}" for row in pattern()
-    )
+    rows = ",\n".join(f"{{{', '.join(_initialisers(row, places, values))}}}" for row in pattern())
     text = f'#include "soak.h"\n#define ROWS {ROWS}\n'
     text += f"static const soak_sample pattern[ROWS] = {{\n{rows}\n}};\n"
     (folder / "pattern.h").write_text(text)

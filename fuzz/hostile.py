@@ -32,7 +32,10 @@ CELLS = {
 """What columns may hold."""
 
 VALUES = {
-    **{name: tuple(one for one in CELLS[name] if one not in ("nan", "inf")) for name in ("speed", "parts")},
+    **{
+        name: tuple(one for one in CELLS[name] if one not in ("nan", "inf"))
+        for name in ("speed", "parts")
+    },
     "door": ("true", "false"),
     "mode": ('"idle"', '"working"'),
     "pick": ('{"id": 3, "force": 4.75}', '{"id":4}', "true", "false", '{"id":3,"force":null}'),
@@ -44,7 +47,17 @@ VALUES = {
 
 HOSTILE = (
     *("", " ", "0.0", "-0", "+1", "1.", ".5", "01", "1e400", "-1e400", "0x1", "1_0", "NaN", "null"),
-    *("9007199254740993", "99999999999999999999", "1e-400", "TRUE", "t", '"', '""', "''", "\\u0000"),
+    *(
+        "9007199254740993",
+        "99999999999999999999",
+        "1e-400",
+        "TRUE",
+        "t",
+        '"',
+        '""',
+        "''",
+        "\\u0000",
+    ),
     *("\x00", "\u00e9", "\ud7ff", "\ufeff", "\r", "\n", ",", "{}", "[]", '"idle', "[" * 40, "--1"),
 )
 """What stands in place of a value now and then."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from struct import pack
 
 from fuzz.targets import ENDS, RECORDED, TIMES
+
 from rvmon.cli import main
 
 FORMS = {"c_csv": ".csv", "c_jsonl": ".jsonl", "c_bin": ".bin"}

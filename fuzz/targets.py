@@ -90,8 +90,7 @@ def spec(data: bytes) -> str:
     try:
         loaded = rvmon.load(path)
     except SpecError as error:
-        assert render_full(error.diagnostics) or str(error)
-        return "refused"
+        return "refused" if render_full(error.diagnostics) or str(error) else _silent()
     except RvmonError:
         return "unread"
     text = format_text(data.decode())
@@ -104,6 +103,10 @@ def spec(data: bytes) -> str:
     except RvmonError:
         return "not monitored"
     return "judged"
+
+
+def _silent() -> str:
+    raise AssertionError("it is refused without a word")
 
 
 def binding(data: bytes) -> str:
@@ -125,7 +128,7 @@ def _model(data: bytes, name: str) -> str:
 
 
 def model_text(data: bytes) -> str:
-    """A network of timed automata in our own form; it is written as XML, read again, and checked."""
+    """A network of timed automata in our form; it is written as XML, read again, and checked."""
     return _model(data, "m.ta")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import os
+import stat
 import threading
 import time
 from collections.abc import Callable
@@ -122,7 +123,9 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
     refuse_others(arguments)
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
-        return watch_kept(arguments, spec, ids_of(arguments.only, spec), lines)
+        is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
+        only = ids_of(arguments.only, spec)
+        return watch_kept(arguments, spec, only, lines, is_file=is_file)
 
 
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import sys
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -43,7 +44,12 @@ def refuse_others(arguments: argparse.Namespace) -> None:
 
 
 def watch_kept(
-    arguments: argparse.Namespace, spec: Spec, only: Iterable[str] | None, lines: Iterable[bytes]
+    arguments: argparse.Namespace,
+    spec: Spec,
+    only: Iterable[str] | None,
+    lines: Iterable[bytes],
+    *,
+    is_file: bool,
 ) -> int:
     """Judge lines until there are no more, and return the exit code.
 
@@ -51,7 +57,8 @@ def watch_kept(
         arguments: of the command.
         spec: what the robot must do.
         only: ids of the requirements; default all.
-        lines: what comes, from now on.
+        lines: what comes.
+        is_file: whether they begin anew with each process: those that were taken are passed over.
     """
     from rvmon.live.durable import DurableMonitor
 
@@ -68,10 +75,15 @@ def watch_kept(
             say(f"{number}  {attempt}", flush=True)
 
     try:
-        monitor = DurableMonitor(
-            spec, arguments.state, told, only=only, keep=_KEEP, settle="next"
-        )
-        _feed(monitor, spec, lines)
+        monitor = DurableMonitor(spec, arguments.state, told, only=only, keep=_KEEP, settle="next")
+        if monitor.taken:
+            warn(f"{arguments.state}: the run goes on behind {monitor.taken:,} lines")
+        try:
+            _feed(monitor, spec, lines, skipped=monitor.taken if is_file else 0)
+        finally:
+            monitor.save()
+    except BrokenPipeError:
+        raise
     except OSError as error:
         raise RvmonError(f"--state {arguments.state}: {error.strerror}") from None
     except KeyboardInterrupt:
@@ -79,23 +91,22 @@ def watch_kept(
     return int(Verdict.FAIL in monitor.monitor.verdicts.values())
 
 
-def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes]) -> None:
-    from rvmon.adapters.json_lines import decoded_object
+def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes], *, skipped: int) -> None:
+    from rvmon.adapters.json_objects import decoded_object
     from rvmon.readers.jsonl_rows import read_object
 
-    everything = (*spec.schema.signals, *spec.schema.events)
     ignored: Counter[str] = Counter()
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
-        spoken: Iterable[str] = everything
+    said = ((number, line) for number, line in enumerate(lines, 1) if line.strip())
+    for number, line in itertools.islice(said, skipped, None):
         try:
             t, values = read_object(decoded_object(line), spec.schema, ignored)
-            spoken = tuple(values)
+        except TraceError as error:
+            warn(f"line {number} is not taken: {error}")
+            monitor.lose((*spec.schema.signals, *spec.schema.events))
+            continue
+        try:
             monitor.step_ns(t, values)
         except TraceError as error:
             warn(f"line {number} is not taken: {error}")
-            if (reached := monitor.reached_ns) is not None:
-                monitor.lose_ns(reached + 1, spoken)
     for name in ignored:
         warn(f"ignored: {name} is not declared in the spec")

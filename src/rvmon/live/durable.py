@@ -40,6 +40,8 @@ class DurableMonitor:
 
     Attributes:
         monitor: judges; to be asked only.
+        taken: so many samples were kept since the run began, refused and lost ones as well: where
+            the source can be read again, it goes on behind them.
 
     Raises:
         SnapshotError: what is in the file is none, or of another specification or version.
@@ -54,6 +56,7 @@ class DurableMonitor:
     ...     DurableMonitor(spec, f"{folder}/run", say).step_ns(1, {"x": 2.0})
     ...     DurableMonitor(spec, f"{folder}/run", say).step_ns(2, {"x": 4.0})
     1 R#1 FAIL
+    1 R#1 FAIL
     2 R#2 FAIL
     """
 
@@ -66,21 +69,21 @@ class DurableMonitor:
         self._told = told
         self._every = every
         self._number = 0
+        self.taken = 0
         self._reached: int | None = None
         found = entries(self._path)
-        self.monitor = (
-            spec.monitor(**options) if found is None else self._taken_up(spec, found)
-        )
+        self.monitor = spec.monitor(**options) if found is None else self._taken_up(spec, found)
         self.monitor.on_decided(self._hear)
         for line in [] if found is None else found[1:]:
             self._again(line)
         # What these samples decided was told: they need not be judged once more.
-        self._put_away()
+        self.save()
 
     def _taken_up(self, spec: Spec, found: list[bytes]) -> Monitor:
         try:
             head = json.loads(found[0])
             self._number, data = int(head["told"]), str(head["snapshot"]).encode()
+            self.taken = int(head["taken"])
             self._reached = None if head["reached"] is None else int(head["reached"])
         except (ValueError, LookupError, TypeError, RecursionError):
             raise SnapshotError(
@@ -100,20 +103,45 @@ class DurableMonitor:
         with suppress(TraceError):  # it was refused then, too
             self._judge(t, values)
 
-    def _judge(self, t: int, values: Mapping[str, Any] | None) -> None:
-        if values is None:
+    def _judge(self, t: int | None, values: Mapping[str, Any] | None) -> None:
+        self.taken += 1
+        if t is None:
+            self._lose(values or ())
+        elif values is None:
             self.monitor.advance_ns(t)
+            self._reached = t
         else:
-            self.monitor.step_ns(t, values)
-        self._reached = t
+            try:
+                self.monitor.step_ns(t, values)
+            except TraceError:
+                self._lose(values)
+                raise
+            self._reached = t
+
+    def _lose(self, names: Iterable[str]) -> None:
+        """Have unknown what a sample spoke of; before the first one, nothing is known anyhow."""
+        checked = self.monitor.options.compiled.checked
+        lost = [name for name in names if name in checked.signals or name in checked.events]
+        if self._reached is not None:
+            self._reached += 1
+            self.monitor.step_ns(self._reached, dict.fromkeys(lost))
 
     def _hear(self, attempt: Attempt) -> None:
         self._number += 1
         self._told(self._number, attempt)
 
-    def _put_away(self) -> None:
-        data = self.monitor.snapshot().decode()
-        head = {"told": self._number, "reached": self._reached, "snapshot": data}
+    def save(self) -> None:
+        """Keep the run as it is: what was told so far is not told again.
+
+        Raises:
+            OSError: the file cannot be written; it stays as it was.
+        """
+        head = {
+            "told": self._number,
+            "taken": self.taken,
+            "reached": self._reached,
+            "snapshot": self.monitor.snapshot().decode(),
+        }
         begin(self._path, [json.dumps(head).encode()])
         self._kept = 0
 
@@ -121,37 +149,31 @@ class DurableMonitor:
         """Judge a sample, as `Monitor.step_ns` does; verdicts are told.
 
         Raises:
-            TraceError: the monitor refuses it.
+            TraceError: the monitor refuses it; what it spoke of is unknown from the next instant.
             OSError: the file cannot be written; nothing was judged.
         """
-        self._keep(whole_ticks(t_ns), values)
+        self._keep(whole_ticks(t_ns), dict(values))
 
     def advance_ns(self, t_ns: int) -> None:
         """Say that no sample before an instant, ns, will come; otherwise as `step_ns`."""
         self._keep(whole_ticks(t_ns), None)
 
-    @property
-    def reached_ns(self) -> int | None:
-        """The instant, ns, of the latest sample or advance that was taken; `None`: of none."""
-        return self._reached
+    def lose(self, names: Iterable[str]) -> None:
+        """Have unknown, from the next instant on, what a sample spoke of that was lost."""
+        self._keep(None, dict.fromkeys(names))
 
-    def lose_ns(self, t_ns: int, names: Iterable[str]) -> None:
-        """Have unknown from an instant, ns, on what a sample spoke of that was lost."""
-        self.step_ns(t_ns, dict.fromkeys(names))
-
-    def _keep(self, t: int, values: Mapping[str, Any] | None) -> None:
-        kept = None if values is None else dict(values)
+    def _keep(self, t: int | None, values: Mapping[str, Any] | None) -> None:
         try:
-            line = json.dumps([t, kept], default=_plain).encode()
+            line = json.dumps([t, values], default=_plain).encode()
         except (TypeError, ValueError, RecursionError) as error:
             raise TraceError(f"a sample that cannot be kept: {error}") from None
         add(self._path, line)
         self._kept += 1
         try:
-            self._judge(t, kept)
+            self._judge(t, values)
         finally:
             if self._kept >= self._every:
-                self._put_away()
+                self.save()
 
 
 def _plain(value: object) -> object:
