@@ -4,7 +4,7 @@ r"""Kill processes that have others work for them, at random instants: what live
 
 Each kind of parent is killed so often by SIGKILL and by SIGTERM, in turn. Prints how many of its
 processes live 2 s later, how many files are half written, how many bear a name that says that they
-are not finished, and how the parents ended. `rvmon watch --state` is begun again after each SIGKILL,
+are not finished, and how the parents ended. `rvmon watch --state` is begun again after each kill,
 and its verdicts compared with those of one that nobody kills. Exits 1 if something lives, is half
 written, lost or changed. Needs Linux's /proc.
 """

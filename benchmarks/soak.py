@@ -147,7 +147,8 @@ def program(folder: Path) -> Path:
     (folder / "soak.rv").write_text(SPEC)
     only = ",".join(_in_c())
     words = ["compile", str(folder / "soak.rv"), "--to", "c", "-o", str(folder), "--only", only]
-    assert command(words) == 0
+    if command(words):
+        raise AssertionError("no C is generated")
     header = (folder / "soak.h").read_text()
     places = {name: f".{kind.lower()}[{n}]" for kind, n, name in _NUMBERED.findall(header)}
     values = {name: place.replace("signal", "value") for name, place in places.items()}
@@ -184,7 +185,8 @@ def live_in_c(path: Path, seconds: int, first: int) -> tuple[Lived, str]:
     """Feed generated C, which refuses a sample without a word."""
     words = [str(path), str(seconds), str(first), str(TAIL)]
     told = json.loads(subprocess.run(words, check=True, capture_output=True).stdout)
-    assert not told["overflowed"], "more attempts were open than there is room for"
+    if told["overflowed"]:
+        raise AssertionError("more attempts were open than there is room for")
     counts = {
         name: (passed, failed, undecided)
         for name, (failed, passed, undecided) in zip(_in_c(), told["counts"], strict=True)
@@ -203,11 +205,11 @@ def expected(name: str, seconds: int) -> tuple[int, ...]:
 def quantile(bins: Sequence[tuple[int, int]], share: float) -> int:
     """Nanoseconds that such a share of the steps did not exceed, rounded up."""
     left = share * sum(count for _, count in bins)
-    for time_, count in bins:
+    for place, count in bins:
         left -= count
         if left <= 0:
-            break
-    return (time_ + 1) * BIN_NS
+            return (place + 1) * BIN_NS
+    raise AssertionError("there is no step")
 
 
 def main(words: list[str]) -> int:

@@ -1,11 +1,11 @@
 """Fuzz rvmon: `python -m fuzz --seconds 60 [--only spec recording …] [--out out/fuzz]`.
 
 Python is fuzzed by atheris (`pip install atheris`), the reader of C programs by AFL++
-(`apt-get install afl++ libclang-rt-dev`); what is not installed is said and left out. Both take the time by
-turns and go on from what they found before, in the folder of `--out`. Prints by target how many
-inputs it took, how they ended, how many places of the code were reached, and which inputs stumbled;
-exits 1 if one did. An input that stumbled is mended by a file more in `fuzz/corpus`, which a test
-reads.
+(`apt-get install afl++ clang libclang-rt-14-dev`); what is not installed is said and left out. Each
+target has its part of the time, and goes on from what it found before, in the folder of `--out`.
+Prints by target how many inputs it took, how they ended, how many places of the code were reached,
+and which inputs stumbled; exits 1 if one did. Once it is mended, that input is a file more in
+`fuzz/corpus`, which a test reads.
 """
 
 from __future__ import annotations

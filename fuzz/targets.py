@@ -143,7 +143,7 @@ def _messages(data: bytes, name: str) -> str:
         rvmon.loads(SHOP).evaluate(path, allow_missing=True)
     except RvmonError:
         return "refused"
-    except MemoryError:  # a length that is damaged: `rvmon run` says so
+    except MemoryError:  # a length of a message; `rvmon run` says so
         return "too large"
     return "judged"
 

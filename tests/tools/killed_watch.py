@@ -8,9 +8,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
+from rvmon.cli import main
 from rvmon.trace.time import TICKS_PER_SECOND
 
 SPEC = """
@@ -83,8 +85,11 @@ def watch(folder: Path, state: str, out: str) -> subprocess.Popen[bytes]:
 
 
 def whole(folder: Path) -> Verdicts:
-    """What a watch tells that nobody kills."""
-    watch(folder, "whole.state", "whole.out").wait()
+    """What it tells that nobody kills, in this process."""
+    files = (str(folder / name) for name in ("kept.rv", "lines.jsonl", "whole.state"))
+    spec, lines, state = files
+    with (folder / "whole.out").open("w") as file, redirect_stdout(file):
+        main(["watch", spec, lines, "--state", state, "--format", "json"])
     return told((folder / "whole.out").read_text().splitlines(keepends=True), {})
 
 
