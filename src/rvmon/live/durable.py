@@ -123,7 +123,8 @@ class DurableMonitor:
         checked = self.monitor.options.compiled.checked
         lost = [name for name in names if name in checked.signals or name in checked.events]
         if self._reached is not None:
-            self._reached += 1
+            if self.monitor.options.settle != "next":  # else it may be one more at the same stamp
+                self._reached += 1
             self.monitor.step_ns(self._reached, dict.fromkeys(lost))
 
     def _hear(self, attempt: Attempt) -> None:
@@ -149,7 +150,7 @@ class DurableMonitor:
         """Judge a sample, as `Monitor.step_ns` does; verdicts are told.
 
         Raises:
-            TraceError: the monitor refuses it; what it spoke of is unknown from the next instant.
+            TraceError: the monitor refuses it; what it spoke of is unknown from now on.
             OSError: the file cannot be written; nothing was judged.
         """
         self._keep(whole_ticks(t_ns), dict(values))
@@ -159,7 +160,7 @@ class DurableMonitor:
         self._keep(whole_ticks(t_ns), None)
 
     def lose(self, names: Iterable[str]) -> None:
-        """Have unknown, from the next instant on, what a sample spoke of that was lost."""
+        """Have unknown, from now on, what a sample spoke of that was lost."""
         self._keep(None, dict.fromkeys(names))
 
     def _keep(self, t: int | None, values: Mapping[str, Any] | None) -> None:
