@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -15,7 +16,7 @@
 #define BIN_NS 10
 
 static uint64_t counts[SOAK_RULES][3];
-static uint64_t bins[BINS];
+uint64_t bins[BINS]; /* not static: that all its pages are touched first is not left out */
 static soak_monitor monitor;
 static soak_attempt attempts[256];
 
@@ -53,6 +54,9 @@ int main(int argc, char **argv)
     int64_t longest = 0, before = 0;
     uint64_t n, taken = 0;
     int rule;
+    memset(bins, 1, sizeof bins);
+    before = now();
+    memset(bins, 0, sizeof bins);
     soak_init(&monitor, attempts, sizeof attempts / sizeof attempts[0], on_record, NULL);
     printf("{\"resident\":[%ld", resident_kib());
     for (n = 0; n < samples + tail; n++, t += STEP) {

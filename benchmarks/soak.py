@@ -5,7 +5,8 @@
 
 A sample per millisecond, in a pattern of a second: attempts that overlap, keys that come again,
 NaN, a signal that becomes stale. How many attempts pass and fail in each second is known, and
-compared at the end. Python (`auto`, `python`) keeps 100 records of each verdict; `c` is generated C
+compared at the end. Python (`auto`, `python`, and `prepared`, with compiled code beside it, which
+does without R3) keeps 100 records of each verdict; `c` is generated C
 in a program of its own, with room for 256 attempts, that tells records and keeps none. It is not
 asked for R5, of which each attempt stays undecided for ever: C has such attempts open until its
 end. Prints memory after each tenth, the times of steps with the time to ask the clock, and what is
@@ -115,9 +116,13 @@ class Lived:
     longest: int
 
 
-def live_in_python(seconds: int, first: int, engine: str) -> tuple[Lived, str]:
+def live_in_python(seconds: int, first: int, engine: str, only: Sequence[str]) -> tuple[Lived, str]:
     """Feed a monitor of Python; also what it said where it refused a sample."""
-    monitor = rvmon.loads(SPEC).monitor(engine=engine, keep=100)
+    spec = rvmon.loads(SPEC)
+    if engine == "prepared":
+        spec.prepare(only=only)
+        engine = "auto"
+    monitor = spec.monitor(engine=engine, keep=100, only=only)
     rows, quiet, step, clock = pattern(), [{}] * TAIL, monitor.step_ns, time.perf_counter_ns
     bins = np.zeros(BINS, dtype=np.int64)
     resident, longest, t, said = [resident_kib()], 0, first, ""
@@ -142,10 +147,10 @@ def live_in_python(seconds: int, first: int, engine: str) -> tuple[Lived, str]:
     return Lived((t - first) // STEP_NS, resident, counts, found, longest), said
 
 
-def program(folder: Path) -> Path:
+def program(folder: Path, names: Sequence[str]) -> Path:
     """Compile what feeds generated C."""
     (folder / "soak.rv").write_text(SPEC)
-    only = ",".join(_in_c())
+    only = ",".join(names)
     words = ["compile", str(folder / "soak.rv"), "--to", "c", "-o", str(folder), "--only", only]
     if command(words):
         raise AssertionError("no C is generated")
@@ -163,10 +168,6 @@ def program(folder: Path) -> Path:
     return folder / "soak"
 
 
-def _in_c() -> list[str]:
-    return [name for name, (_, _, undecided) in KNOWN.items() if not undecided]
-
-
 def _initialisers(
     row: Mapping[str, Any], places: Mapping[str, str], values: Mapping[str, str]
 ) -> Iterator[str]:
@@ -181,7 +182,7 @@ def _initialisers(
             yield f"{values[name]} = {float(value)}"
 
 
-def live_in_c(path: Path, seconds: int, first: int) -> tuple[Lived, str]:
+def live_in_c(path: Path, seconds: int, first: int, names: Sequence[str]) -> tuple[Lived, str]:
     """Feed generated C, which refuses a sample without a word."""
     words = [str(path), str(seconds), str(first), str(TAIL)]
     told = json.loads(subprocess.run(words, check=True, capture_output=True).stdout)
@@ -189,7 +190,7 @@ def live_in_c(path: Path, seconds: int, first: int) -> tuple[Lived, str]:
         raise AssertionError("more attempts were open than there is room for")
     counts = {
         name: (passed, failed, undecided)
-        for name, (failed, passed, undecided) in zip(_in_c(), told["counts"], strict=True)
+        for name, (failed, passed, undecided) in zip(names, told["counts"], strict=True)
     }
     lived = Lived(told["taken"], told["resident"], counts, told["bins"], told["longest"])
     whole = told["taken"] == seconds * ROWS + TAIL
@@ -216,16 +217,20 @@ def main(words: list[str]) -> int:
     """Feed, compare, print, and return 1 if a verdict is wrong."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--samples", type=int, default=1_000_000)
-    parser.add_argument("--engine", choices=("auto", "python", "c"), default="auto")
+    parser.add_argument("--engine", choices=("auto", "python", "prepared", "c"), default="auto")
+    parser.add_argument("--only", nargs="+", choices=KNOWN, default=list(KNOWN))
     options = parser.parse_args(words)
     seconds = max(10, options.samples // ROWS)
+    names = [one for one in KNOWN if one in options.only]
+    if options.engine == "c":
+        names = [one for one in names if not KNOWN[one][2]]
     with tempfile.TemporaryDirectory() as folder:
-        built = program(Path(folder)) if options.engine == "c" else None
+        built = program(Path(folder), names) if options.engine == "c" else None
 
         def live(span: int, first: int) -> tuple[Lived, str]:
             if built is not None:
-                return live_in_c(built, span, first)
-            return live_in_python(span, first, options.engine)
+                return live_in_c(built, span, first, names)
+            return live_in_python(span, first, options.engine, names)
 
         began = time.perf_counter()
         lived, _ = live(seconds, 0)
@@ -243,9 +248,10 @@ def main(words: list[str]) -> int:
         mark = "as known" if found == known else f"WRONG, it is {known}"
         print(f"{name}: {found[0]:,} P, {found[1]:,} F, {found[2]:,} I: {mark}")
     # One second and a half to the end: the samples before it are judged, the one behind is refused.
-    whole = last.taken == 1500 and last.counts["R1"] == (90, 58, 2) and bool(said)
+    found = last.counts.get("R1", (90, 58, 2))
+    whole = last.taken == 1500 and found == (90, 58, 2) and bool(said)
     print(f"the end of time: {last.taken:,} samples are taken, then: {said}")
-    print(f"  R1 {last.counts['R1']}: {'as known' if whole else 'WRONG'}")
+    print(f"  R1 {found}: {'as known' if whole else 'WRONG'}")
     return 1 if wrong or not whole else 0
 
 

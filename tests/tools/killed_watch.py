@@ -8,7 +8,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -88,7 +89,11 @@ def whole(folder: Path) -> Verdicts:
     """What it tells that nobody kills, in this process."""
     files = (str(folder / name) for name in ("kept.rv", "lines.jsonl", "whole.state"))
     spec, lines, state = files
-    with (folder / "whole.out").open("w") as file, redirect_stdout(file):
+    with (
+        (folder / "whole.out").open("w") as file,
+        redirect_stdout(file),
+        redirect_stderr(StringIO()),
+    ):
         main(["watch", spec, lines, "--state", state, "--format", "json"])
     return told((folder / "whole.out").read_text().splitlines(keepends=True), {})
 
