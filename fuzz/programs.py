@@ -1,4 +1,8 @@
-"""The reader of C programs under AFL++, with what finds wrong addresses and undefined behaviour."""
+"""The reader of C programs under AFL++, with what finds wrong addresses and undefined behaviour.
+
+What it calls a hang may be none: where a stamp leaps by years, as many attempts fail as the law
+says, one for each second.
+"""
 
 from __future__ import annotations
 

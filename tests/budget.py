@@ -8,7 +8,7 @@ import pytest
 BUDGETS = {
     "src/handover": 2,
     "src/rvmon": 20,
-    "tests": 8,
+    "tests": 10,
     "tests/benchmarks": 10,
     "tests/handover/campaign": 62,
     "tests/handover/checker": 5,
