@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # What Python makes of files is kept, whatever is the custom here: else each program that tests start makes it anew.
 TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: help demo test quick check format bench clean
+.PHONY: help demo test quick check format bench fuzz clean
 
 help:  ## show this list
 	@awk -F':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -33,6 +33,11 @@ bench: $(VENV)/.dev  ## time monitors against peers, 20 minutes; writes benchmar
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,arrow]' \
 	  || echo "rvmon: pyarrow does not install here: Parquet is not measured"
 	@$(BIN)/python -m benchmarks
+
+fuzz: $(VENV)/.dev  ## feed damaged input to all readers for SECONDS=600, and Python and C to each other
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3,<4' \
+	  || echo "rvmon: atheris does not install here: Python is not fuzzed"
+	@$(BIN)/python -m fuzz --seconds $(or $(SECONDS),600)
 
 clean:  ## remove the environment and all output
 	rm -rf $(VENV) out dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

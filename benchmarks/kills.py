@@ -4,8 +4,9 @@ r"""Kill processes that have others work for them, at random instants: what live
 
 Each kind of parent is killed so often by SIGKILL and by SIGTERM, in turn. Prints how many of its
 processes live 2 s later, how many files are half written, how many bear a name that says that they
-are not finished, and how the parents ended; exits 1 if something lives or is half written. Needs
-Linux's /proc.
+are not finished, and how the parents ended. `rvmon watch --state` is begun again after each kill,
+and its verdicts compared with those of one that nobody kills. Exits 1 if something lives, is half
+written, lost or changed. Needs Linux's /proc.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
+
+from tests.tools import killed_watch
 
 from rvmon.cache import is_whole, read_kept
 from rvmon.writing import SUFFIX
@@ -90,6 +93,9 @@ PARENTS = (
         fresh=False,
     ),
 )
+
+WATCH = "rvmon watch --state"
+"""It is killed again and again until it has judged its lines."""
 
 
 def inputs(folder: Path) -> None:
@@ -214,7 +220,7 @@ def main(argv: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--kills", type=int, default=50, help="of each kind of parent")
     parser.add_argument("--seed", type=int, default=1)
-    labels = [parent.label for parent in PARENTS]
+    labels = [*(parent.label for parent in PARENTS), WATCH]
     parser.add_argument("--only", choices=labels, nargs="+", default=labels, metavar="KIND")
     options = parser.parse_args(argv)
     bad = 0
@@ -231,6 +237,16 @@ def main(argv: Sequence[str]) -> int:
         for what, count in sorted(trial.found.items()):
             print(f"  {what}: {count}", flush=True)
             bad += count * what.endswith(("survivors", "half written"))
+    if WATCH in options.only:
+        with tempfile.TemporaryDirectory() as folder:
+            killed_watch.written(Path(folder), options.seed, 40 * options.kills)
+            expected = killed_watch.whole(Path(folder))
+            found, done = killed_watch.killed(Path(folder), options.kills, options.seed)
+        lost, other = expected.keys() - found.keys(), found.keys() - expected.keys()
+        changed = sum(found[number] != expected[number] for number in found.keys() & expected)
+        print(f"{WATCH}: {done} kills, {len(expected):,} verdicts")
+        print(f"  lost: {len(lost)}, changed: {changed}, of nobody: {len(other)}")
+        bad += len(lost) + changed + len(other)
     return 1 if bad else 0
 
 

@@ -8,7 +8,7 @@ import pytest
 BUDGETS = {
     "src/handover": 2,
     "src/rvmon": 20,
-    "tests": 2,
+    "tests": 10,
     "tests/benchmarks": 10,
     "tests/examples": 15,
     "tests/handover": 4,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import os
+import stat
 import threading
 import time
 from collections.abc import Callable
@@ -95,6 +96,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         default=10_000,
         help="so many lines may wait (default: 10000); what finds no room is lost, and counted",
     )
+    parser.add_argument(
+        "--state",
+        metavar="FILE",
+        help="keep the run in a file: killed, it goes on where it was, and tells each verdict "
+        "under its number, the latest perhaps twice",
+    )
     parser.add_argument("--failures", action="store_true", help="say what fails, not what passes")
     parser.add_argument(
         "--format",
@@ -109,6 +116,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     arguments.made = _age(arguments.spec)  # before it is read: no change is missed
     spec = _loaded(arguments)
+    if arguments.state is not None:
+        return _watch_kept(arguments, spec)
     shown = output_named(arguments.format, failures_only=arguments.failures)
     door = next((one for one in _DOORS if arguments.source.startswith(one)), "")
     watch, idle = _DOORS[door]
@@ -120,6 +129,18 @@ def run(arguments: argparse.Namespace) -> int:
     shown.ended(live)
     verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
     return int(any(one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts))
+
+
+def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
+    from rvmon.adapters.json_lines import read_lines
+    from rvmon.cli.watch_kept import refuse_others, watch_kept
+
+    refuse_others(arguments)
+    with _opened(arguments.source) as file:
+        lines = read_lines(file.fileno())
+        is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
+        only = ids_of(arguments.only, spec)
+        return watch_kept(arguments, spec, only, lines, is_file=is_file)
 
 
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:

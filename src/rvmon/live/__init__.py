@@ -8,6 +8,7 @@ event loop. What translates for a middleware calls `offer` and nothing else.
 from rvmon.live.calls import as_event
 from rvmon.live.clock import Clock, SimulatedClock, WallClock
 from rvmon.live.driver import Driver
+from rvmon.live.durable import DurableMonitor
 from rvmon.live.robot import Judgement
 from rvmon.live.status import Status
 from rvmon.live.tasks import LiveTasks
@@ -16,6 +17,7 @@ from rvmon.live.threads import Live
 __all__ = [
     "Clock",
     "Driver",
+    "DurableMonitor",
     "Judgement",
     "Live",
     "LiveTasks",

@@ -26,13 +26,19 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
         TraceError: it cannot be read.
         OSError: it cannot be opened.
     """
-    if form == "mcap":
-        from rvmon.readers.messages.mcap import mcap_messages
+    try:
+        if form == "mcap":
+            from rvmon.readers.messages.mcap import mcap_messages
 
-        return mcap_messages(path, schema.binding.definitions)
-    from rvmon.readers.messages.ros import BagMessages
+            return mcap_messages(path, schema.binding.definitions)
+        from rvmon.readers.messages.ros import BagMessages
 
-    return BagMessages(path, form, schema.binding.definitions)
+        return BagMessages(path, form, schema.binding.definitions)
+    except MemoryError:  # to open it takes little, unless what it says of its sizes is wrong
+        raise TraceError(
+            "cannot be opened: a size in it is beyond the memory: copy it again if it is damaged, "
+            "or raise --max-memory"
+        ) from None
 
 
 def _close(ready: list[Messages]) -> None:

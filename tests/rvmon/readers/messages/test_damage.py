@@ -205,3 +205,14 @@ def test_json_that_does_not_fit_is_told_with_its_message(tmp_path, spec):
     path = write_json_mcap(tmp_path / "a.mcap", sent)
     with pytest.raises(rvmon.TraceError, match=r"message 2 of /speed: `speed`: `fast` is not"):
         spec.evaluate(path, allow_missing=True)
+
+
+def test_a_size_beyond_the_memory_is_told(tmp_path, spec):
+    """Of the first record of an MCAP file of ROS 2: the file is named, not the memory alone."""
+    path, file = written(tmp_path, "mcap")
+    data = bytearray(file.read_bytes())
+    # An opcode and eight bytes of length follow the magic number; the last is the highest.
+    data[8 + 8] = 0x1E
+    file.write_bytes(data)
+    with pytest.raises(rvmon.TraceError, match="a size in it is beyond the memory"):
+        spec.evaluate(path)

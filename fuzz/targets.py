@@ -1,0 +1,278 @@
+"""What is fuzzed: each target takes bytes and raises only if something stumbles over them.
+
+Bad input is to be refused by an `RvmonError`, which a target takes for an answer. A target of
+recordings also compares what our engines, and the C program, say of what they judge.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+
+from tests.tools.bags import SHOP
+from tests.tools.timed_damage import survives
+
+import rvmon
+from rvmon.cli import main
+from rvmon.diagnostics.render import render_full
+from rvmon.errors import ModelError, RvmonError, SnapshotError, SpecError
+from rvmon.spec.print.formatter import format_text
+
+ANSWERS: Counter[str] = Counter()
+"""How inputs ended, by target."""
+
+RECORDED = """
+spec recorded
+time {time}
+signal door : bool
+signal speed : real [m/s]  stale after 700 ms
+signal parts : int
+signal mode : {{idle, working, stopped}}
+event pick(id: int, force: real)
+event halt
+requirement R1
+  upon halt
+  then within 300 ms speed < 0.1 m/s
+requirement R2
+  whenever mode == idle
+  then within 1 s not door
+requirement R3
+  upon pick.force > 4.5 or pick.id == 3
+  then within 1 s (halt or parts >= 2)
+requirement R4
+  always once[0 s, 2 s] known(speed)
+requirement R5
+  upon pick
+  then within 500 ms parts > n
+  for each n in pick.id
+requirement R6
+  upon rise(door)
+  then for 300 ms parts == v
+  let v = parts
+"""
+"""Values of all kinds, dropouts, keys and captured values."""
+
+TIMES = ("held", "sampled", "sampled every 100 ms")
+
+SANITIZED = "-fsanitize=undefined -fno-sanitize-recover=all"
+"""Has the program end where C does not say what happens; AFL++ looks for wrong addresses."""
+
+ENDS = (".csv", ".jsonl")
+
+
+@cache
+def folder() -> Path:
+    """Where inputs lie that are read as files; it goes with the process."""
+    place = tempfile.TemporaryDirectory(prefix="rvmon-fuzz-")
+    _KEPT.append(place)
+    return Path(place.name)
+
+
+_KEPT: list[object] = []
+
+
+def _file(name: str, data: bytes) -> Path:
+    path = folder() / name
+    path.write_bytes(data)
+    return path
+
+
+def spec(data: bytes) -> str:
+    """A specification: findings with their places, or it is laid out, compiled and judges."""
+    path = _file("s.rv", data)
+    try:
+        loaded = rvmon.load(path)
+    except SpecError as error:
+        return "refused" if render_full(error.diagnostics) or str(error) else _silent()
+    except RvmonError:
+        return "unread"
+    text = format_text(data.decode())
+    assert format_text(text) == text, "laid out twice is laid out otherwise"
+    try:
+        monitor = loaded.monitor()
+        for t in range(3):
+            monitor.step(t, {})
+        monitor.finish()
+    except RvmonError:
+        return "not monitored"
+    return "judged"
+
+
+def _silent() -> str:
+    raise AssertionError("it is refused without a word")
+
+
+def binding(data: bytes) -> str:
+    """A binding of the recording of a shop."""
+    path = _file("b.toml", data)
+    try:
+        rvmon.loads(SHOP).reading(binding=path)
+    except RvmonError:
+        return "refused"
+    return "read"
+
+
+def _model(data: bytes, name: str) -> str:
+    path = _file(name, data)
+    try:
+        return survives(path)
+    except ModelError:
+        return "refused"
+
+
+def model_text(data: bytes) -> str:
+    """A network of timed automata in our form; it is written as XML, read again, and checked."""
+    return _model(data, "m.ta")
+
+
+def model_xml(data: bytes) -> str:
+    """The same in UPPAAL's form."""
+    return _model(data, "m.xml")
+
+
+def _messages(data: bytes, name: str) -> str:
+    path = _file(name, data)
+    try:
+        rvmon.loads(SHOP).evaluate(path, allow_missing=True)
+    except RvmonError:
+        return "refused"
+    except MemoryError:  # a length of a message; `rvmon run` says so
+        return "too large"
+    return "judged"
+
+
+def bag(data: bytes) -> str:
+    """A bag of ROS 1."""
+    return _messages(data, "r.bag")
+
+
+def mcap(data: bytes) -> str:
+    """An MCAP file."""
+    return _messages(data, "r.mcap")
+
+
+def parquet(data: bytes) -> str:
+    """A Parquet file."""
+    return _messages(data, "r.parquet")
+
+
+@cache
+def _whole_snapshot() -> Mapping[str, object]:
+    monitor = _recorded(TIMES[0]).monitor()
+    monitor.step(0, {"speed": 1.0, "mode": "idle", "door": True, "parts": 1})
+    monitor.step(0.1, {"halt": True, "pick": {"id": 3, "force": 5.0}, "door": False})
+    document = json.loads(monitor.snapshot().partition(b"\n")[2])
+    return {name: document[name] for name in ("rvmon", "spec", "machines")}
+
+
+def snapshot(data: bytes) -> str:
+    """What a snapshot of this version and specification says, under a checksum that fits."""
+    try:
+        said = json.loads(data)
+    except (ValueError, RecursionError):
+        return "no JSON"
+    if not isinstance(said, dict):
+        return "no document"
+    body = json.dumps({**_whole_snapshot(), **said}).encode()
+    seal = b"rvmon snapshot 2 " + hashlib.sha256(body).hexdigest().encode()
+    try:
+        monitor = _recorded(TIMES[0]).restore(seal + b"\n" + body)
+    except SnapshotError:
+        return "refused"
+    try:
+        monitor.step_ns(10**10, {"halt": True})
+    except RvmonError:
+        return "restored, refuses a sample"
+    monitor.finish()
+    return "restored"
+
+
+@cache
+def _recorded(time: str) -> rvmon.Spec:
+    return rvmon.loads(RECORDED.format(time=time))
+
+
+@cache
+def _program(time: str) -> Path:
+    """The C program of a specification."""
+    source, program = _file("p.rv", RECORDED.format(time=time).encode()), f"judge-{time[-3:]}"
+    before = os.environ.get("CC")
+    os.environ["CC"] = f"{before or 'cc'} {SANITIZED} -DBLOCK=100"
+    assert main(["build", str(source), "-o", str(folder() / program)]) == 0
+    if before is None:
+        del os.environ["CC"]
+    else:
+        os.environ["CC"] = before
+    return folder() / program
+
+
+def recording(data: bytes, engines: Sequence[str] = ("python", "auto", "c")) -> str:
+    """A CSV file or JSON lines: Python, columns, C and the C program say the same.
+
+    The first byte says which form and time model; the rest is the file. Of the engines the first
+    judges all that others do.
+    """
+    if not data:
+        return "nothing"
+    ending, time = ENDS[data[0] % 2], TIMES[data[0] // 2 % 3]
+    path = _file(f"r{ending}", data[1:])
+    found = {name: _told_by_engine(time, path, name) for name in engines}
+    found["program"] = _told_by_program(time, path)
+    judged = {name: one for name, one in found.items() if one is not None}
+    for name, one in judged.items():
+        first = found[engines[0]]
+        assert one == first, f"{name} says\n{one}\nand {engines[0]}\n{first}"
+    return "judged by " + (", ".join(judged) or "none")
+
+
+def _told_by_engine(time: str, path: Path, engine: str) -> object:
+    try:
+        report = _recorded(time).evaluate(path, engine=engine, allow_missing=True)
+    except RvmonError:
+        return None
+    attempts: dict[str, list[object]] = {name: [] for name in report.verdicts}
+    for one in report.attempts:
+        told = (one.number, one.triggered, one.decided, one.verdict, one.decision)
+        attempts[one.requirement].append(told)
+    return (
+        *(report.origin, report.end),
+        {name: (verdict, attempts[name]) for name, verdict in report.verdicts.items()},
+    )
+
+
+def _told_by_program(time: str, path: Path) -> object:
+    words = [str(_program(time)), "--allow-missing", str(path)]
+    done = subprocess.run(words, capture_output=True, check=False)
+    assert done.returncode in (0, 1, 2), done.stderr.decode(errors="replace")
+    if done.returncode == 2:
+        assert done.stderr.startswith(str(path).encode()), "no file, line and cause"
+        return None
+    report = json.loads(done.stdout)
+    keys = ("number", "triggered", "decided", "verdict", "decision")
+    return (
+        *(report["origin"], report["end"]),
+        {
+            name: (one["verdict"], [tuple(a[key] for key in keys) for a in one["attempts"]])
+            for name, one in report["requirements"].items()
+        },
+    )
+
+
+TARGETS: Mapping[str, Callable[[bytes], str]] = {
+    one.__name__: one
+    for one in (spec, binding, model_text, model_xml, bag, mcap, parquet, snapshot, recording)
+}
+
+
+def run(name: str, data: bytes) -> str:
+    """Have a target take an input; how that ended is counted."""
+    end = TARGETS[name](data)
+    ANSWERS[end] += 1
+    return end

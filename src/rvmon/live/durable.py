@@ -1,0 +1,185 @@
+"""A monitor whose run outlives its process, however that ends."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rvmon.errors import RvmonError, SnapshotError, TraceError
+from rvmon.execute.journal import add, begin, entries
+from rvmon.trace.time import whole_ticks
+
+if TYPE_CHECKING:
+    from rvmon.monitor import Monitor
+    from rvmon.session import Spec
+    from rvmon.verdict.attempt import Attempt
+
+Told = Callable[[int, "Attempt"], object]
+
+
+class DurableMonitor:
+    r"""A monitor that goes on where it was when its process was killed.
+
+    Its file holds a snapshot and the samples that came since. A sample is in the file before it is
+    judged. So each verdict is told at least once; what was told shortly before the end is told
+    again, alike and under the same number, by which a reader tells it from the next.
+
+    What the process of the monitor has not been given is not in the file, and a loss of power can
+    take the latest samples: they are with the system, not on the disk.
+
+    Args:
+        spec: what is judged.
+        path: of the file; if it is there, the run in it goes on.
+        told: called with the number, from 1, and the record of each attempt that passes or fails.
+            What it raises comes out of the call that decided; the verdict counts as told.
+        every: so many samples are kept beside a snapshot.
+        **options: as for `Spec.monitor`, for a new run; an old one goes on as it began.
+
+    Attributes:
+        monitor: judges; to be asked only.
+        taken: so many samples were kept since the run began, refused and lost ones as well: where
+            the source can be read again, it goes on behind them.
+
+    Raises:
+        SnapshotError: what is in the file is none, or of another specification or version.
+        OSError: the file cannot be read or written.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> from rvmon import loads
+    >>> spec = loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n")
+    >>> say = lambda number, attempt: print(number, attempt.name, attempt.verdict.name)
+    >>> with TemporaryDirectory() as folder:
+    ...     DurableMonitor(spec, f"{folder}/run", say).step_ns(0, {"x": 5.0})
+    ...     DurableMonitor(spec, f"{folder}/run", say).step_ns(1, {"x": 2.0})
+    ...     DurableMonitor(spec, f"{folder}/run", say).step_ns(2, {"x": 4.0})
+    1 R#1 FAIL
+    1 R#1 FAIL
+    2 R#2 FAIL
+    """
+
+    def __init__(
+        self, spec: Spec, path: str | Path, told: Told, *, every: int = 1000, **options: Any
+    ) -> None:
+        if type(every) is not int or every < 1:
+            raise RvmonError(f"every={every!r}: expected a whole number from 1 on")
+        self._path = Path(path)
+        self._told = told
+        self._every = every
+        self._number = 0
+        self.taken = 0
+        self._reached: int | None = None
+        found = entries(self._path)
+        self.monitor = spec.monitor(**options) if found is None else self._taken_up(spec, found)
+        self.monitor.on_decided(self._hear)
+        for line in [] if found is None else found[1:]:
+            self._again(line)
+        # What these samples decided was told: they need not be judged once more.
+        self.save()
+
+    def _taken_up(self, spec: Spec, found: list[bytes]) -> Monitor:
+        try:
+            head = json.loads(found[0])
+            self._number, data = int(head["told"]), str(head["snapshot"]).encode()
+            self.taken = int(head["taken"])
+            self._reached = None if head["reached"] is None else int(head["reached"])
+        except (ValueError, LookupError, TypeError, RecursionError):
+            raise SnapshotError(
+                f"{self._path}: no run of a monitor, or its beginning is damaged: name another "
+                "file, or delete this one to begin anew"
+            ) from None
+        try:
+            return spec.restore(data)
+        except SnapshotError as error:
+            raise SnapshotError(f"{self._path}: {error}") from None
+
+    def _again(self, line: bytes) -> None:
+        try:
+            t, values = json.loads(line)
+        except (ValueError, TypeError, RecursionError):
+            raise SnapshotError(f"{self._path}: what it holds is no sample") from None
+        with suppress(TraceError):  # it was refused then, too
+            self._judge(t, values)
+
+    def _judge(self, t: int | None, values: Mapping[str, Any] | None) -> None:
+        self.taken += 1
+        if t is None:
+            self._lose(values or ())
+        elif values is None:
+            self.monitor.advance_ns(t)
+            self._reached = t
+        else:
+            try:
+                self.monitor.step_ns(t, values)
+            except TraceError:
+                self._lose(values)
+                raise
+            self._reached = t
+
+    def _lose(self, names: Iterable[str]) -> None:
+        """Have unknown what a sample spoke of; before the first one, nothing is known anyhow."""
+        checked = self.monitor.options.compiled.checked
+        lost = [name for name in names if name in checked.signals or name in checked.events]
+        if self._reached is not None:
+            if self.monitor.options.settle != "next":  # else it may be one more at the same stamp
+                self._reached += 1
+            self.monitor.step_ns(self._reached, dict.fromkeys(lost))
+
+    def _hear(self, attempt: Attempt) -> None:
+        self._number += 1
+        self._told(self._number, attempt)
+
+    def save(self) -> None:
+        """Keep the run as it is: what was told so far is not told again.
+
+        Raises:
+            OSError: the file cannot be written; it stays as it was.
+        """
+        head = {
+            "told": self._number,
+            "taken": self.taken,
+            "reached": self._reached,
+            "snapshot": self.monitor.snapshot().decode(),
+        }
+        begin(self._path, [json.dumps(head).encode()])
+        self._kept = 0
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> None:
+        """Judge a sample, as `Monitor.step_ns` does; verdicts are told.
+
+        Raises:
+            TraceError: the monitor refuses it; what it spoke of is unknown from now on.
+            OSError: the file cannot be written; nothing was judged.
+        """
+        self._keep(whole_ticks(t_ns), dict(values))
+
+    def advance_ns(self, t_ns: int) -> None:
+        """Say that no sample before an instant, ns, will come; otherwise as `step_ns`."""
+        self._keep(whole_ticks(t_ns), None)
+
+    def lose(self, names: Iterable[str]) -> None:
+        """Have unknown, from now on, what a sample spoke of that was lost."""
+        self._keep(None, dict.fromkeys(names))
+
+    def _keep(self, t: int | None, values: Mapping[str, Any] | None) -> None:
+        try:
+            line = json.dumps([t, values], default=_plain).encode()
+        except (TypeError, ValueError, RecursionError) as error:
+            raise TraceError(f"a sample that cannot be kept: {error}") from None
+        add(self._path, line)
+        self._kept += 1
+        try:
+            self._judge(t, values)
+        finally:
+            if self._kept >= self._every:
+                self.save()
+
+
+def _plain(value: object) -> object:
+    """A number of NumPy as one of Python."""
+    item = getattr(value, "item", None)
+    if item is None:
+        raise TypeError(f"`{type(value).__name__}` is no value of a signal or an event")
+    return item()

@@ -1,0 +1,126 @@
+"""A run that goes on where its process was killed: no verdict is lost, changed or of nobody."""
+
+import random
+
+import pytest
+from tests.tools import killed_watch
+
+import rvmon
+from rvmon.cli import main
+from rvmon.errors import SnapshotError, TraceError
+from rvmon.execute.journal import add
+from rvmon.live.durable import DurableMonitor
+
+SPEC = rvmon.loads(killed_watch.SPEC)
+
+
+def judged(path, fed, cuts, told, every=25):
+    """Feed samples; at each cut the monitor is left as it is, and another takes the run up."""
+    monitor = DurableMonitor(SPEC, path, told, every=every, settle="next")
+    for number, (t, values) in enumerate(fed):
+        if number in cuts:
+            monitor = DurableMonitor(SPEC, path, told, every=every, settle="next")
+            assert monitor.taken == number
+        try:
+            monitor.step_ns(t, values)
+        except TraceError:
+            continue
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
+    """Wherever it is cut, also behind refused samples: numbers, records, reasons are the same."""
+    rng = random.Random(seed)
+    fed = [*killed_watch.samples(rng, 120)]
+    whole, found = {}, {}
+    judged(tmp_path / "whole", fed, (), lambda n, one: whole.update({n: one}), every=10_000)
+
+    def told(number, attempt):
+        assert found.setdefault(number, attempt) == attempt
+        assert found[number].reason == attempt.reason
+
+    judged(tmp_path / "cut", fed, rng.sample(range(120), 5), told)
+    assert len(whole) > 20
+    assert found == whole
+
+
+def test_a_torn_entry_is_as_one_that_never_came(tmp_path):
+    """And what comes after it is kept."""
+    told = []
+    path = tmp_path / "run"
+    DurableMonitor(SPEC, path, told.append).step_ns(0, {"speed": 0.5})
+    path.write_bytes(path.read_bytes() + b"0123456")
+    monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one))
+    monitor.step_ns(1, {"speed": 2.0})
+    again = DurableMonitor(SPEC, path, lambda *one: told.append(one))
+    assert again.taken == 2
+    assert [(number, one.name) for number, one in told] == [(1, "R2#1")] * 2
+
+
+def test_what_was_saved_is_not_told_again(tmp_path):
+    """So a watch that came to its end tells nothing when it is begun again."""
+    told = []
+    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
+    monitor.step_ns(0, {"speed": 2.0})
+    monitor.advance_ns(5)
+    monitor.save()
+    DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
+    assert len(told) == 1
+
+
+def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path):
+    """What is not known passes nothing."""
+    told = []
+    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
+    monitor.step_ns(0, {"speed": 0.5, "p": True})
+    monitor.lose(["p", "other"])
+    monitor.step_ns(9, {"go": True})
+    monitor.step_ns(30_000_000, {})
+    assert not told
+
+
+def test_files_and_values_that_are_none_are_told(tmp_path):
+    """The file is named; what cannot be kept is not judged."""
+    (tmp_path / "text").write_text("a run\n")
+    with pytest.raises(SnapshotError, match="text: no run of a monitor"):
+        DurableMonitor(SPEC, tmp_path / "text", print)
+    DurableMonitor(SPEC, tmp_path / "run", print)
+    other = rvmon.loads(killed_watch.SPEC.replace("25 ms", "26 ms"))
+    with pytest.raises(SnapshotError, match="run: the snapshot was made with another"):
+        DurableMonitor(other, tmp_path / "run", print)
+    add(tmp_path / "run", b"[1, 2, 3]")
+    with pytest.raises(SnapshotError, match="run: what it holds is no sample"):
+        DurableMonitor(SPEC, tmp_path / "run", print)
+    monitor = DurableMonitor(SPEC, tmp_path / "new", print)
+    with pytest.raises(TraceError, match="cannot be kept"):
+        monitor.step_ns(0, {"speed": object()})
+    assert monitor.taken == 0
+
+
+@pytest.mark.process
+def test_a_watch_that_is_killed_goes_on(tmp_path):
+    """Real processes, killed where they happen to be."""
+    killed_watch.written(tmp_path, seed=1, count=150)
+    expected = killed_watch.whole(tmp_path)
+    found, kills = killed_watch.killed(tmp_path, kills=1, seed=1)
+    assert kills
+    assert len(expected) > 50
+    assert found == expected
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--robot", "name"], "leave --robot out"),
+        (["--realtime"], "leave --realtime out"),
+        (["--format", "view"], "text or json"),
+        (["mqtt://localhost/#"], "a pipe or a file"),
+    ],
+)
+def test_what_does_not_go_with_a_state_is_refused(tmp_path, capsys, words, message):
+    """Instead of being judged otherwise than it was asked."""
+    (tmp_path / "s.rv").write_text(killed_watch.SPEC)
+    told = ["watch", "--state", str(tmp_path / "run"), str(tmp_path / "s.rv"), *words]
+    assert main(told) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()

@@ -1,0 +1,32 @@
+"""What fuzzing found, and what it begins with: no input that is kept makes anything stumble."""
+
+from pathlib import Path
+
+import pytest
+from fuzz.targets import TARGETS, TIMES, run
+
+CORPUS = Path(__file__).parents[1] / "fuzz" / "corpus"
+MOST_BYTES = 300_000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(TARGETS.keys() - {"recording"}))
+def test_kept_inputs_are_read_or_refused(name):
+    """Each target has some; anything but an error for people comes out of it."""
+    files = sorted((CORPUS / name).iterdir())
+    assert files
+    for path in files:
+        assert run(name, path.read_bytes())
+
+
+@pytest.mark.compiler
+def test_kept_recordings_are_judged_alike():
+    """By Python, columns, C and the C program; those in held time, for which one is compiled."""
+    held = [path.read_bytes() for path in sorted((CORPUS / "recording").iterdir())]
+    ends = {run("recording", data) for data in held if data[0] // 2 % len(TIMES) == 0}
+    assert "judged by python, auto, c, program" in ends
+
+
+def test_the_corpus_stays_small():
+    """It is a beginning, not what was found in hours."""
+    assert sum(path.stat().st_size for path in CORPUS.rglob("*")) < MOST_BYTES

@@ -1,0 +1,117 @@
+"""A watch that is killed at random points and started again: are its verdicts those of one run?"""
+
+from __future__ import annotations
+
+import json
+import random
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from rvmon.cli import main
+from rvmon.trace.time import TICKS_PER_SECOND
+
+SPEC = """
+spec kept
+signal p : bool
+signal speed : real stale after 50 ms
+event go
+event pick(id: int), done(id: int)
+requirement R1
+  upon go
+  then within 25 ms p
+requirement R2
+  always speed <= 1
+requirement R3
+  upon pick
+  then within 30 ms done.id == n
+  for each n in pick.id
+"""
+
+Verdicts = dict[int, Mapping[str, Any]]
+
+
+def samples(rng: random.Random, count: int) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Nanoseconds and values; stamps may be equal, and one may be late."""
+    t = 0
+    for _ in range(count):
+        t += rng.choice((0, 1, 7, 7, 9, 60)) * TICKS_PER_SECOND // 1000
+        values: dict[str, Any] = {}
+        if rng.random() < 0.6:
+            values["speed"] = rng.choice((0.5, 0.9, 2.0, None))
+        if rng.random() < 0.3:
+            values["p"] = rng.random() < 0.5
+        if rng.random() < 0.2:
+            values["go"] = True
+        name = rng.choice(("pick", "done", ""))
+        if name:
+            values[name] = {"id": rng.randrange(20)}
+        yield t - (50_000_000 if rng.random() < 0.01 else 0), values
+
+
+def written(folder: Path, seed: int, count: int) -> None:
+    """Write the specification and lines, of which some are none."""
+    rng = random.Random(seed)
+    (folder / "kept.rv").write_text(SPEC)
+    with (folder / "lines.jsonl").open("w") as file:
+        for t, values in samples(rng, count):
+            file.write(json.dumps({"t_ns": t, **values}) + "\n")
+            if rng.random() < 0.005:
+                file.write("torn {\n")
+
+
+def told(lines: Iterable[str], known: Verdicts) -> Verdicts:
+    """What a watch told, beside what was known; a number that tells something else is a fault."""
+    for line in lines:
+        if not line.endswith("\n"):  # the process was killed in it
+            continue
+        one = json.loads(line)
+        assert known.setdefault(one["number"], one) == one, "a number was told twice, otherwise"
+    return known
+
+
+def watch(folder: Path, state: str, out: str) -> subprocess.Popen[bytes]:
+    """Begin to watch the lines."""
+    words = [sys.executable, "-m", "rvmon", "watch", "kept.rv", "lines.jsonl"]
+    words += ["--state", state, "--format", "json"]
+    with (folder / out).open("wb") as file:
+        return subprocess.Popen(  # noqa: S603
+            words, cwd=folder, stdout=file, stderr=subprocess.DEVNULL
+        )
+
+
+def whole(folder: Path) -> Verdicts:
+    """What it tells that nobody kills, in this process."""
+    files = (str(folder / name) for name in ("kept.rv", "lines.jsonl", "whole.state"))
+    spec, lines, state = files
+    with (
+        (folder / "whole.out").open("w") as file,
+        redirect_stdout(file),
+        redirect_stderr(StringIO()),
+    ):
+        main(["watch", spec, lines, "--state", state, "--format", "json"])
+    return told((folder / "whole.out").read_text().splitlines(keepends=True), {})
+
+
+def killed(folder: Path, kills: int, seed: int) -> tuple[Verdicts, int]:
+    """What it tells in all where it is killed, and how often it was before it came to the end."""
+    rng, found, done = random.Random(seed), Verdicts(), 0
+    each = max(1, (folder / "whole.out").stat().st_size // (kills + 1))
+    while True:
+        process = watch(folder, "killed.state", "killed.out")
+        after = rng.randrange(1, 2 * each) if done < kills else -1
+        while after > 0 and process.poll() is None:
+            if (folder / "killed.out").stat().st_size >= after:
+                process.kill()
+                done += 1
+                break
+            time.sleep(0.001)
+        process.wait()
+        told((folder / "killed.out").read_text().splitlines(keepends=True), found)
+        if process.returncode >= 0:
+            return found, done
