@@ -32,8 +32,8 @@ def shard(text: str) -> Shard:
     Raises:
         argparse.ArgumentTypeError: it is none.
 
-    >>> print(shard("2/4"))
-    2/4
+    >>> shard("2/4")
+    Shard(number=2, count=4)
     """
     number, slash, count = text.partition("/")
     if slash and positive(number) <= positive(count):

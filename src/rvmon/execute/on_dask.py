@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 import uuid
-from collections import Counter
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from functools import cache
@@ -32,8 +32,8 @@ CONNECT_S = 10
 NO_WORKERS_S = 60.0
 """Seconds for which one waits for a worker where there is none."""
 
-TRIES = 3
-"""How often a task is given out that is not known to have begun; Dask tries it some times each."""
+LEFT_S = 5.0
+"""Seconds after its time in which a worker ends by itself that was not begun anew."""
 
 _POLL_S = 0.5
 """Seconds after which one looks again for what takes too long."""
@@ -102,7 +102,9 @@ class _Work:
         self._tasks: dict[Any, tuple[int, bytes]] = {}
         self._begun: dict[int, tuple[float, str]] = {}
         self._finished: SimpleQueue[Any] = SimpleQueue()
-        self._tries: Counter[int] = Counter()
+        self._suspects: deque[tuple[int, bytes]] = deque()
+        """Tasks whose workers were lost again and again; each is tried once more, alone."""
+        self._alone: int | None = None
         self._done: dict[int, tuple[bool, bytes]] = {}
         client.subscribe_topic(self._name, self._note)
 
@@ -116,8 +118,12 @@ class _Work:
             seen = time.monotonic() if threads else seen
             if time.monotonic() - seen > NO_WORKERS_S:
                 raise WorkerLostError("the scheduler of Dask has no worker: begin one")
-            for one in islice(left, max(0, 2 * threads - len(self._tasks))):
-                self._submit(*one)
+            if not self._suspects:
+                for one in islice(left, max(0, 2 * threads - len(self._tasks))):
+                    self._submit(*one)
+            elif not self._tasks:
+                self._alone = self._suspects[0][0]
+                self._submit(*self._suspects.popleft())
             if number in self._done:
                 failed, result = self._done.pop(number)
                 if failed:
@@ -146,18 +152,16 @@ class _Work:
             self._done[number] = (True, packed_error(error))
 
     def _submit(self, number: int, task: bytes) -> None:
-        arguments = (self._name, number, program(), os.getcwd(), self._begin, task)
+        about = (self._name, number, program(), os.getcwd(), self._timeout_s)
+        arguments = (*about, self._begin, task)
         future = self._client.submit(_do, *arguments, pure=False, priority=-number)
         self._tasks[future] = (number, task)
         future.add_done_callback(self._finished.put)
 
     def _note(self, event: tuple[float, tuple[int, str]]) -> None:
-        """A worker begins a task: take down when, and which worker; or it has ended it."""
+        """A worker begins a task: take down when, and which worker."""
         number, worker = event[1]
-        if worker:
-            self._begun[number] = (time.monotonic(), worker)
-        else:
-            self._begun.pop(number, None)
+        self._begun[number] = (time.monotonic(), worker)
 
     def _take(self, future: Any) -> None:
         from distributed import CancelledError, KilledWorker
@@ -168,11 +172,10 @@ class _Work:
         try:
             self._done[number] = future.result()
         except (KilledWorker, CancelledError):
-            self._tries[number] += 1
-            if number in self._begun or self._tries[number] == TRIES:
+            if number == self._alone:
                 self._lose(number, task, "the workers that had it were lost", timed_out=False)
-            else:  # it was waiting, or its result was, where another task was done
-                self._submit(number, task)
+            else:  # it may have waited, or its result, where another task was done
+                self._suspects.append((number, task))
         self._begun.pop(number, None)
 
     def _end_late(self) -> None:
@@ -214,10 +217,19 @@ _WORK: dict[str, Callable[[Any], Any]] = {}
 
 
 def _do(
-    name: str, number: int, wanted: str, folder: str, begin: bytes, task: bytes
+    name: str,
+    number: int,
+    wanted: str,
+    folder: str,
+    timeout_s: float | None,
+    begin: bytes,
+    task: bytes,
 ) -> tuple[bool, bytes]:
     """Do a task in a worker, in the folder of who has the work if there is one; say when."""
     from distributed import get_worker
+
+    late = threading.Timer((timeout_s or 0.0) + LEFT_S, os._exit, [1])
+    late.daemon = True
 
     def begun() -> Callable[[Any], Any]:
         worker = get_worker()
@@ -230,9 +242,12 @@ def _do(
                 os.chdir(folder)
             _WORK[name] = pickle.loads(begin)()  # noqa: S301 - from who has the work
         worker.log_event(name, (number, worker.address))
+        if timeout_s is not None:
+            late.start()
         return _WORK[name]
 
     with _ONE_AT_A_TIME:
-        answered = answer(begun, task)
-        get_worker().log_event(name, (number, ""))
-        return answered
+        try:
+            return answer(begun, task)
+        finally:
+            late.cancel()

@@ -28,6 +28,7 @@ def address(tmp_path_factory):
     """Of a scheduler with two workers, which gives up a task when it has killed both of them."""
     folder = tmp_path_factory.mktemp("dask")
     environment = {**os.environ, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"}
+    environment["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "1s"
     begun = []
 
     def begin(*words):

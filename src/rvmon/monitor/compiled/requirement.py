@@ -231,7 +231,7 @@ class CompiledRequirement:
 
     @cached_property
     def reach(self) -> int | None:
-        """See `reach_of`, of its network."""
+        """Of its network, as `reach_of` says it."""
         return reach_of(self.network_plan)
 
     @cached_property
