@@ -61,8 +61,7 @@ class CompileReport:
         in_runs: whether attempts are kept in runs, so that a sample costs the same however many of
             them are open.
         bytes_per_attempt: of memory, while it is open; `None` if it is an object of its own.
-        steps: what is looked at when something changes or a time is due: parts of runs; without
-            runs, so many for each open attempt.
+        steps: looked at when something changes or a time is due: of all runs, or of each attempt.
     """
 
     engine: str
