@@ -67,7 +67,11 @@ def rows_of(count: int) -> list[dict[str, Value]]:
 
 
 def measured(
-    spec: Spec, engine: str, rows: Sequence[dict[str, Value]], seconds: float
+    spec: Spec,
+    engine: str,
+    rows: Sequence[dict[str, Value]],
+    seconds: float,
+    only: Sequence[str] | None = None,
 ) -> tuple[float, list[object]]:
     """Nanoseconds per sample, and what was decided when.
 
@@ -79,7 +83,7 @@ def measured(
     if engine == PREPARED and prepare_beside(spec._compiled, spec._compiled.chosen(None)) is None:
         raise RvmonError("auto takes nothing that is compiled")
     for _ in range(3):
-        monitor = spec.monitor(engine=engine.partition(",")[0])
+        monitor = spec.monitor(engine=engine.partition(",")[0], only=only)
         step = monitor.step_ns
         made = []
         began = time.process_time_ns()
