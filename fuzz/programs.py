@@ -1,7 +1,7 @@
 """The reader of C programs under AFL++, with what finds wrong addresses and undefined behaviour.
 
-What it calls a hang may be none: where a stamp leaps by years, as many attempts fail as the law
-says, one for each second.
+What it calls a hang is counted and kept, and is no defect by itself: where a stamp leaps by years,
+as many attempts fail as the law says, one for each second.
 """
 
 from __future__ import annotations
@@ -60,8 +60,10 @@ def fuzz_program(name: str, out: Path, seconds: int) -> tuple[int, str, str, tup
         for line in (out / name / "default" / "fuzzer_stats").read_text().splitlines()
     )
     reached = f"{stats['edges_found']} of {stats['total_edges']} edges ({stats['bitmap_cvg']})"
-    bad = [*(out / name).glob("default/crashes*/id*"), *(out / name).glob("default/hangs/id*")]
-    return int(stats["execs_done"]), reached, "in all so far", tuple(sorted(set(bad) - known))
+    slow = len([*(out / name).glob("default/hangs/id*")])
+    bad = set((out / name).glob("default/crashes*/id*")) - known
+    ended = f"{slow} took more than a second, in all so far"
+    return int(stats["execs_done"]), reached, ended, tuple(sorted(bad))
 
 
 def _seeds(ending: str, folder: Path) -> None:
