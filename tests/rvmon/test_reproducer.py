@@ -201,7 +201,7 @@ def test_sizes_are_bounded(tmp_path, monkeypatch, capsys):
     ],
 )
 def test_a_wrong_or_newer_description_is_told(tmp_path, capsys, case, told):
-    """With what would mend it."""
+    """With what would fix it."""
     path = made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n"}, **case)
     assert main(["why", path]) == 2
     assert told in capsys.readouterr().err

@@ -252,5 +252,5 @@ def _warn_of_another(
         why = "what it remembers lies before: a longer --before"
     warn(
         f"warning: {attempt.name} is {attempt.verdict} in {data} and not so in "
-        f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may mend it"
+        f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may fix it"
     )

@@ -17,7 +17,7 @@ class Change(StrEnum):
     BROKE = "fails anew"
     UNREADABLE = "can no longer be judged"
     NO_LONGER_SHOWN = "no longer shown to hold"
-    MENDED = "mended"
+    FIXED = "fixed"
     NO_LONGER_FAILS = "no longer fails, and is not shown to hold"
     NEWLY_SHOWN = "newly shown to hold"
     READABLE = "can be judged again"
@@ -31,7 +31,7 @@ class Change(StrEnum):
     @property
     def is_gain(self) -> bool:
         """Whether more holds than before."""
-        return self in (Change.MENDED, Change.NEWLY_SHOWN, Change.READABLE)
+        return self in (Change.FIXED, Change.NEWLY_SHOWN, Change.READABLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +142,7 @@ def _change(before: Verdict, after: Verdict) -> Change:
         case _, Verdict.FAIL:
             return Change.BROKE
         case Verdict.FAIL, Verdict.PASS:
-            return Change.MENDED
+            return Change.FIXED
         case Verdict.FAIL, _:
             return Change.NO_LONGER_FAILS
         case Verdict.PASS, _:

@@ -122,7 +122,7 @@ def test_late_rows_are_found(base, capsys):
     ],
 )
 def test_mistakes_are_told(base, capsys, words, told):
-    """With what would mend them; nothing is written, and the recording stays."""
+    """With what would fix them; nothing is written, and the recording stays."""
     (base / "link.csv").symlink_to("a.csv")
     assert clip(*words) == 2
     assert told in capsys.readouterr().err

@@ -122,7 +122,7 @@ def test_many_recordings_are_counted(files, capsys):
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
 )
 def test_a_process_that_is_killed_costs_only_what_was_not_judged(files, capsys, monkeypatch):
-    """As where memory runs out: what was judged is shown, the rest named, with a mend."""
+    """As where memory runs out: what was judged is shown, the rest named, with a fix."""
 
     def killed(spec, trace, options, **how):
         if trace == "I.csv":

@@ -100,7 +100,7 @@ def test_shards_are_joined(folder, capsys):
     ],
 )
 def test_a_share_of_nothing_is_refused(folder, capsys, words, told):
-    """With what mends it."""
+    """With what fixes it."""
     assert main(["run", "s.rv", "good.csv", "bad.csv", *words]) == 2
     assert told in capsys.readouterr().err
 
@@ -205,6 +205,6 @@ def test_two_runs_are_compared(folder, capsys):
     found = json.loads(capsys.readouterr().out)
     assert [one["change"] for one in found["differences"]] == ["fails anew", "fails anew"]
     assert main(["compare", "new.csv", "old.csv"]) == 0
-    assert "mended" in capsys.readouterr().out
+    assert "fixed" in capsys.readouterr().out
     assert main(["compare", "old.csv", "none.csv"]) == 2
     assert "there is no file none.csv" in capsys.readouterr().err

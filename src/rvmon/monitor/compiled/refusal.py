@@ -35,17 +35,17 @@ class Refusal:
 
     Attributes:
         reason: said of the requirement, such as "uses `let`".
-        mend: what to do.
+        fix: what to do.
         engine: the one that takes it.
     """
 
     reason: str
-    mend: str
+    fix: str
     engine: str
 
     def error(self, requirement: str, what: str) -> RvmonError:
         """The error of one that was asked for by name."""
-        return RvmonError(f"{requirement} {self.reason}; {what} cannot judge it: {self.mend}")
+        return RvmonError(f"{requirement} {self.reason}; {what} cannot judge it: {self.fix}")
 
 
 def refuse(
@@ -120,8 +120,8 @@ def of_network(one: CompiledRequirement) -> Refusal | None:
 def of_progression(one: CompiledRequirement) -> Refusal | None:
     """What looks back at what lies ahead."""
     if one.network_plan.looks_back:
-        mend = "use the engine `auto` or `network`"
-        return Refusal("looks back at what lies ahead", mend, "network")
+        fix = "use the engine `auto` or `network`"
+        return Refusal("looks back at what lies ahead", fix, "network")
     return None
 
 
@@ -153,8 +153,8 @@ def of_tables(one: CompiledRequirement) -> Refusal | None:
 def of_c(one: CompiledRequirement) -> Refusal | None:
     """What generated code cannot judge without a monitor in this process."""
     if one.spec.max_delay is not None:
-        mend = "leave out `max delay`, or use the engine `auto`"
-        return Refusal("has samples that come late (`max delay`)", mend, "python")
+        fix = "leave out `max delay`, or use the engine `auto`"
+        return Refusal("has samples that come late (`max delay`)", fix, "python")
     # C has only the latest values, which may be newer than the last tick.
     if one.obligation.trigger is None and one.requirement.captures and one.gap not in (None, 1):
         reason = "captures values `upon end`, which may be newer than the last tick of its clock"

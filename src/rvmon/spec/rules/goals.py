@@ -87,13 +87,13 @@ unwanted_in_point = Breach(
 
 def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
     """A cross over something else."""
-    mend = did_you_mean(name, known, "declare it with `coverpoint`")
-    return finding(CROSS, f"no coverpoint named `{name}`", span, mend=mend)
+    fix = did_you_mean(name, known, "declare it with `coverpoint`")
+    return finding(CROSS, f"no coverpoint named `{name}`", span, fix=fix)
 
 
 def same_point(span: Span, name: str) -> Diagnostic:
     """A cross that names a coverpoint twice."""
-    return finding(CROSS, f"`{name}` stands twice in one cross", span, mend="name it once")
+    return finding(CROSS, f"`{name}` stands twice in one cross", span, fix="name it once")
 
 
 def too_many_combinations(span: Span, count: int) -> Diagnostic:
@@ -102,7 +102,7 @@ def too_many_combinations(span: Span, count: int) -> Diagnostic:
         CROSS,
         f"{count:,} combinations are more than {MOST_COMBINATIONS:,}",
         span,
-        mend="cross fewer coverpoints, or give them fewer bins",
+        fix="cross fewer coverpoints, or give them fewer bins",
     )
 
 

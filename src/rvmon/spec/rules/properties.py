@@ -152,7 +152,7 @@ def foreign_name(span: Span, name: str, close: str) -> Diagnostic:
         FOREIGN_NAME,
         f"`{name}` is no name of this file and is taken for a clock or location of a model",
         span,
-        mend=close,
+        fix=close,
     )
 
 
@@ -172,7 +172,7 @@ def reads_model(span: Span, text: str) -> Diagnostic:
         NOT_LINEAR,
         f"`{short(text)}` reads a clock or location of a model, which no run shows",
         span,
-        mend="check it with `rvmon verify`, or say it by signals of this file",
+        fix="check it with `rvmon verify`, or say it by signals of this file",
     )
 
 
@@ -203,7 +203,7 @@ def mixed_roles(span: Span, roles: Mapping[str, str]) -> Diagnostic:
     listed = ", ".join(f"`{name}` is {role}" for name, role in roles.items())
     text = short(span.text)
     message = f"`{text}` mixes roles: {listed}" if roles else f"`{text}` reads no signal"
-    return finding(NO_RESPONSE, message, span, mend="write the requirement with `upon` and `then`")
+    return finding(NO_RESPONSE, message, span, fix="write the requirement with `upon` and `then`")
 
 
 def no_role(span: Span, name: str) -> Diagnostic:
@@ -212,7 +212,7 @@ def no_role(span: Span, name: str) -> Diagnostic:
         NO_RESPONSE,
         f"`{name}` is declared neither `input` nor `output`",
         span,
-        mend="declare its role",
+        fix="declare its role",
     )
 
 

@@ -118,11 +118,11 @@ def no_value(span: Span, event: str) -> Diagnostic:
         f"`{short(span.text)}` has no value unless `{event}` occurs at the trigger, which does "
         "not say so",
         span,
-        mend=f"let `{event}` trigger it: `upon {event} and …`",
+        fix=f"let `{event}` trigger it: `upon {event} and …`",
     )
 
 
-def false_at_trigger(span: Span, part: str, escape: str, mend: str) -> Diagnostic:
+def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic:
     """What is owed contradicts its trigger."""
     unless = f" unless `{short(escape)}` holds at that very instant" if escape else ""
     return finding(
@@ -130,15 +130,15 @@ def false_at_trigger(span: Span, part: str, escape: str, mend: str) -> Diagnosti
         f"`{short(part)}` is false at the trigger itself, by what that says: it fails there"
         + (unless or " each time"),
         span,
-        mend=mend,
+        fix=fix,
     )
 
 
-def false_at_first(span: Span, when: str, mend: str) -> Diagnostic:
+def false_at_first(span: Span, when: str, fix: str) -> Diagnostic:
     """What is owed from the start on cannot hold then; `when` says at which instant."""
     text = short(span.text)
     return finding(
-        AT_FIRST, f"`{text}` is false {when}, whatever comes: it fails there", span, mend=mend
+        AT_FIRST, f"`{text}` is false {when}, whatever comes: it fails there", span, fix=fix
     )
 
 
@@ -150,5 +150,5 @@ def captured_once(span: Span, trigger: str) -> Diagnostic:
         ONCE_CAPTURED,
         f"`{short(span.text)}` is captured once, at the first instant {when}",
         span,
-        mend=f"write {said}, which says that it starts there and captures then",
+        fix=f"write {said}, which says that it starts there and captures then",
     )

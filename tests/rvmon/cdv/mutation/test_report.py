@@ -132,7 +132,7 @@ def test_equivalents_are_read(tmp_path):
     ],
 )
 def test_equivalents_that_are_wrong_are_refused(tmp_path, text, message):
-    """With the file, and what is to be mended."""
+    """With the file, and what is to be fixed."""
     path = tmp_path / "equivalent.toml"
     path.write_text(text)
     with pytest.raises(RvmonError, match=message):

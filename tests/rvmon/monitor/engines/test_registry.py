@@ -80,7 +80,7 @@ def test_auto_judges_by_the_engine_that_is_named(form):
     [pytest.param(one, marks=pytest.mark.compiler) if one == "c" else one for one in ENGINES],
 )
 @pytest.mark.parametrize("form", FORMS | OTHERS)
-def test_a_refusal_has_a_reason_a_mend_and_an_engine_that_takes_it(form, engine):
+def test_a_refusal_has_a_reason_a_fix_and_an_engine_that_takes_it(form, engine):
     """Asked for by name, an engine judges what it does not refuse, and else says all three."""
     spec = spec_of(form)
     (one,) = spec._compiled.requirements.values()
@@ -89,12 +89,12 @@ def test_a_refusal_has_a_reason_a_mend_and_an_engine_that_takes_it(form, engine)
     if refusal is None or engine in HANDING_ON:
         assert engine == "auto" or engine in spec.judge(source, engine=engine).engine or refusal
     else:
-        told = re.escape(f"R {refusal.reason}; "), re.escape(f" cannot judge it: {refusal.mend}")
+        told = re.escape(f"R {refusal.reason}; "), re.escape(f" cannot judge it: {refusal.fix}")
         with pytest.raises(RvmonError, match=".*".join(told)):
             spec.judge(source, engine=engine)
     if refusal is not None:
         assert refusal.reason
-        assert refusal.mend
+        assert refusal.fix
         assert engine_named(refusal.engine).refuses(one) is None
 
 
