@@ -69,7 +69,7 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
     if set(conflict.ids) == {first}:
         again = format_duration(conflict.offsets[-1])
         message = f"{first} cannot hold once it is triggered again, {again} later"
-        fix = "let it hold for a shorter time, or say what a second trigger means"
+        fix = "let it hold for a shorter time, or define what a second trigger means"
     else:
         both = "both" if len(conflict.ids) == 2 else "all"
         named = _listed(conflict.ids, "and")
@@ -85,8 +85,8 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
 def _can_fail(requirement: Requirement) -> str:
     """What lets a requirement fail that never does."""
     if any(map(_has_no_end, subformulas(requirement.consequent))):
-        return "give it a deadline with `within`, or say `at end: strong`"
-    return "what is owed always holds where it is looked at: look at the comparisons in it"
+        return "give it a deadline with `within`, or write `at end: strong`"
+    return "the consequent holds wherever it is evaluated: look at the comparisons in it"
 
 
 def _is_open(requirement: Requirement) -> bool:
@@ -110,10 +110,10 @@ def _can_pass(requirement: Requirement) -> str:
     policy = requirement.at_end
     if policy in (EndPolicy.STRICT, EndPolicy.STRONG, EndPolicy.FAIL) and _is_open(requirement):
         return (
-            f"`at end: {policy}` lets nothing pass that is owed to the end: leave it out, or say "
+            f"`at end: {policy}` passes no obligation without a deadline: leave it out, or say "
             "for how long with `for`"
         )
-    return "what is owed contradicts itself or the trigger, whose instant counts"
+    return "the consequent contradicts itself or the trigger, whose instant counts"
 
 
 def _has_trigger(requirement: Requirement) -> bool:

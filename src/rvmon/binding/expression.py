@@ -100,7 +100,7 @@ def _term(expression: Expression) -> Term:
 def _number(value: Fraction | None, unit: str) -> Constant:
     if unit:
         raise RvmonError(
-            f"a number in a value has no unit (`{unit}`): say that of the result, as `unit`"
+            f"a number in a value has no unit (`{unit}`): give that of the result, as `unit`"
         )
     try:
         number = 0 if value is None else value

@@ -88,7 +88,7 @@ class DurableMonitor:
         except (ValueError, LookupError, TypeError, RecursionError):
             raise SnapshotError(
                 f"{self._path}: no run of a monitor, or its beginning is damaged: name another "
-                "file, or delete this one to begin anew"
+                "file, or delete this one to start again"
             ) from None
         try:
             return spec.restore(data)

@@ -74,7 +74,7 @@ def jsonl_blocks(
     """
     ignored.clear()
     if schema.stamps is not None or schema.columns:
-        raise NotPlainError("stamps or names are told otherwise")
+        raise NotPlainError("stamps or names have another form")
     decoder = shape = None
     last = None
     held: dict[str, Any] = {}

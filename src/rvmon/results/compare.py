@@ -14,13 +14,13 @@ from rvmon.verdict.verdict import Verdict, fold
 class Change(StrEnum):
     """What became of a requirement in a recording; what people look at first stands first."""
 
-    BROKE = "fails anew"
-    UNREADABLE = "can no longer be judged"
+    BROKE = "fails now"
+    UNREADABLE = "can no longer be evaluated"
     NO_LONGER_SHOWN = "no longer shown to hold"
     FIXED = "fixed"
     NO_LONGER_FAILS = "no longer fails, and is not shown to hold"
     NEWLY_SHOWN = "newly shown to hold"
-    READABLE = "can be judged again"
+    READABLE = "can be evaluated again"
     OTHERWISE = "otherwise not shown"
 
     @property

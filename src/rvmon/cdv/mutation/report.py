@@ -103,7 +103,7 @@ class MutationReport:
     def contradictions(self) -> list[str]:
         """Mutants that are said to be equivalent, and are killed, or make a run differ."""
         return [
-            f"{one.mutant.identity} is said to be equivalent, and {told}"
+            f"{one.mutant.identity} is declared equivalent, and {told}"
             for suite in self.suites.values()
             for one in suite.tried
             if one.mutant.identity in self.equivalent and (told := self._told(one))

@@ -100,7 +100,7 @@ class Words:
     def text(self, node: Core) -> str:
         """A node as text of the spec."""
         formula = self.formula(node)
-        return "what is owed" if formula is None else format_formula(formula)
+        return "the consequent" if formula is None else format_formula(formula)
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
         """The window of a node, in ticks after its start; of an opened one as it was before."""
@@ -130,7 +130,7 @@ class Words:
         if isinstance(node, Literal):
             return ()
         if isinstance(node, Release):
-            return ("; after that nothing more was owed",)
+            return ("; after that no obligation was left",)
         after: Sentence = (", ", Place(Base.AGE), " after ", Place(Base.START))
         high = self.window(node)[1]
         return after if high is None else (*after, "; it was due by ", Place(Base.START, high))
@@ -182,7 +182,7 @@ class Words:
         return (f"{atom.quoted} {atom.due}", *window, ", and did not; ", seen)
 
     def _quoted(self, node: Core) -> str:
-        return "what was owed" if self.formula(node) is None else f"`{self.text(node)}`"
+        return "the consequent" if self.formula(node) is None else f"`{self.text(node)}`"
 
     def _atom(self, literal: Literal) -> _Atom:
         """A proposition, and what it has to be for the literal to hold."""

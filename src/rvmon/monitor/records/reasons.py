@@ -79,7 +79,7 @@ class Reasons:
         valuation = self._alphabet.valuation(letter)
         cause = CauseFinder(valuation, ages, verdict=verdict, by_time=by_time).of(residual)
         if cause is None:
-            return Finding(None, ("nothing was owed" if verdict else "it can never hold",))
+            return Finding(None, ("there was no obligation" if verdict else "it can never hold",))
         return Finding(cause, self.words.sentence(cause, verdict))
 
     def deadline(self, before: Token) -> int | None:

@@ -94,7 +94,7 @@ def expect_kinds(
         fix = ""
         if kind is Kind.LABEL and isinstance(term, Field):
             fits = bool(labels) or found is Kind.LABEL
-            fix = ": say in a binding which `labels` its values stand for"
+            fix = ": name in a binding which `labels` its values stand for"
         else:
             fits = found is not Kind.LABEL
         if kind is Kind.BOOL and found is Kind.REAL and isinstance(term, Field):

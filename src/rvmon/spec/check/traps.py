@@ -113,9 +113,9 @@ def _at_trigger(part: Formula, said: Facts, time: TimeModel, place: Span) -> Ite
             shown = format_formula(part.left)
             yield rules.false_at_trigger(place, shown, escape, _from_later_on(part, time))
     elif truth_at(part, said) is False:
-        fix = "let what is owed begin a tick later: `always[1 ns, …] …`"
+        fix = "let the consequent begin a tick later: `always[1 ns, …] …`"
         if time is not TimeModel.HELD:
-            fix = "let what is owed begin at the next position: `next (…)`"
+            fix = "let the consequent begin at the next position: `next (…)`"
         yield rules.false_at_trigger(place, format_formula(part), "", fix)
 
 

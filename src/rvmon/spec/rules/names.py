@@ -227,7 +227,7 @@ def recursive(names: list[str], span: Span) -> Diagnostic:
         RECURSIVE,
         f"`{names[0]}` is defined by itself: {circle}",
         span,
-        fix="for what goes on for ever there are `always`, `until` and their kin",
+        fix="for what goes on without end use `always`, `until` and the like",
     )
 
 

@@ -13,8 +13,8 @@ SYNTAX = Rule(
     "syntax",
     Severity.ERROR,
     "The text does not belong to the language at this place.",
-    "Nothing can be said about an item that cannot be read. The message names what could have "
-    "stood there; the other items of the file are checked all the same.",
+    "An item that cannot be read is not checked. The message names what could have "
+    "stood there; the other items of the file are checked.",
     """spec demo
 event asked, released
 
@@ -201,7 +201,7 @@ def too_deep(span: Span, limit: int) -> Diagnostic:
         TOO_DEEP,
         f"this is nested more than {limit} levels deep",
         span,
-        fix="say it in several requirements",
+        fix="split it into several requirements",
     )
 
 
@@ -211,7 +211,7 @@ def too_large(span: Span, limit: int) -> Diagnostic:
         TOO_DEEP,
         f"this has more than {limit:,} operators once its macros are expanded",
         span,
-        fix="say it in several requirements",
+        fix="split it into several requirements",
     )
 
 

@@ -77,7 +77,7 @@ LATE_WEAK_WINDOW = Rule(
     "window-after-now",
     Severity.ERROR,
     "`W`, `unless` and `M` take no window that starts after 0.",
-    "Their usual definitions disagree for such windows; `R` and `U` say what is meant.",
+    "Their usual definitions disagree for such windows; `R` and `U` are unambiguous.",
     """spec demo
 signal a, b : bool
 

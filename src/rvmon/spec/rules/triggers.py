@@ -37,7 +37,7 @@ END_NOT_ALONE = Rule(
     "end-not-alone",
     Severity.ERROR,
     "`end` stands elsewhere than alone behind `upon`.",
-    "Nobody knows at an instant whether it is the last one, so `end` is judged only when the "
+    "No instant is known to be the last one, so `end` is evaluated only when the "
     "trace is finished.",
     """spec demo
 signal done : bool
@@ -58,10 +58,10 @@ ONE_INSTANT = Rule(
     "RV042",
     "one-instant",
     Severity.WARNING,
-    "What is owed has no word of time, so that a single instant is checked.",
+    "The consequent has no temporal operator, so that a single instant is checked.",
     "`upon asked then released` demands the release at the very nanosecond of the asking. If that "
-    "is meant, `immediately` says so. A requirement that is one formula without a word of time, "
-    "as `not (stop and go)`, is checked at the start of the run only.",
+    "is meant, `immediately` says so. A requirement that is one formula without a temporal "
+    "operator, as `not (stop and go)`, is checked at the start of the run only.",
     """spec demo
 event asked, released
 
@@ -224,7 +224,7 @@ end_not_alone = Breach(
 end_in_scope = Breach(
     END_NOT_ALONE,
     "`upon end` takes no scope: the end of the run may lie outside of it",
-    "say in the consequent what has to hold at the end",
+    "write into the consequent what has to hold at the end",
 )
 
 
@@ -235,7 +235,7 @@ def one_instant(span: Span) -> Diagnostic:
         ONE_INSTANT,
         f"`{text}` is checked at one instant only",
         span,
-        fix=f"say for how long or until when (`within D`, `for D`), or `immediately {text}`",
+        fix=f"write for how long or until when (`within D`, `for D`), or `immediately {text}`",
     )
 
 

@@ -164,7 +164,7 @@ IGNORED_NAN = Rule(
     "RV027",
     "nan-of-no-real",
     Severity.ERROR,
-    "`ignore NaN` is said of a signal that is not `real`.",
+    "`ignore NaN` is given for a signal that is not `real`.",
     "Only real numbers have NaN. `null` of a `bool`, `int` or label signal says that the value is "
     "lost, and stays that.",
     """spec demo

@@ -101,7 +101,7 @@ def _let_fix(found: str, before: str) -> str:
     """What fixes a `let` before what is owed."""
     behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
     if found == "let" or behind:
-        return "`let` stands behind what is owed: `upon … then … let x = …`"
+        return "`let` stands after the consequent: `upon … then … let x = …`"
     return ""
 
 
@@ -127,7 +127,7 @@ def _structure_fix(found: str, accepted: set[str], before: str) -> str:
     if re.match(r"[AE][\[<]", found) and "AND" not in accepted:
         return f"put brackets around `{found} …`"
     if "THEN" in accepted:
-        return "what is owed stands behind `then`"
+        return "the consequent stands after `then`"
     if accepted == {"NAME"} and before.split() == ["requirement"]:
         return 'its name comes first: `requirement R1 "text"`'
     if "COLON" in accepted and re.match(r"signal\b", before):

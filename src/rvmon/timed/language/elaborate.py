@@ -168,7 +168,7 @@ def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findi
     for index, (channel, span) in enumerate(zip(parts.channels, parts.channel_spans, strict=True)):
         match index in senders, index in receivers:
             case False, False:
-                problem, fix = "is used by nobody", "remove it, or use it on an edge"
+                problem, fix = "is never used", "remove it, or use it on an edge"
             case True, False if not channel.broadcast:
                 problem, fix = "is never received", f"add an edge with {channel.name}?"
             case False, True:

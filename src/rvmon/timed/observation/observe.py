@@ -104,7 +104,7 @@ def _observe(
     labelling = Labelling(signals_of(network), frozenset(labels_of(network)))
     trigger = obligation.trigger
     if trigger is None:
-        raise NotExpressibleError("it is judged at the end of a trace")
+        raise NotExpressibleError("it is evaluated at the end of a trace")
     if not (trigger.op is StateOp.LEAF and isinstance(trigger.leaf, BoundAtom)):
         labelling.require(trigger)
     for proposition in alphabet.propositions:

@@ -109,12 +109,12 @@ def _goal(query: Query, until: int | None) -> tuple[Expression, bool, int]:
     formula = query.formula
     if not isinstance(formula, PathFormula) or has_paths(formula.body):
         fix = "use E<>, A<>, A[] or E[] with a state formula"
-        raise model_error("TA020", "this cannot be judged on one run", query.span, fix)
+        raise model_error("TA020", "this cannot be evaluated on one run", query.span, fix)
     if speaks_of_deadlock(formula.body):
         raise model_error("TA020", "a simulated run does not know deadlocks", query.span)
     horizon = until if formula.bound is None else formula.bound
     if horizon is None:
-        fix = "bound it, as in E<>[<=100] p, or say how long a run lasts"
+        fix = "bound it, as in E<>[<=100] p, or give the length of a run"
         raise model_error("TA020", "a simulated run needs an end", query.span, fix)
     meets = formula.op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
     return normal_form(formula.body, positive=meets), meets, horizon

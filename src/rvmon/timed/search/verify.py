@@ -89,7 +89,7 @@ def verify(
 def _remark(run: Run | None) -> str:
     match run:
         case Run(ending=Ending.ZENO_LOOP):
-            return "only by a Zeno loop: it goes round for ever while time does not pass on"
+            return "only by a Zeno loop: it goes round without end while time does not pass"
         case Run(ending=Ending.TIME_LOCK):
             return "time stops here: no edge can be taken, and time may not pass"
         case _:
