@@ -110,7 +110,7 @@ def _can_pass(requirement: Requirement) -> str:
     policy = requirement.at_end
     if policy in (EndPolicy.STRICT, EndPolicy.STRONG, EndPolicy.FAIL) and _is_open(requirement):
         return (
-            f"`at end: {policy}` passes no obligation without a deadline: leave it out, or say "
+            f"`at end: {policy}` lets nothing pass that is open at the end: leave it out, or say "
             "for how long with `for`"
         )
     return "the consequent contradicts itself or the trigger, whose instant counts"

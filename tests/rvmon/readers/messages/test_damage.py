@@ -150,7 +150,7 @@ def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, capsys, name
         (
             "{idle, busy}",
             "/base/scan.state",
-            "whole numbers: say in a binding which `labels`",
+            "whole numbers: name in a binding which `labels`",
         ),
         ("real", "/base/scan.stat", "has no field `stat`: did you mean `state`"),
         (

@@ -56,7 +56,7 @@ def test_what_is_owed(owed, fix):
     [
         ("requirement R if asked then within 3 s released", "for `if` write `upon`"),
         ("requirement R when asked then within 3 s released", "for `when` write `upon`"),
-        ("requirement R upon asked, then released", "what is owed stands behind `then`"),
+        ("requirement R upon asked, then released", "the consequent stands after `then`"),
         ('requirement "R" upon asked then released', "its name comes first"),
         ("signal x", "a signal has a type"),
         ("signal x : float", "write `real`"),
@@ -66,9 +66,9 @@ def test_what_is_owed(owed, fix):
         ("requirement always released", "its name comes first: `requirement R1 always …`"),
         ("requirement upon asked then released", "its name comes first"),
         ("requirement\n  released", "`released` is taken for its name"),
-        ("requirement R let z = speed upon asked then released", "stands behind what is owed"),
-        ("requirement R upon asked let z = speed then released", "stands behind what is owed"),
-        ("requirement R upon asked then let z = speed released", "stands behind what is owed"),
+        ("requirement R let z = speed upon asked then released", "stands after the consequent"),
+        ("requirement R upon asked let z = speed then released", "stands after the consequent"),
+        ("requirement R upon asked then let z = speed released", "stands after the consequent"),
         ("event e(x)", "a field has a type"),
     ],
 )

@@ -287,7 +287,7 @@ def test_a_channel_used_by_nobody_is_a_warning():
     """)
     told = [(w.code, w.message.split(":")[0], w.spans[0].span.text) for w in network.warnings]
     assert told == [
-        ("TA010", "the channel `lonely` is used by nobody", "lonely"),
+        ("TA010", "the channel `lonely` is never used", "lonely"),
         ("TA010", "the channel `sent` is never received", "sent"),
         ("TA010", "the channel `heard` is never sent", "heard"),
     ]
