@@ -49,7 +49,7 @@ def term_of(text: str) -> Term:
             `min(ranges)` or `max(ranges)` of all elements of an array.
 
     Raises:
-        RvmonError: it is none; cause and fix are told.
+        RvmonError: it is none; with cause and fix.
 
     >>> term_of("twist.linear.x")
     Field(path=('twist', 'linear', 'x'))

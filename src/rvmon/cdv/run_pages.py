@@ -25,7 +25,7 @@ class Replay:
 
     Attributes:
         test: that was played.
-        run: what the system told of it at its end.
+        run: what the system reported of it at its end.
         samples: that it told before.
         report: the verdicts.
     """

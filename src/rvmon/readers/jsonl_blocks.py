@@ -218,7 +218,7 @@ def _numbers(cells: list[Any], kind: Kind) -> NDArray[Any]:
 
 
 def _occurrences(cells: list[Any] | None, count: int, *, gaps: bool) -> NDArray[np.bool_]:
-    """Where an event occurs; where nothing is said of it, it does not."""
+    """Where an event occurs; where nothing is known of it, it does not."""
     if cells is None:
         cells = [msgspec.UNSET] * count
     if msgspec.UNSET in cells and not gaps:

@@ -111,7 +111,7 @@ def record_suite(
         tests: of the suite; those that are for another robot, or plant a fault of their own, are
             passed over.
         jobs: processes.
-        progress: told as tests are played.
+        progress: called as each test is played.
 
     Raises:
         RvmonError: the campaign measures no code, the robot has no requirements, or no test is

@@ -56,7 +56,7 @@ def refuse(
     """Refuse what an engine that was asked for by name cannot judge.
 
     Raises:
-        RvmonError: there is such a requirement; which and why is said.
+        RvmonError: there is such a requirement; which one and why is in the message.
     """
     for one in requirements:
         refusal = refuses(one)

@@ -1,4 +1,4 @@
-"""What is said of a run of which a call was torn: it began, and did not come to its end.
+"""What is reported of a run of which a call was torn: it began, and did not come to its end.
 
 Attempts may be missing then, or have missed what that call brought. What has failed, has; that
 nothing else did is not known.

@@ -20,7 +20,7 @@ from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
 _APART = 50
-"""Instants that are so many binary digits apart are told from each other."""
+"""Instants that are so many binary digits apart are distinguished."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +126,7 @@ class Words:
         return (*seen, *self._asked(node, atom))
 
     def _in_time(self, node: Literal | Until | Release) -> Sentence:
-        """What is to be said of what came true and ended an obligation."""
+        """What is to be reported of what came true and ended an obligation."""
         if isinstance(node, Literal):
             return ()
         if isinstance(node, Release):
@@ -224,7 +224,7 @@ class Words:
         return ", or ".join(dict.fromkeys(clauses))
 
     def label(self, residual: Residual) -> tuple[str, int | None]:
-        """All that people are told of a residual, for clocks that were started at any time."""
+        """All that is reported of a residual, for clocks that were started at any time."""
         clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
         return self.owed(residual, anchors), deadline(residual, anchors)

@@ -1,4 +1,4 @@
-"""What is said of decisions that are alike, worked out once."""
+"""What is reported of decisions that are alike, worked out once."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Reasons:
         return cuts
 
     def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
-        """What is said of a decision."""
+        """What is reported of a decision."""
         location, anchors = before
         ages = zip(self.cuts(location), anchors, strict=True)
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])

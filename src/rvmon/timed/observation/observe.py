@@ -47,7 +47,7 @@ from rvmon.timed.zones.zone_unions import Constraint
 from rvmon.trace.time import TICKS_PER_UNIT
 
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
-"""What is said of a requirement without deadline that no finite run fails."""
+"""What is reported of a requirement without deadline that no finite run fails."""
 
 _Node = Node[ObservedSite, ObservedLink]
 
