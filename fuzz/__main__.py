@@ -4,7 +4,7 @@ Python is fuzzed by atheris (`pip install atheris`), the reader of C programs by
 (`apt-get install afl++ clang libclang-rt-14-dev`); what is not installed is said and left out. Each
 target has its part of the time, and goes on from what it found before, in the folder of `--out`.
 Prints by target how many inputs it took, how they ended, how many places of the code were reached,
-and which inputs stumbled; exits 1 if one did. Once it is mended, that input is a file more in
+and which inputs stumbled; exits 1 if one did. Once it is fixed, that input is a file more in
 `fuzz/corpus`, which a test reads.
 """
 

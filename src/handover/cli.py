@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="handover",
-        description="Simulated robot-to-human handovers, judged by requirements.",
+        description="Simulated robot-to-human handovers, checked against requirements.",
         epilog="example: handover run --strategy constrained --tests 50 --out out/mine",
     )
     parser.add_argument("--version", action="version", version=f"handover {__version__}")
@@ -65,7 +65,8 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     parser = commands.add_parser(
         "run",
         help="play a campaign of tests against one robot",
-        description="Generate tests, play them on all cores, judge them, show and keep the table.",
+        description="Generate tests, play them on all cores, evaluate them, show and keep the "
+        "table.",
         epilog="example: handover run --strategy pseudorandom,constrained --tests 50 --seed 7",
     )
     parser.add_argument(
@@ -78,7 +79,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     add_campaign_options(parser)
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
     add_judging_options(parser)
-    parser.add_argument("--no-monitors", action="store_true", help="judge nothing: only play")
+    parser.add_argument("--no-monitors", action="store_true", help="evaluate nothing: only play")
     parser.add_argument("--strict", action="store_true", help="exit with 1 unless all is well")
     _add_conform(parser, 0)
     parser.set_defaults(run=_run)
@@ -113,8 +114,8 @@ def _add_close(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "close",
         help="make tests until coverage has no holes",
         description="Make tests aimed at what is not covered, by runs of the model, by biased "
-        "choices and by changing the nearest test; play and judge them, until all is covered that "
-        "can be; keep the fewest that cover as much.",
+        "choices and by changing the nearest test; play and evaluate them until all is covered "
+        "that can be; keep the fewest that cover as much.",
         epilog="example: handover close --out out/closed; handover run --suite out/closed/tests",
     )
     parser.add_argument(
@@ -131,7 +132,7 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser = commands.add_parser(
         "replay",
         help="play one test again",
-        description="Play a test file alone and judge it; the same test gives the same run.",
+        description="Play a test file alone and evaluate it; the same test gives the same run.",
         epilog="example: handover replay out/demo/tests/pseudorandom-017.json --out out/replay",
     )
     add_replay_options(parser)

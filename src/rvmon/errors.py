@@ -35,7 +35,7 @@ class RvmonError(Exception):
 
 
 class DiagnosedError(RvmonError, ValueError):
-    """Text that a person wrote is wrong; `diagnostics` say where, why and how to mend it.
+    """Text that a person wrote is wrong; `diagnostics` say where, why and how to fix it.
 
     Attributes:
         diagnostics: all findings of the text, in order of place.

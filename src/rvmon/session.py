@@ -116,7 +116,7 @@ class Spec:
 
         Raises:
             UnknownNameError: there is no such requirement.
-            RvmonError: one of them is beyond generated code; which and why is said.
+            RvmonError: one of them is beyond generated code; which one and why is in the message.
         """
         from rvmon.monitor.compiled.code_plan import plan_alone
 
@@ -136,7 +136,7 @@ class Spec:
 
         Args:
             only: ids of the requirements, as the engines will be asked for them; default all.
-            ready: told each file when it is there.
+            ready: called with each file when it is there.
             robustness: whether `robustness_monitor()` is to have compiled code as well.
 
         Raises:
@@ -256,7 +256,7 @@ class Spec:
             source: the recording.
             engine: as for `evaluate`; so is `only`, and so are the errors.
             only: see there.
-            decided: told the attempts as they are decided, where samples are judged one by one.
+            decided: called with each attempt as it is decided, where samples are judged one by one.
             robustness: whether each attempt is to have its robustness.
         """
         from rvmon.monitor.engines.registry import Asked, engine_named

@@ -88,7 +88,7 @@ def test_specifications_are_tests_of_recordings(folder):
 
 @pytest.mark.process
 def test_wrong_specifications_and_recordings_are_told(folder):
-    """With place and mend, and no traceback of rvmon."""
+    """With place and fix, and no traceback of rvmon."""
     folder.makefile(".csv", run="t,closed\n0,maybe\n")
     folder.makeini("[pytest]\nrv_recordings = *.csv\n")
     told = folder.runpytest_subprocess("-p", "no:cacheprovider")

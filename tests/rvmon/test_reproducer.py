@@ -130,10 +130,10 @@ def test_a_verdict_that_has_changed_is_told(tmp_path, capsys):
     assert main(["run", path, "--quiet"]) == 1
     told = capsys.readouterr().err
     assert "was made under law 1" in told
-    assert "R#1 was F, as rvmon 9.9 (law 1) judged: it is F now" in told or "R#1 is F" in told
+    assert "R#1 was F, as rvmon 9.9 (law 1) decided: it is F now" in told or "R#1 is F" in told
     path = made(tmp_path / "b.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n5,1\n"})
     assert main(["run", path, "--quiet"]) == 0
-    assert "R#1 was F, as rvmon 9.9 (law 2) judged: it is P now" in capsys.readouterr().err
+    assert "R#1 was F, as rvmon 9.9 (law 2) decided: it is P now" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -201,7 +201,7 @@ def test_sizes_are_bounded(tmp_path, monkeypatch, capsys):
     ],
 )
 def test_a_wrong_or_newer_description_is_told(tmp_path, capsys, case, told):
-    """With what would mend it."""
+    """With what would fix it."""
     path = made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n"}, **case)
     assert main(["why", path]) == 2
     assert told in capsys.readouterr().err

@@ -57,7 +57,7 @@ def judge_columns(
         cuts: rows at which a new block of columns begins, in order.
 
     Returns:
-        `None` if the specification, or a trace without samples, is not judged by columns.
+        `None` if the specification, or a trace without samples, is not evaluated by columns.
     """
     import numpy as np
 

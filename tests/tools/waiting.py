@@ -122,7 +122,7 @@ class Waiting:
         held = any(isinstance(part, Unary) and part.op is UnaryOp.HELD for part in self._parts)
         if self._simplified or held:
             # What a part was made into may have no name.
-            yield "`what is owed`"
+            yield "`the consequent`"
 
 
 def _named(part: Formula, instant: int) -> Iterator[str]:

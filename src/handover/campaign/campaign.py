@@ -42,7 +42,7 @@ def handover_campaign(
         robots: `correct`, `legacy` or both, in the order of the tables.
         monitors: `False` judges nothing, to measure what judging costs.
         conforming: so many runs of each strategy are held against the model for the page, a second
-            each; 0: nothing is said of the model there.
+            each; 0: nothing is shown of the model there.
     """
     return Campaign(
         name="handover",

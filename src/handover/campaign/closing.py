@@ -92,9 +92,9 @@ def query_of(group: str, item: str) -> str:
 
 
 _ONLY_LEGACY = "only the legacy robot does so"
-_NO_DELAY = "the robot takes time from what it is told to what it does about it"
+_NO_DELAY = "the robot takes time from a message to its reaction"
 _SOON = "the robot reacts in a fixed time, far from the limit"
-_EXACT = "the robot waits for what it does and says to the nanosecond"
+_EXACT = "the robot waits exactly, to the nanosecond"
 _APART = "instants that nothing ties together, of the human and of the arm's paths, do not coincide"
 _HELD = "what does not slip on the way is held: a human who moves away lets go first"
 _POLLS = "the robot gives up after many polls, never at the first"

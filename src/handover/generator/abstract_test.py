@@ -110,8 +110,8 @@ class AbstractTest(Test, frozen=True, kw_only=True):
             present = getattr(self, disturbance)
             for fault in structs.fields(present):
                 if getattr(present, fault.name) != fault.default:
-                    mended = structs.replace(present, **{fault.name: fault.default})
-                    yield structs.replace(self, **{disturbance: mended})
+                    fixed = structs.replace(present, **{fault.name: fault.default})
+                    yield structs.replace(self, **{disturbance: fixed})
         for at, action in enumerate(self.actions):
             if isinstance(action, SetParam) and action.param == "time":
                 for units in sorted({1, action.value // 2, action.value * 3 // 4}):

@@ -103,7 +103,7 @@ def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
 
 
 class _Options:
-    """What can be said of one name; the calm one comes first."""
+    """What can be reported of one name; the calm one comes first."""
 
     def __init__(
         self,

@@ -36,7 +36,7 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
             rules.NEVER_TRIGGERS,
             f"nothing can trigger {name}",
             *place,
-            mend="its trigger contradicts itself: look at the comparisons in it",
+            fix="its trigger contradicts itself: look at the comparisons in it",
         )
         return
     if can.fail is False:
@@ -44,14 +44,14 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
             rules.NEVER_FAILS,
             f"{name} can never fail, whatever comes",
             *place,
-            mend=_can_fail(spec.requirements[name]),
+            fix=_can_fail(spec.requirements[name]),
         )
     if can.pass_ is False:
         yield finding(
             rules.NEVER_PASSES,
             f"{name} can never pass, whatever comes",
             *place,
-            mend=_can_pass(spec.requirements[name]),
+            fix=_can_pass(spec.requirements[name]),
         )
 
 
@@ -60,7 +60,7 @@ def _implied(spec: CheckedSpec, found: Implication) -> Diagnostic:
         rules.IMPLIED,
         f"{found.implied} fails only where {_listed(found.by, 'or')} fails: it adds nothing",
         *_places(spec, found.implied, *found.by),
-        mend=f"drop {found.implied}, or look whether it was meant otherwise",
+        fix=f"drop {found.implied}, or look whether it was meant otherwise",
     )
 
 
@@ -69,7 +69,7 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
     if set(conflict.ids) == {first}:
         again = format_duration(conflict.offsets[-1])
         message = f"{first} cannot hold once it is triggered again, {again} later"
-        mend = "let it hold for a shorter time, or say what a second trigger means"
+        fix = "let it hold for a shorter time, or define what a second trigger means"
     else:
         both = "both" if len(conflict.ids) == 2 else "all"
         named = _listed(conflict.ids, "and")
@@ -78,15 +78,15 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
         message = f"{named} cannot {both} hold once they are triggered{when}"
         triggered = any(_has_trigger(spec.requirements[name]) for name in conflict.ids)
         narrow = "narrow one of the triggers" if triggered else "change a bound of one of them"
-        mend = f"{narrow}, or settle which one yields"
-    return finding(rules.CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), mend=mend)
+        fix = f"{narrow}, or settle which one yields"
+    return finding(rules.CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), fix=fix)
 
 
 def _can_fail(requirement: Requirement) -> str:
     """What lets a requirement fail that never does."""
     if any(map(_has_no_end, subformulas(requirement.consequent))):
-        return "give it a deadline with `within`, or say `at end: strong`"
-    return "what is owed always holds where it is looked at: look at the comparisons in it"
+        return "give it a deadline with `within`, or write `at end: strong`"
+    return "the consequent holds wherever it is evaluated: look at the comparisons in it"
 
 
 def _is_open(requirement: Requirement) -> bool:
@@ -110,10 +110,10 @@ def _can_pass(requirement: Requirement) -> str:
     policy = requirement.at_end
     if policy in (EndPolicy.STRICT, EndPolicy.STRONG, EndPolicy.FAIL) and _is_open(requirement):
         return (
-            f"`at end: {policy}` lets nothing pass that is owed to the end: leave it out, or say "
+            f"`at end: {policy}` lets nothing pass that is open at the end: leave it out, or say "
             "for how long with `for`"
         )
-    return "what is owed contradicts itself or the trigger, whose instant counts"
+    return "the consequent contradicts itself or the trigger, whose instant counts"
 
 
 def _has_trigger(requirement: Requirement) -> bool:

@@ -36,8 +36,8 @@ NEVER_FAILS = Rule(
     "never-fails",
     Severity.WARNING,
     "No run can fail the requirement.",
-    "A requirement that cannot fail tells nothing. Most often its deadline is missing: without one "
-    "a response that does not come only stays open.",
+    "A requirement that cannot fail checks nothing. Most often its deadline is missing: without "
+    "one a response that does not come only stays open.",
     """spec demo
 event asked, released
 
@@ -60,7 +60,7 @@ NEVER_PASSES = Rule(
     Severity.WARNING,
     "No attempt of the requirement can pass.",
     "Every run that triggers it fails or stays open, whatever the system does. The instant of the "
-    "trigger belongs to the window of what is owed.",
+    "trigger belongs to the window of the consequent.",
     """spec demo
 event knock
 
@@ -81,7 +81,7 @@ CONFLICT = Rule(
     "RV073",
     "conflict",
     Severity.WARNING,
-    "Requirements that cannot all hold once they are triggered as said; or one, triggered again.",
+    "Requirements that cannot all hold once they are triggered so; or one, triggered again.",
     "Each can be met by itself, but no run meets all of them. `rvmon check --analyse` draws the "
     "shortest run after which one of them must fail.",
     """spec demo

@@ -98,7 +98,7 @@ def chosen(ages: Ages, clocks: Sequence[int]) -> Ages:
 
 
 def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
-    """What is kept of ages, so that few are told apart: more ages, of the same regions.
+    """What is kept of ages, so that few are distinguished: more ages, of the same regions.
 
     Args:
         ages: each clock is within one region.

@@ -139,8 +139,8 @@ class Progression:
         residual, sources = normalise(reached, len(ages))
         if len(sources) > MOST_CLOCKS:
             raise TooManyObligationsError(
-                f"an attempt of {self._name} owes more than {MOST_CLOCKS} obligations at once: a "
-                "window that does not begin at 0 is started anew at every position. Begin the "
+                f"an attempt of {self._name} has more than {MOST_CLOCKS} open obligations at "
+                "once: a window that does not begin at 0 starts again at every position. Begin the "
                 "window at 0, start it `upon` an event, or use `time sampled`"
             )
         return self._location(residual), sources

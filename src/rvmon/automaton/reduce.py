@@ -19,7 +19,7 @@ from rvmon.automaton.location import PASSED, Location
 from rvmon.formula.residual import NO_CLOCK, Residual
 
 Label = Callable[[Residual], Hashable]
-"""What people are told of a residual; locations of which it differs are kept apart."""
+"""What is reported of a residual; locations of which it differs are kept apart."""
 
 Edge = tuple[int, tuple[int, ...]]
 Row = tuple[tuple[Edge | None, ...], int, int]

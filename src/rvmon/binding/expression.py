@@ -49,7 +49,7 @@ def term_of(text: str) -> Term:
             `min(ranges)` or `max(ranges)` of all elements of an array.
 
     Raises:
-        RvmonError: it is none; cause and mend are told.
+        RvmonError: it is none; with cause and fix.
 
     >>> term_of("twist.linear.x")
     Field(path=('twist', 'linear', 'x'))
@@ -100,7 +100,7 @@ def _term(expression: Expression) -> Term:
 def _number(value: Fraction | None, unit: str) -> Constant:
     if unit:
         raise RvmonError(
-            f"a number in a value has no unit (`{unit}`): say that of the result, as `unit`"
+            f"a number in a value has no unit (`{unit}`): give that of the result, as `unit`"
         )
     try:
         number = 0 if value is None else value

@@ -165,7 +165,7 @@ def _signal_lines(
     yield f"topic = {_text(best.topic)}  # {topics[best.topic].type}"
     yield f"value = {_text(best.value)}"
     if type_.unit and (unit := _base(type_.unit)):
-        yield f"unit = {_text(unit)}  # a guess, as ROS has it: say what the field holds"
+        yield f"unit = {_text(unit)}  # a guess, as ROS has it: write the unit of the field"
     if type_.kind is Kind.LABEL and best.kind is Kind.INT:
         listed = ", ".join(f"{number} = {_text(one)}" for number, one in enumerate(type_.labels))
         yield f"labels = {{ {listed} }}  # a guess: which number stands for which?"

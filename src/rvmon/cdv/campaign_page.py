@@ -126,7 +126,7 @@ def _verdicts(
 
     parts: list[Child] = [
         e("h2", None, figures.title),
-        e("p", {"class": "soft"}, "judged by ", e("code", None, figures.spec)),
+        e("p", {"class": "soft"}, "checked against ", e("code", None, figures.spec)),
         table_html(tables.own, beside=tables.beside, link=link),
     ]
     remarks = (*tables.own.notes, *tables.sources, tables.remark)

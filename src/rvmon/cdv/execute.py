@@ -44,7 +44,7 @@ def execute(
         jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         controls: also play the controls of tests.
         kept: where each test is kept as soon as it was played; those before are not played again.
-        progress: told as tests are finished.
+        progress: called as each test is finished.
 
     Raises:
         RvmonError: a system cannot be made, or no process be begun.

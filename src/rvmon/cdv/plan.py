@@ -130,7 +130,8 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
             raise TestError(f"strategy `{strategy}` makes {test!r}, which is no {kind}")
         if test.strategy != strategy:
             raise TestError(
-                f"test `{test.name}` of strategy `{strategy}` says that it is of `{test.strategy}`"
+                f"test `{test.name}` of strategy `{strategy}` names another strategy, "
+                f"`{test.strategy}`"
             )
         from_json(to_json(test), campaign.test, source=f"test `{test.name}` of `{strategy}`")
     return made

@@ -138,7 +138,7 @@ def outcome_of(
     """What a campaign keeps of a run that came to its end.
 
     Args:
-        run: what the system told of it.
+        run: what the system reported of it.
         report: the verdicts.
         illegal: what was hit and must not be.
         hits: what was hit, if that was measured.

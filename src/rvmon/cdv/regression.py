@@ -38,7 +38,7 @@ def regression_test(campaign: Campaign, job: Job, shrunk: Shrunk[Test]) -> Test:
     """The smallest test, by a name of its own, with what is to come out.
 
     A test that is made to fail, or has a fault planted into its robot, is to fail again: it finds
-    the fault. Any other is to pass: it fails until the robot is mended.
+    the fault. Any other is to pass: it fails until the robot is fixed.
 
     Args:
         campaign: that the test is of.

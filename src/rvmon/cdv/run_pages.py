@@ -25,7 +25,7 @@ class Replay:
 
     Attributes:
         test: that was played.
-        run: what the system told of it at its end.
+        run: what the system reported of it at its end.
         samples: that it told before.
         report: the verdicts.
     """
@@ -109,7 +109,7 @@ def _facts(replay: Replay, robot: str, spec: Spec) -> list[tuple[str, str]]:
     facts = [("test", test.name)]
     if test.text:
         facts.append(("purpose", test.text))
-    facts += [("robot", robot), ("judged by", spec.checked.name)]
+    facts += [("robot", robot), ("specification", spec.checked.name)]
     if test.mutation is not None:
         facts.append(("planted fault", test.mutation))
     facts += [("seed", str(test.seed)), *replay.run.facts]

@@ -14,7 +14,7 @@ LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive.
 
 INTERVALS = (
     f"Below each: the {100 * CONFIDENCE:g} % interval of its share in % (Clopper and Pearson), for "
-    "tests that are drawn at random; of tests that are chosen, it says nothing."
+    "tests that are drawn at random; for tests that are chosen it has no meaning."
 )
 
 
@@ -59,7 +59,7 @@ def verdict_table(summary: CampaignSummary, robot: str) -> VerdictTable:
     figures = summary.robots[robot]
     counts = {name: strategy.counts for name, strategy in figures.strategies.items()}
     return VerdictTable(
-        title=f"{figures.title}, judged by {figures.spec}",
+        title=f"{figures.title}, checked against {figures.spec}",
         requirements=figures.requirements,
         groups=_groups(figures, counts),
         notes=_notes(summary, figures),
@@ -117,7 +117,9 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
             notes.append(f"{name} {decision.share}: under {strategy} {told}.")
     strategies = figures.strategies.values()
     if crashed := sum(len(one.crashes) for one in strategies):
-        notes.append(f"The robot's code crashed in {crashed} tests, judged all the same.")
+        notes.append(
+            f"The robot's code crashed in {crashed} tests, which were evaluated all the same."
+        )
     for test, why in (item for one in strategies for item in one.hung.items()):
         notes.append(f"{test} hung: {why}, and was ended; nothing is known of it.")
     for test, why in (item for one in strategies for item in one.lost.items()):

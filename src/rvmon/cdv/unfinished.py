@@ -158,7 +158,7 @@ def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None
         if found.command == own.command:
             told = (
                 "this campaign before its tests, requirements or programs changed: remove it to "
-                "begin anew"
+                "start again"
             )
     raise RvmonError(f"{path} holds {told}, or name another --out")
 

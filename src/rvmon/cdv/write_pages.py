@@ -58,7 +58,7 @@ def write_pages(
         command: runs the campaign again.
         examples: the tests that get a page.
         jobs: processes that write pages; default: one per core.
-        tell: told how many pages are written.
+        tell: called with how many pages are written.
         shrinks: tests with a page that fail, and are not made to, are shrunk to `smallest/`.
 
     Returns:

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 COMMANDS = {
     "check": "find what is wrong in specifications",
-    "run": "judge recordings by a specification",
-    "watch": "judge a running robot: verdicts as they fall",
+    "run": "check recordings against a specification",
+    "watch": "monitor a running robot: verdicts as they are decided",
     "format": "lay specifications out in the canonical form",
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
@@ -37,9 +37,9 @@ COMMANDS = {
     "init": "a starter specification from a recording",
     "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as Python or C that runs alone, or as automata",
-    "build": "a specification as a program that judges recordings",
+    "build": "a specification as a program that checks recordings",
     "prepare": "compile ahead what the engine c runs",
-    "cross": "a recording, judged by every engine and installed peer: do they agree?",
+    "cross": "a recording, evaluated by every engine and installed peer: do they agree?",
     "compare": "what has changed between two files of verdicts",
     "evidence": "whether evidence that was kept still holds",
     "cover": "what tests have covered, what is missing, and what each test is good for",

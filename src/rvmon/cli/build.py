@@ -1,4 +1,4 @@
-"""`rvmon build`: a specification as a program that judges recordings by itself."""
+"""`rvmon build`: a specification as a program that checks recordings by itself."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "build",
-        help="a specification as a program that judges recordings",
+        help="a specification as a program that checks recordings",
         description="Compile a specification to a program (by a C compiler: $CC, cc, gcc or "
         "clang). It reads a recording (.csv, .jsonl, .bin, or - for JSON lines on standard input) "
         "and prints the verdicts as `rvmon run --format json` does, without reasons.",

@@ -41,12 +41,15 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser(campaign: Campaign) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(description=f"{campaign.name}: tests judged by requirements.")
+    parser = argparse.ArgumentParser(
+        description=f"{campaign.name}: tests checked against requirements."
+    )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     run = commands.add_parser(
         "run",
         help="play the tests of a campaign",
-        description="Generate tests, play them on all cores, judge them, show and keep the table.",
+        description="Generate tests, play them on all cores, evaluate them, show and keep the "
+        "table.",
     )
     run.add_argument(
         "--strategy",
@@ -69,7 +72,7 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
     close = commands.add_parser(
         "close",
         help="make tests until coverage has no holes",
-        description="Make tests aimed at what is not covered, play and judge them, until all is "
+        description="Make tests aimed at what is not covered, play and evaluate them, until all is "
         "that can be; keep the fewest that cover as much.",
     )
     close.add_argument(
@@ -88,7 +91,7 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
     replay = commands.add_parser(
         "replay",
         help="play one test again",
-        description="Play a test file alone and judge it; the same test gives the same run.",
+        description="Play a test file alone and evaluate it; the same test gives the same run.",
     )
     add_replay_options(replay)
     replay.add_argument(
@@ -125,7 +128,7 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         "--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'"
     )
     parser.add_argument(
-        "--evidence", metavar="FILE", help="keep tests, verdicts and what judged in one archive"
+        "--evidence", metavar="FILE", help="keep tests, verdicts and specifications in one archive"
     )
     parser.add_argument(
         "--shard",
@@ -238,7 +241,7 @@ def add_mutate_options(parser: argparse.ArgumentParser) -> None:
 
 def add_judging_options(parser: argparse.ArgumentParser) -> None:
     """Declare what judges, and in which form verdicts are printed."""
-    parser.add_argument("--spec", metavar="FILE", help="judge by these requirements")
+    parser.add_argument("--spec", metavar="FILE", help="check against these requirements")
     parser.add_argument(
         "--format",
         choices=("text", "json"),

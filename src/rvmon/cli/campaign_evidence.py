@@ -47,7 +47,7 @@ def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
     refuse_no_file(path)
     specs = {name: robot.spec for name, robot in campaign.robots.items() if robot.spec is not None}
     if len(specs) < len(campaign.robots):
-        raise RvmonError("--evidence: nothing is judged: give each robot requirements")
+        raise RvmonError("--evidence: there is nothing to check: give each robot requirements")
     return texts_of(specs)
 
 

@@ -49,7 +49,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--engines",
         action="store_true",
-        help="say which engine judges each requirement, online and in recordings, and why no other",
+        help="show which engine evaluates each requirement, online and in recordings, and why no "
+        "other",
     )
     parser.add_argument(
         "--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file"

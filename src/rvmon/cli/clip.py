@@ -33,7 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "clip",
         help="a recording cut around an attempt; a file that reproduces it",
         description="Cut a recording around an attempt, in the recording's own format. The last "
-        "values of signals before the cut are carried to its start. The piece is judged again; "
+        "values of signals before the cut are carried to its start. The piece is evaluated again; "
         "the exit code is 1 if the attempt gets another verdict there.",
         epilog="example: rvmon clip monday.bag --spec base.rv --failure B2#3 --before 10s "
         "--after 5s -o incident.bag",
@@ -63,8 +63,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--reproducer",
         metavar="FILE",
-        help="one file (.rvcase) with the piece and all that judges it: `rvmon why FILE` explains "
-        "the attempt, `rvmon run FILE` judges it; -o FILE.rvcase is the same",
+        help="one file (.rvcase) with the piece and its specification: `rvmon why FILE` explains "
+        "the attempt, `rvmon run FILE` evaluates it; -o FILE.rvcase is the same",
     )
     add_const(parser)
     add_reading(parser)
@@ -149,7 +149,7 @@ def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: At
     )
     write_case(out, case)
     named = shlex.quote(out)
-    say(f"{out}: `rvmon why {named}` explains {attempt.name}, `rvmon run {named}` judges it")
+    say(f"{out}: `rvmon why {named}` explains {attempt.name}, `rvmon run {named}` evaluates it")
 
 
 def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:
@@ -252,5 +252,5 @@ def _warn_of_another(
         why = "what it remembers lies before: a longer --before"
     warn(
         f"warning: {attempt.name} is {attempt.verdict} in {data} and not so in "
-        f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may mend it"
+        f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may fix it"
     )

@@ -28,7 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Write a monitor that needs nothing of rvmon: one Python file, or C99 (a "
         "header, a source, a header for C++) that allocates nothing. Or the automata: dot for "
         "Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time). "
-        "Or costs: a line per requirement with what judges it and what open attempts cost.",
+        "Or costs: a line per requirement with its monitor and what open attempts cost.",
         epilog="examples: rvmon compile specs/handover.rv --to c -o monitor/; "
         "rvmon compile specs/handover.rv --to dot --only R1 | dot -Tsvg -o r1.svg",
     )

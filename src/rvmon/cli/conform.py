@@ -24,10 +24,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "conform",
         help="hold recorded runs against a network of timed automata",
-        description="Say whether recordings (.csv, .jsonl) are runs of a network, as far as they "
-        "show: their events are the labels of its edges, or its channels. The first sample is the "
-        "network's start. Exit code 0: all conform; 1: some do not, or it is not decided; 2: a "
-        "recording cannot be read, or shows nothing of the model.",
+        description="Decide whether recordings (.csv, .jsonl) are runs of a network, as far as "
+        "they show: their events are the labels of its edges, or its channels. The first sample "
+        "is the network's start. Exit code 0: all conform; 1: some do not, or it is not decided; "
+        "2: a recording cannot be read, or shows nothing of the model.",
         epilog="example: rvmon conform model.ta monday.csv --observe started,stopped "
         "--tolerance 0.1",
     )
@@ -140,7 +140,7 @@ def _some(shown: frozenset[str], path: str, labels: tuple[str, ...]) -> frozense
         known = f"its actions are {', '.join(labels)}" if labels else "no edge of it has a label"
         raise TraceError(
             f"{path}: nothing in it is an action of the model: {known}; "
-            "name columns or events after them, or say with --observe which would be seen"
+            "name columns or events after them, or name with --observe which would be seen"
         )
     return shown
 

@@ -46,8 +46,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--compare",
         metavar="OLD",
-        help="say what is new, lost or judged otherwise since an earlier database, or an earlier "
-        "campaign of this one",
+        help="show what is new, lost or has another verdict since an earlier database, or an "
+        "earlier campaign of this one",
     )
     add_format(parser)
     parser.add_argument("--report", metavar="FILE", help="write a page to look at")
@@ -105,7 +105,7 @@ def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
         return read([arguments.compare])
     if arguments.campaign is None:
         raise RvmonError(
-            f"--compare {arguments.compare} is a campaign: say which other one it is compared "
+            f"--compare {arguments.compare} is a campaign: name which other one it is compared "
             "with, by --campaign"
         )
     return _campaign(coverage, arguments.compare)

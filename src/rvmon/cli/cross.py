@@ -30,9 +30,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "cross",
-        help="a recording, judged by every engine and installed peer: do they agree?",
-        description="Judge a recording by every engine, by the reference oracle where it is small "
-        "enough, by compiled C where there is a compiler, and by the other monitors that are "
+        help="a recording, evaluated by every engine and installed peer: do they agree?",
+        description="Evaluate a recording by every engine, by the reference oracle where it is "
+        "small enough, by compiled C where there is a compiler, and by the other monitors that are "
         "installed (rtamt, reelay, mstlo, sentil) where they have such a formula. Prints who "
         "agrees; a disagreement is shown with attempt and instant, and exits with 1.",
         epilog="example: rvmon cross specs/door.rv monday.csv",

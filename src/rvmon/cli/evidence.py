@@ -27,8 +27,8 @@ def add_parser(
         "verify",
         help="see whether it holds",
         description="See that nothing in evidence (`--evidence FILE`) was changed, that recordings "
-        "are those that were judged, and judge a sample again. Exit codes: 0 it holds, 1 it does "
-        "not, 2 something could not be checked.",
+        "are those that were evaluated, and evaluate a sample again. Exit codes: 0 it holds, 1 it "
+        "does not, 2 something could not be checked.",
         epilog="example: rvmon evidence verify monday.zip --sample all",
     )
     verify.add_argument("file", metavar="FILE", help="the evidence")
@@ -37,7 +37,7 @@ def add_parser(
         metavar="N",
         type=lambda text: None if text == "all" else positive(text),
         default=10,
-        help="judge so many recordings or tests again, or all (%(default)s)",
+        help="evaluate so many recordings or tests again, or all (%(default)s)",
     )
     verify.add_argument("--seed", metavar="S", type=int, default=1, help="of the sample (1)")
     verify.add_argument("--jobs", metavar="N", type=positive, default=1, help="processes (1)")

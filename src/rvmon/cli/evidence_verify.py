@@ -57,13 +57,13 @@ def _verify(
     kept: Kept, arguments: argparse.Namespace, differ: list[str], unchecked: list[str]
 ) -> None:
     about = kept.about
-    say(f"{arguments.file}: {about.name}, judged by rvmon {about.rvmon}, law {about.law}")
+    say(f"{arguments.file}: {about.name}, evaluated by rvmon {about.rvmon}, law {about.law}")
     there = set(kept.items)
     for name, sha256 in about.recordings.items():
         if not is_recording(name):
             unchecked.append(f"{name} is not there")
         elif sha256_of(Path(name)) != sha256:
-            differ.append(f"{name} is not the recording that was judged")
+            differ.append(f"{name} is not the recording that was evaluated")
         else:
             continue
         there.discard(name)
@@ -93,7 +93,7 @@ def _verify(
     columns = [one for one in VerdictRow._fields if is_same or one not in ("reason", "error")]
     for item in chosen:
         differ += _differences(item, kept.items[item], now.get(item, ()), columns)
-    say(f"judged again: {size:,} of {len(kept.items):,}")
+    say(f"evaluated again: {size:,} of {len(kept.items):,}")
 
 
 def _expect_derived(kept: Kept) -> None:

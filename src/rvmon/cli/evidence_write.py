@@ -77,7 +77,7 @@ def write_run(
         RvmonError: it cannot be written, or what was judged has changed meanwhile.
     """
     if begun(arguments, list(before[2])) != before:
-        raise RvmonError("--evidence: what was judged has changed meanwhile: run it again")
+        raise RvmonError("--evidence: an input has changed meanwhile: run it again")
     entries, (main, *binding), recordings = before
     how = msgspec.convert(arguments, Judging, from_attributes=True)
     about = About(

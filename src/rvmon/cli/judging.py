@@ -78,7 +78,9 @@ def judge_all(
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
-            yield Judged(shown_path(trace), None, error=f"{shown_path(trace)}: not judged: {error}")
+            yield Judged(
+                shown_path(trace), None, error=f"{shown_path(trace)}: not evaluated: {error}"
+            )
 
 
 @without_copies()
@@ -131,7 +133,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             raise
         report = beside.finished(report)
         if report.end is None:
-            raise TraceError(f"no sample up to --until {options.until:g} s: nothing to judge")
+            raise TraceError(f"no sample up to --until {options.until:g} s: nothing to evaluate")
     except TraceError as error:
         message = str(error)
         place = "" if trace in message else f"{trace}: "

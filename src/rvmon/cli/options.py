@@ -111,7 +111,7 @@ def refuse_over(written: Iterable[str | None], read: Iterable[str]) -> None:
     known = list(read)
     for one in written:
         if one is not None and any(_is_same_file(one, other) for other in known):
-            raise RvmonError(f"cannot write {one}: it is what is judged: name another")
+            raise RvmonError(f"cannot write {one}: it is an input: name another")
 
 
 def _is_same_file(one: str, other: str) -> bool:

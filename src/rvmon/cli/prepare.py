@@ -17,9 +17,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "prepare",
         help="compile ahead what makes streams fast, and what the engine c runs",
         description="Compile a specification ahead (by a C compiler: $CC, cc, gcc or clang). "
-        "Streams are then judged several times faster by the engine auto, with all that it tells, "
-        "and the engine c starts at once; on the same machine without a compiler as well. The "
-        "files are kept in the cache. rvmon check --engines says what auto does not take.",
+        "Streams are then evaluated several times faster by the engine auto, with the same "
+        "reports, and the engine c starts at once; on the same machine without a compiler as "
+        "well. The files are kept in the cache. rvmon check --engines shows what auto does not "
+        "take.",
         epilog="example: rvmon prepare specs/door.rv && rvmon run specs/door.rv *.csv --engine c",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")

@@ -51,13 +51,13 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--nan",
         choices=[reading.replace(" ", "-") for reading in READINGS_OF_NAN],
-        help="what NaN says: unknown (default), or no update, as where topics were merged",
+        help="what NaN means: unknown (default), or no update, as where topics were merged",
     )
     add_binding(parser)
     parser.add_argument(
         "--clock",
         choices=("log", "header"),
-        help="which stamps of messages count where the binding does not say it: log, when each "
+        help="which stamps of messages count where the binding names none: log, when each "
         "was recorded (default), or header",
     )
 
@@ -67,7 +67,7 @@ def add_binding(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--binding",
         metavar="FILE",
-        help="TOML that says which topics and fields of messages (bags, MCAP) feed which names; "
+        help="TOML that maps topics and fields of messages (bags, MCAP) to names; "
         "`rvmon bind` proposes one",
     )
 
@@ -78,7 +78,7 @@ def add_allow_missing(parser: argparse.ArgumentParser) -> None:
         "--allow-missing",
         metavar="[=NAMES]",
         default=None,
-        help="judge recordings in columns that lack these names (default: any): what reads them "
+        help="evaluate recordings in columns that lack these names (default: any): what reads them "
         "is I, and the exit code 1",
     )
 

@@ -50,7 +50,7 @@ def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
     from rvmon.verdict.verdict import LAW
 
     if arguments.const or reading_words(arguments):
-        raise RvmonError(f"{arguments.spec} says itself how it is read: leave out these options")
+        raise RvmonError(f"{arguments.spec} defines how it is read: leave out these options")
     with opened_case(arguments.spec) as case:
         if case.law != LAW:
             told = f"made under law {case.law}, and this rvmon has law {LAW}"
@@ -81,7 +81,7 @@ def compare_expected(one: Judged, case: Case) -> None:
     found = next((attempt for attempt in attempts if attempt.name == case.attempt), None)
     if found is None or (found.verdict, found.decided) != (case.verdict, case.decided):
         now = "there is none now" if found is None else f"it is {found.verdict} now"
-        made = f"as rvmon {case.rvmon} (law {case.law}) judged"
+        made = f"as rvmon {case.rvmon} (law {case.law}) decided"
         warn(f"warning: {case.attempt} was {case.verdict}, {made}: {now}")
     else:
         warn(f"{case.attempt} is {case.verdict}, as when this was recorded")

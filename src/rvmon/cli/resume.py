@@ -130,7 +130,7 @@ def _entries(path: Path, heading: bytes) -> list[_Entry]:
     if found and found[0] != heading:
         raise RvmonError(
             f"{path} was begun with another specification, other options or another rvmon: "
-            "leave out --resume to judge all anew"
+            "leave out --resume to start again"
         )
     try:
         return [msgspec.json.decode(entry, type=_Entry) for entry in (found or [])[1:]]

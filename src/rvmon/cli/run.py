@@ -1,4 +1,4 @@
-"""`rvmon run`: judge recordings by a specification."""
+"""`rvmon run`: check recordings against a specification."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "run",
-        help="judge recordings by a specification",
-        description="Judge recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
-        "lines on standard input) by a specification: P passed, F failed, NT not triggered, "
+        help="check recordings against a specification",
+        description="Check recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
+        "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
         "I inconclusive.",
         epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
     )
@@ -59,13 +59,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
     )
-    add_only(parser, "judge these requirements")
+    add_only(parser, "evaluate these requirements")
     add_const(parser)
     parser.add_argument(
         "--until",
         metavar="T",
         type=instant,
-        help="judge to T seconds, be it before or after the last sample",
+        help="evaluate to T seconds, be it before or after the last sample",
     )
     add_reading(parser)
     add_allow_missing(parser)
@@ -73,7 +73,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--engine",
         metavar="NAME",
         default="auto",
-        help=f"how to judge: auto (default), {', '.join(ENGINES[1:-1])}, or c: "
+        help=f"how to evaluate: auto (default), {', '.join(ENGINES[1:-1])}, or c: "
         "compiled by the C compiler that is installed, without reasons",
     )
     parser.add_argument(
@@ -83,7 +83,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--robustness",
         action="store_true",
-        help="say by how much each attempt passed or failed (SI units; negative: failed)",
+        help="add by how much each attempt passed or failed (SI units; negative: failed)",
     )
     add_format(parser)
     parser.add_argument(
@@ -109,8 +109,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--shard",
         metavar="I/N",
         type=shard,
-        help="with --out: judge this share of the recordings, as 2/4, into FILE named so as well; "
-        "the same command with --resume in its place joins all",
+        help="with --out: evaluate this share of the recordings, as 2/4, into FILE named so as "
+        "well; the same command with --resume in its place joins all",
     )
     parser.add_argument(
         "--known",
@@ -128,7 +128,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--evidence",
         metavar="FILE",
-        help="keep what was judged, by what, and the verdicts, in one archive; "
+        help="keep recordings, specification and verdicts in one archive; "
         "`rvmon evidence verify FILE` sees whether it holds",
     )
     parser.add_argument(
@@ -238,7 +238,7 @@ def _judged(
         )
         left = [trace for trace in traces if trace not in begun.known]
         if begun.known:
-            warn(f"{len(traces) - len(left)} of {len(traces)} recordings were judged before")
+            warn(f"{len(traces) - len(left)} of {len(traces)} recordings were evaluated before")
         found = list(begun.judged(traces, judge_all(spec, left, options, jobs)))
     if arguments.out is not None:
         write_results(arguments.out, spec, found)
@@ -313,7 +313,7 @@ def _show_warnings(spec: Spec) -> None:
         warn(render_full(spec.warnings))
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
-        warn(f"{spec.checked.name} has no requirement: nothing is judged")
+        warn(f"{spec.checked.name} has no requirement: there is nothing to check")
 
 
 def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
@@ -321,7 +321,7 @@ def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -
         if one.error:
             warn(f"error: {one.error}")
             for line in _before_lines(one.before):
-                warn(f"  judged before that: {line}")
+                warn(f"  decided before that: {line}")
         if one.missing:
             names = ", ".join(f"`{name}`" for name in one.missing)
             message = f"{one.trace} has no column for {names}: what reads that is inconclusive"

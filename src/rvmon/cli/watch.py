@@ -42,10 +42,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "watch",
-        help="judge a running robot: verdicts as they fall",
-        description="Judge JSON lines as they arrive, and say each verdict as soon as it is sure: "
-        "a deadline that is missed is told when it is over. A change of the specification is taken "
-        "up at once. Ends with the stream, or with Ctrl-C.",
+        help="monitor a running robot: verdicts as they are decided",
+        description="Evaluate JSON lines as they arrive, and report each verdict as soon as it is "
+        "decided: a missed deadline is reported when it is over. A change of the specification is "
+        "taken up at once. Ends with the stream, or with Ctrl-C.",
         epilog="example: my_robot --telemetry | rvmon watch specs/base.rv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
@@ -57,7 +57,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, whose "
         "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (topics of ROS 1), "
         "ros2: (those of ROS 2) or dds:DOMAIN (the same without an installation of ROS). What "
-        "has a time (t, t_ns, --time) is judged at it, the rest as it arrives",
+        "has a time (t, t_ns, --time) is evaluated at it, the rest as it arrives",
     )
     add_only(parser)
     add_const(parser)
@@ -67,7 +67,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--robot",
         metavar="FIELD",
-        help="the field of lines that names the robot: each is judged by itself",
+        help="the field of lines that names the robot: each has monitors of its own",
     )
     parser.add_argument(
         "--publish",
@@ -87,7 +87,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--sim-time",
         action="store_true",
         help="the time is that of the topic /clock (`use_sim_time`); with ros1: this is the "
-        "default where the parameter of that name says so",
+        "default where the parameter of that name is true",
     )
     parser.add_argument(
         "--room",
@@ -99,10 +99,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--state",
         metavar="FILE",
-        help="keep the run in a file: killed, it goes on where it was, and tells each verdict "
+        help="keep the run in a file: killed, it goes on where it was, and reports each verdict "
         "under its number, the latest perhaps twice",
     )
-    parser.add_argument("--failures", action="store_true", help="say what fails, not what passes")
+    parser.add_argument(
+        "--failures", action="store_true", help="report what fails, not what passes"
+    )
     parser.add_argument(
         "--format",
         choices=("view", "text", "json"),
@@ -124,7 +126,7 @@ def run(arguments: argparse.Namespace) -> int:
     for option, instead in idle.items():
         if getattr(arguments, option):
             name = option.replace("_", "-")
-            raise RvmonError(f"--{name} says nothing to {arguments.source}: {instead}")
+            raise RvmonError(f"--{name} does not apply to {arguments.source}: {instead}")
     live = watch(arguments, spec, shown)
     shown.ended(live)
     verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
@@ -152,7 +154,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         lines = read_lines(file.fileno())
         first = next((line for line in lines if line.strip()), None)
         if first is None:
-            raise RvmonError(f"error: {arguments.source}: there is no line: nothing was judged")
+            raise RvmonError(f"error: {arguments.source}: there is no line: nothing was evaluated")
         began = stamp_of(first, spec.schema)
         followed = None
         clock = _own_clock(arguments)
@@ -247,14 +249,16 @@ def _watch_topics(
     hear(source.publish)
     with live, source, shown:
         if followed is not None:
-            shown.note(f"the time is that of {CLOCK}: nothing is judged before its first message")
+            shown.note(
+                f"the time is that of {CLOCK}: nothing is evaluated before its first message"
+            )
         _follow(arguments, live, shown)
     return live
 
 
 _ONE_ROBOT = "a domain or a master is one robot; start one for each"
 _NO_CLOCK = "there is no topic /clock; lines with stamps (t, t_ns, --time) bring their time along"
-_STAMPS = "a binding (--binding) says which field is the stamp"
+_STAMPS = "a binding (--binding) names the field of the stamp"
 _DOORS: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
     "mqtt:": (
         _watch_mqtt,
@@ -336,7 +340,7 @@ def _follow(
                 arguments.made = age
                 try:
                     live.replace_spec(_loaded(arguments))
-                    shown.note(f"{arguments.spec} has changed: judged by it from here on")
+                    shown.note(f"{arguments.spec} has changed: the new one holds from here on")
                 except (SpecError, RvmonError) as error:
                     shown.note(f"{error}\nThe former specification goes on.")
             shown.show(live)

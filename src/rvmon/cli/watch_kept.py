@@ -37,7 +37,7 @@ def refuse_others(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) is not None:
             raise RvmonError(
                 f"--state and --{name}: a run that is kept is of one robot whose lines have stamps "
-                f"and are judged by them: leave --{name} out"
+                f"and are evaluated at them: leave --{name} out"
             )
     if arguments.format == "view":
         raise RvmonError("--state and --format view: verdicts are numbered lines: text or json")

@@ -71,7 +71,7 @@ class Output(logging.Handler):
         if count <= _TOLD:
             self.note(record.getMessage())
         elif count == 10 ** (len(str(count)) - 1):
-            self.note(f"{record.getMessage()}  (the {count:,}th of this kind; few are told)")
+            self.note(f"{record.getMessage()}  (the {count:,}th of this kind; most are left out)")
 
     def judged(self, judgement: Judgement) -> None:
         """Say a verdict, if it is asked for."""

@@ -36,7 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--until",
         metavar="T",
         type=instant,
-        help="judge to T seconds, be it before or after the last sample",
+        help="evaluate to T seconds, be it before or after the last sample",
     )
     add_reading(parser)
     add_allow_missing(parser)

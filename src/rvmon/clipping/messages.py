@@ -254,7 +254,7 @@ def _clip_bag(
     with bag_errors(form), bag_readers()[form](path) as reader, writer:
         latched = {(one.topic, one.id) for one in reader.connections if is_latched(one)}
         # All, in their order: by it messages of one instant are read again, and a topic without
-        # messages is there all the same. Publishers that are told apart by nothing are one.
+        # messages is there all the same. Publishers that are distinguished by nothing are one.
         alike: dict[Any, Any] = {}
         connections = {}
         for one in reader.connections:

@@ -263,7 +263,7 @@ def real(value: float) -> str:
     if number != value:
         raise RvmonError(
             f"the whole number {value} has more digits than the doubles of generated code: "
-            "judge the specification with `rvmon run`, or write another bound"
+            "evaluate the specification with `rvmon run`, or write another bound"
         )
     if not math.isfinite(number):
         raise ValueError(f"{value} is no number of a specification")

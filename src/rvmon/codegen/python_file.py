@@ -70,7 +70,7 @@ def python_file(plan: Plan) -> str:
     for unit in plan.units:
         raise RvmonError(
             f"{unit.rules[0].requirement.id} captures values (`let`, `for each`), which a Python "
-            "file does not: leave it out with --only, or have it judged by C (`rvmon build`, "
+            "file does not: leave it out with --only, or have it evaluated by C (`rvmon build`, "
             "--to c)"
         )
     parts = [_HEAD.format(spec=comment(plan.spec.name))]
@@ -103,8 +103,8 @@ def _tables(rule: PlannedRule) -> str:
     if rule.automaton is None:
         raise RvmonError(
             f"{rule.requirement.id} has no automaton that a Python file can hold, for its attempts "
-            "or for those that may be in doubt: leave it out with --only, or have it judged by C "
-            "(`rvmon build`, --to c)"
+            "or for those that may be in doubt: leave it out with --only, or have it evaluated by "
+            "C (`rvmon build`, --to c)"
         )
     data = tables_of(rule.automaton)
     fields = (

@@ -1,4 +1,4 @@
-"""What can be said of coverage: data. Items and tests go by their places in it."""
+"""What can be reported of coverage: data. Items and tests go by their places in it."""
 
 from __future__ import annotations
 

@@ -76,8 +76,8 @@ def told(path: str | Path | None) -> Iterator[None]:
     try:
         yield
     except sqlite3.ProgrammingError as error:
-        mend = "use it in the thread that opened it, and until it is closed"
-        raise CoverageError(f"error: {name_of(path)}: {error}: {mend}") from None
+        fix = "use it in the thread that opened it, and until it is closed"
+        raise CoverageError(f"error: {name_of(path)}: {error}: {fix}") from None
     except sqlite3.Error as error:
         code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR) & 0xFF
         why = _WORDS.get(code, f"{error}: {_ANEW}")

@@ -168,7 +168,7 @@ def _refuse_nonsense(name: str, group: StoredGroup) -> None:
 def _refuse_conflict(
     path: str | Path | None, name: str, own: StoredGroup, other: StoredGroup
 ) -> None:
-    mend = "keep the two in databases of their own, or give the changed one another name"
+    fix = "keep the two in databases of their own, or give the changed one another name"
     for what, before, after in (
         ("is about", own.subject.value, other.subject.value),
         ("has weight", own.weight, other.weight),
@@ -177,14 +177,14 @@ def _refuse_conflict(
         if before != after:
             raise CoverageError(
                 f"error: {name_of(path)}: group `{name}` {what} {after} here, {before} in "
-                f"what it is added to: {mend}"
+                f"what it is added to: {fix}"
             )
     for item, one in other.items.items():
         known = own.items.get(item)
         if known is not None and (known.kind, known.goal) != (one.kind, one.goal):
             raise CoverageError(
                 f"error: {name_of(path)}: item `{item}` of group `{name}` is "
-                f"{_meaning(one)} here, {_meaning(known)} in what it is added to: {mend}"
+                f"{_meaning(one)} here, {_meaning(known)} in what it is added to: {fix}"
             )
 
 

@@ -1,4 +1,4 @@
-"""A finding about a text: what, where, why, and what mends it."""
+"""A finding about a text: what, where, why, and what fixes it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Diagnostic:
         severity: error or warning.
         message: one sentence: what is wrong.
         spans: the places concerned, the offending one first; empty if the whole file is meant.
-        help: what mends it; empty if nothing is known to.
+        help: what fixes it; empty if nothing is known to.
     """
 
     code: str

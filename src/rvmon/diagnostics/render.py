@@ -15,7 +15,7 @@ from rvmon.diagnostics.span import Source, Span
 
 
 def render_full(diagnostics: Sequence[Diagnostic]) -> str:
-    """Every finding with its places underlined and what mends it, a blank line between."""
+    """Every finding with its places underlined and what fixes it, a blank line between."""
     return "\n\n".join(map(_full, diagnostics))
 
 
@@ -53,8 +53,8 @@ def _concise(diagnostic: Diagnostic) -> str:
     if diagnostic.spans:
         span = diagnostic.spans[0].span
         place = f"{shown_line(span.source.name)}:{span.line}:{span.column}: "
-    mend = f" (help: {_one_line(diagnostic.help)})" if diagnostic.help else ""
-    return f"{place}{_heading(diagnostic)}{mend}"
+    fix = f" (help: {_one_line(diagnostic.help)})" if diagnostic.help else ""
+    return f"{place}{_heading(diagnostic)}{fix}"
 
 
 def _one_line(text: str) -> str:

@@ -43,7 +43,7 @@ def pack(entries: Mapping[str, bytes]) -> bytes:
             )  # as of Unix, whatever it is
             packed.writestr(entry, body)
     if made.tell() > MOST_BYTES:
-        raise RvmonError(f"evidence of {made.tell():,} bytes is too much: judge fewer at once")
+        raise RvmonError(f"evidence of {made.tell():,} bytes is too much: evaluate fewer at once")
     return made.getvalue()
 
 

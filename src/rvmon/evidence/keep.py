@@ -216,7 +216,7 @@ def derived_entries(
     checked = {robot: spec.checked for robot, spec in specs.items()}
     matrix = trace_matrix(checked, items, about.planted)
     facts = {
-        "judged by": f"rvmon {about.rvmon}, law {about.law}, Python {about.python}",
+        "evaluated by": f"rvmon {about.rvmon}, law {about.law}, Python {about.python}",
         "command": " ".join(about.command),
     }
     page = matrix_page(f"{about.name}: what shows its requirements", facts, matrix)
@@ -236,7 +236,7 @@ def opened_evidence(path: str) -> Iterator[Kept]:
         about = msgspec.json.decode(entries[ABOUT], type=About)
         items = rows_by_item(entries[VERDICTS])
         if about.judging is not None and about.specs.keys() != {""}:
-            raise ValueError("recordings are judged by one specification")
+            raise ValueError("recordings are checked against one specification")
     except (KeyError, ValueError, csv.Error) as error:
         raise RvmonError(f"{path} is no evidence that this rvmon can read: {error}") from None
     judged = items.keys() if about.judging else {item.partition("/")[0] for item in items}

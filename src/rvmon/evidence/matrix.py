@@ -150,10 +150,10 @@ def _row(rows: Sequence[Traced]) -> ET.Element:
         found = [one for one in own if one.verdict == verdict]
         cells.append(e("td", {"data-verdict": verdict if found else None}, f"{len(found):,}"))
         lists += _list(f"{mark.sign} {mark.word}", found, is_open=verdict is Verdict.FAIL)
-    lists += _list("not judged", [one for one in own if not one.verdict], is_open=True)
+    lists += _list("not evaluated", [one for one in own if not one.verdict], is_open=True)
     lists += _list("with a planted fault", [one for one in rows if one.planted_fault])
     if not any(one.by for one in rows):
-        lists.append("nothing judges it")
+        lists.append("nothing checks it")
     first = e("th", {"scope": "row"}, rows[0].requirement)
     return e("tr", None, first, *cells, e("td", {"class": "text purpose"}, *lists))
 

@@ -52,7 +52,7 @@ def changes_in_samples(
 
     Args:
         samples: of one recording, in order; they are read once.
-        read: the choices; what is said of other names is left out.
+        read: the choices; what is reported of other names is left out.
         events: the names of events.
 
     >>> found = [Sample(t, {"p": t > 2, "q": t}) for t in range(5)]

@@ -133,7 +133,7 @@ def _apart(
     start: int,
     end: int,
 ) -> Iterator[str]:
-    """What is to be said of parts of which none was ever true, and of signals without a value."""
+    """What is reported of parts of which none was ever true, and of signals without a value."""
     groups: dict[str, list[Formula]] = {}
     for part in parts:
         word = "was never true"
@@ -160,7 +160,7 @@ def _unborn(
     samples: Sequence[Sample],
     sources: frozenset[str] | None,
 ) -> Mapping[str, str]:
-    """Of the signals that parts read, those without any value, and what is to be said of them."""
+    """Of the signals that parts read, those without any value, and what is reported of them."""
     lacking = {name for part in parts for name in names_read(part)} & spec.signals.keys()
     absent = set() if sources is None else lacking - sources
     lacking -= absent

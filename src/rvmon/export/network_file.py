@@ -49,8 +49,8 @@ def network_svg(network: Network) -> str:
     """
     program = shutil.which("dot")
     if program is None:
-        mend = "install Graphviz (such as: apt-get install graphviz), or write a .dot file"
-        raise RvmonError(f"there is no program `dot` to draw with: {mend}")
+        fix = "install Graphviz (such as: apt-get install graphviz), or write a .dot file"
+        raise RvmonError(f"there is no program `dot` to draw with: {fix}")
     try:
         drawn = subprocess.run(  # noqa: S603 - the model is its input, never an argument
             [program, "-Tsvg"],
@@ -60,8 +60,8 @@ def network_svg(network: Network) -> str:
             timeout=PATIENCE_S,
         )
     except subprocess.TimeoutExpired:
-        mend = "write a .dot file and lay it out by another program"
-        raise RvmonError(f"drawing took more than {PATIENCE_S} s: {mend}") from None
+        fix = "write a .dot file and lay it out by another program"
+        raise RvmonError(f"drawing took more than {PATIENCE_S} s: {fix}") from None
     except subprocess.CalledProcessError as error:
         reason = error.stderr.decode("utf-8", errors="replace").strip()
         raise RvmonError(f"`dot` cannot draw this: {reason}") from None

@@ -145,7 +145,7 @@ class Lowering:
 
 
 def _is_step(formula: Formula) -> bool:
-    """Whether people are told of it although they wrote `rise` or `fall`."""
+    """Whether it is reported although they wrote `rise` or `fall`."""
     return isinstance(formula, Unary) and formula.op is UnaryOp.PREVIOUS
 
 

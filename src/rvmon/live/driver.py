@@ -202,7 +202,7 @@ class Driver:
         if self._runs_by_itself and not now - _FAR_NS < t_ns < now + _AHEAD_NS:
             far = "years from" if abs(t_ns - now) > _FAR_NS else "ahead of"
             raise TraceError(
-                f"the stamp {format_ticks(t_ns)} is {far} the clock, which says "
+                f"the stamp {format_ticks(t_ns)} is {far} the clock, which shows "
                 f"{format_ticks(now)}: set the clocks of the machines alike, or give the driver "
                 "the clock of the stamps, such as WallClock(since_1970=True)"
             )

@@ -24,8 +24,8 @@ class DurableMonitor:
     r"""A monitor that goes on where it was when its process was killed.
 
     Its file holds a snapshot and the samples that came since. A sample is in the file before it is
-    judged. So each verdict is told at least once; what was told shortly before the end is told
-    again, alike and under the same number, by which a reader tells it from the next.
+    judged. So each verdict is reported at least once; what was reported shortly before the end is
+    reported again, alike and under the same number, by which a reader knows it from the next.
 
     What the process of the monitor has not been given is not in the file, and a loss of power can
     take the latest samples: they are with the system, not on the disk.
@@ -34,7 +34,7 @@ class DurableMonitor:
         spec: what is judged.
         path: of the file; if it is there, the run in it goes on.
         told: called with the number, from 1, and the record of each attempt that passes or fails.
-            What it raises comes out of the call that decided; the verdict counts as told.
+            What it raises comes out of the call that decided; the verdict counts as reported.
         every: so many samples are kept beside a snapshot.
         **options: as for `Spec.monitor`, for a new run; an old one goes on as it began.
 
@@ -88,7 +88,7 @@ class DurableMonitor:
         except (ValueError, LookupError, TypeError, RecursionError):
             raise SnapshotError(
                 f"{self._path}: no run of a monitor, or its beginning is damaged: name another "
-                "file, or delete this one to begin anew"
+                "file, or delete this one to start again"
             ) from None
         try:
             return spec.restore(data)
@@ -132,7 +132,7 @@ class DurableMonitor:
         self._told(self._number, attempt)
 
     def save(self) -> None:
-        """Keep the run as it is: what was told so far is not told again.
+        """Keep the run as it is: what was reported so far is not reported again.
 
         Raises:
             OSError: the file cannot be written; it stays as it was.
@@ -147,7 +147,7 @@ class DurableMonitor:
         self._kept = 0
 
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> None:
-        """Judge a sample, as `Monitor.step_ns` does; verdicts are told.
+        """Judge a sample, as `Monitor.step_ns` does; verdicts are reported.
 
         Raises:
             TraceError: the monitor refuses it; what it spoke of is unknown from now on.

@@ -176,7 +176,7 @@ class Robot:
     def lose(self, lost: Lost) -> None:
         """Have unknown what was lost for want of room."""
         self._lost += lost.count
-        self._note(HealthKind.DROPPED, lost.count, lost.t, "came faster than they were judged")
+        self._note(HealthKind.DROPPED, lost.count, lost.t, "came faster than they were evaluated")
         if lost.moments is None:
             self._run_lost_much()
             return

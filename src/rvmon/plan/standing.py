@@ -1,4 +1,4 @@
-"""What is told of state formulas at a position, by whatever works out their values."""
+"""What is reported of state formulas at a position, by whatever works out their values."""
 
 from __future__ import annotations
 

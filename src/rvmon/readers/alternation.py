@@ -19,7 +19,7 @@ REMARK = (
     "alternates with values, as in a merge of topics; if it stands for no update, say so: "
     'nan="no update", rvmon run --nan no-update'
 )
-"""What is said of a name that does."""
+"""What is reported of a name that does."""
 
 _LEAST = 3
 """Stretches of unknown values; fewer are dropouts."""

@@ -66,7 +66,7 @@ class Layout:
 
 
 def _other_separator(header: list[str]) -> str:
-    """What to mend if the cells are not separated by commas."""
+    """What to fix if the cells are not separated by commas."""
     for separator, name in ((";", "semicolons"), ("\t", "tabs"), ("|", "bars")):
         if len(header) == 1 and separator in header[0]:
             return f". The columns look separated by {name}: separate them by commas"

@@ -74,7 +74,7 @@ def jsonl_blocks(
     """
     ignored.clear()
     if schema.stamps is not None or schema.columns:
-        raise NotPlainError("stamps or names are told otherwise")
+        raise NotPlainError("stamps or names have another form")
     decoder = shape = None
     last = None
     held: dict[str, Any] = {}
@@ -218,7 +218,7 @@ def _numbers(cells: list[Any], kind: Kind) -> NDArray[Any]:
 
 
 def _occurrences(cells: list[Any] | None, count: int, *, gaps: bool) -> NDArray[np.bool_]:
-    """Where an event occurs; where nothing is said of it, it does not."""
+    """Where an event occurs; where nothing is known of it, it does not."""
     if cells is None:
         cells = [msgspec.UNSET] * count
     if msgspec.UNSET in cells and not gaps:

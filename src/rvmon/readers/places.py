@@ -125,8 +125,8 @@ class _Unpacked(RawIOBase):
             count: int = self._plain.readinto(buffer)
         except self._damage as error:
             cut = isinstance(error, EOFError)
-            mend = "was it cut off? Copy it again" if cut else "is it packed as its ending says?"
-            raise TraceError(f"cannot be unpacked ({first_line(error)}): {mend}") from None
+            fix = "was it cut off? Copy it again" if cut else "is it packed as its ending says?"
+            raise TraceError(f"cannot be unpacked ({first_line(error)}): {fix}") from None
         return count
 
     def close(self) -> None:

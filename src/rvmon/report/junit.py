@@ -79,7 +79,7 @@ def _add_case(
             f"attempt {attempt.numbered}, {_when(attempt.decided)}: {full_reason(attempt, report)}"
         )
         for attempt in report.of(name, verdict)
-    ] or ["a step was interrupted: what followed was not judged in full"]
+    ] or ["a step was interrupted: what followed was not evaluated in full"]
     kind = "failure" if verdict is Verdict.FAIL else "skipped"
     element = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
     element.text = "\n".join(reasons)

@@ -16,7 +16,7 @@ from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
-_BROKEN = "cannot be judged"
+_BROKEN = "cannot be evaluated"
 _KNOWN = "fail as is known"
 _GROUPS = {
     _BROKEN: _BROKEN,
@@ -60,7 +60,7 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
     requirements: list[Child] = []
     for name in [name for name in ids if spec.requirements[name].text]:
         requirements += [e("dt", None, name), e("dd", None, spec.requirements[name].text)]
-    title = f"{len(recordings):,} recordings, judged by {spec.name}"
+    title = f"{len(recordings):,} recordings, checked against {spec.name}"
     return page(
         title,
         [

@@ -64,7 +64,7 @@ def write_run_pages(
             others=[other for other in others if other.report is not report],
             facts=(
                 ("recording", _shown(report.trace)),
-                ("judged by", f"{spec.name}, law {report.law}"),
+                ("specification", f"{spec.name}, law {report.law}"),
             ),
             back=INDEX if several else "",
         )

@@ -34,7 +34,7 @@ def wrapped(sentence: str, width: int) -> str:
 
 
 def in_short(message: str) -> str:
-    r"""What is wrong, of a message that goes on with how to mend it in further lines.
+    r"""What is wrong, of a message that goes on with how to fix it in further lines.
 
     >>> in_short("there is no column for what is read:\n  `go`, read by R1\n  say which it is")
     'there is no column for what is read: `go`, read by R1'

@@ -14,13 +14,13 @@ from rvmon.verdict.verdict import Verdict, fold
 class Change(StrEnum):
     """What became of a requirement in a recording; what people look at first stands first."""
 
-    BROKE = "fails anew"
-    UNREADABLE = "can no longer be judged"
+    BROKE = "fails now"
+    UNREADABLE = "can no longer be evaluated"
     NO_LONGER_SHOWN = "no longer shown to hold"
-    MENDED = "mended"
+    FIXED = "fixed"
     NO_LONGER_FAILS = "no longer fails, and is not shown to hold"
     NEWLY_SHOWN = "newly shown to hold"
-    READABLE = "can be judged again"
+    READABLE = "can be evaluated again"
     OTHERWISE = "otherwise not shown"
 
     @property
@@ -31,7 +31,7 @@ class Change(StrEnum):
     @property
     def is_gain(self) -> bool:
         """Whether more holds than before."""
-        return self in (Change.MENDED, Change.NEWLY_SHOWN, Change.READABLE)
+        return self in (Change.FIXED, Change.NEWLY_SHOWN, Change.READABLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +142,7 @@ def _change(before: Verdict, after: Verdict) -> Change:
         case _, Verdict.FAIL:
             return Change.BROKE
         case Verdict.FAIL, Verdict.PASS:
-            return Change.MENDED
+            return Change.FIXED
         case Verdict.FAIL, _:
             return Change.NO_LONGER_FAILS
         case Verdict.PASS, _:

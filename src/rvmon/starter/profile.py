@@ -140,7 +140,7 @@ class _Followed:
         return self.runs_are_single and self.trues <= EVENT_SHARE * (self.trues + self.falses)
 
     def column(self, name: str, end: int) -> Column:
-        """What is to be said of it, of a recording that ends at `end`."""
+        """What is to be reported of it, of a recording that ends at `end`."""
         span = 0 if self.first is None or self.last is None else self.last - self.first
         event = self._looks_like_event()
         return Column(

@@ -85,7 +85,7 @@ def _crossing(name: str, case: Case, peers: Mapping[str, Peer]) -> Crossing:
     except RvmonError as error:
         return Crossing(name, None, {BASELINE: Answer(_first_line(error))})
     if report is None:
-        return Crossing(name, None, {BASELINE: Answer("cannot judge it")})
+        return Crossing(name, None, {BASELINE: Answer("cannot evaluate it")})
     answers = {"oracle": _oracle(case, report)}
     for form in FORMS:
         if form != BASELINE:
@@ -110,7 +110,7 @@ def _answer(form: str, case: Case, baseline: Report) -> Answer:
     except RvmonError as error:
         return Answer(_first_line(error))
     if report is None:
-        return Answer("does not judge such requirements")
+        return Answer("does not evaluate such requirements")
     return Answer(differences=tuple(differences(baseline, report)))
 
 

@@ -65,7 +65,7 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
     yield f"{time_text(network, 0):>9}  start in {location_text(network, run.start)}"
     for number, step in enumerate(run.steps):
         if number == run.loop:
-            yield f"{'':>9}  from here for ever:"
+            yield f"{'':>9}  from here without end:"
         now += step.delay
         if step.action is None and step.window.high == 0 and number + 1 < len(run.steps):
             continue  # an instant that matters for the query only, and nothing is seen of it
@@ -83,7 +83,7 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
         case Ending.TIME_LOCK:
             yield f"{'':>9}  time stops here: no edge can be taken, and time may not pass"
         case Ending.IDLE:
-            yield f"{'':>9}  it may stay here for ever"
+            yield f"{'':>9}  it may stay here without end"
         case Ending.LOOP | Ending.ZENO_LOOP:
             yield f"{'':>9}  and round again" + (
                 ", though time does not pass on (a Zeno loop)"

@@ -14,7 +14,7 @@ docs/reference/what-changed-in-the-law.md.
 
 
 class Verdict(StrEnum):
-    """What can be said of a requirement, or of one attempt of it, on one run."""
+    """What can be reported of a requirement, or of one attempt of it, on one run."""
 
     PASS = "P"
     FAIL = "F"

@@ -132,7 +132,7 @@ def test_the_page_and_the_terminal_count_the_same_physics(tmp_path, capsys):
 
 
 def test_a_strategy_of_another_robot_is_refused(capsys):
-    """Nothing would be played: place, cause, mend, and exit code 2."""
+    """Nothing would be played: place, cause, fix, and exit code 2."""
     assert main(["run", "--legacy", "--strategy", "disturbed", "--tests", "2"]) == 2
     told = " ".join(capsys.readouterr().err.split())
     assert "no test for the robot legacy: all of `disturbed` are for the robot correct" in told

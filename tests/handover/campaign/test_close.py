@@ -76,7 +76,7 @@ def test_the_suite_is_played_again_from_its_folder(closed, capsys):
 
 
 def test_nonsense_is_refused(tmp_path, capsys):
-    """A folder without tests, an unknown strategy: place, cause, mend, and exit code 2."""
+    """A folder without tests, an unknown strategy: place, cause, fix, and exit code 2."""
     assert main(["run", "--suite", str(tmp_path)]) == 2
     assert "no test (.json) in this folder" in capsys.readouterr().err
     assert main(["close", "--strategy", "guessing"]) == 2

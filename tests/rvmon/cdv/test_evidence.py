@@ -56,7 +56,7 @@ def test_it_holds_where_its_requirements_are_gone(made, tmp_path, capsys):
     kept = made(3)
     (tmp_path / "toy.rv").write_text("spec other\n")
     code, told = verify(capsys, kept, "--sample", "all", "--jobs", "2")
-    assert "judged again: 3 of 3" in told
+    assert "evaluated again: 3 of 3" in told
     assert (code, told.splitlines()[-1]) == (0, "It holds.")
     entries = unpack("e.zip")
     assert {f"tests/{name}.json" for name, _ in TESTS} <= entries.keys()
@@ -100,4 +100,4 @@ def test_nothing_is_kept_of_what_is_not_judged(campaign, capsys, tmp_path, monke
     monkeypatch.chdir(tmp_path)
     toys = campaign(*TESTS, robots={"toy": cdv.Robot(Reckless, None)})
     assert cli.main(toys, ["run", "--evidence", "e.zip"]) == 2
-    assert "nothing is judged" in capsys.readouterr().err
+    assert "nothing to check" in capsys.readouterr().err

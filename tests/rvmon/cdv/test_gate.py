@@ -89,7 +89,7 @@ def test_a_failure_of_what_there_is_not_is_told(campaign, what):
 def test_junit_has_a_case_per_test_and_per_expectation(campaign, golden):
     """Failures, errors, known failures as skipped; a campaign that was cut short is an error."""
     known = [cdv.ExpectedFailure("T1", "too strong", test="high")]
-    known += [cdv.ExpectedFailure("T2", "mended since")]
+    known += [cdv.ExpectedFailure("T2", "fixed since")]
     tests = (LOW, HIGH, ("higher", {"level": 7.0, "text": "far up"}), CRASH)
     text = junit_xml("toys", judged(campaign(*tests, expected_failures=known)), "interrupted")
     root = ET.fromstring(text)  # noqa: S314 - our own

@@ -47,7 +47,7 @@ def test_an_unknown_strategy_is_told(campaign):
         (lambda *_: ["a"], "strategy `s` makes 'a', which is no Test"),
         (
             lambda *_: [cdv.Test(name="a", strategy="other", seed=1)],
-            "test `a` of strategy `s` says that it is of `other`",
+            "test `a` of strategy `s` names another strategy, `other`",
         ),
         (
             lambda *_: [cdv.Test(name="a", strategy="s", seed=1, text=object())],

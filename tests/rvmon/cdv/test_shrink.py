@@ -161,7 +161,7 @@ def test_a_field_that_does_not_exist_is_told():
     ],
 )
 def test_a_regression_test_knows_what_is_to_come_out(campaign, tmp_path, more, expected):
-    """A pass once the robot is mended; a failure where it finds a fault. It is read back."""
+    """A pass once the robot is fixed; a failure where it finds a fault. It is read back."""
     test = steps(1, 2, **more)
     found = shrink(test, OUTCOME, fails_if(lambda one: 2 in one.numbers))
     made = campaign()
@@ -212,7 +212,7 @@ if __name__ == "__main__":
 
 @pytest.mark.process
 def test_a_campaign_shrinks_what_fails_and_its_page_says_so(spec, tmp_path, monkeypatch, capsys):
-    """The page leads to the smallest test; the test of pytest fails until the robot is mended."""
+    """The page leads to the smallest test; the test of pytest fails until the robot is fixed."""
     script, out = tmp_path / "jumps.py", tmp_path / "out"
     script.write_text(CAMPAIGN)
 

@@ -167,7 +167,7 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
         assert main(command) == 130
         (runs / "1" / "1.mcap").touch()
         assert main(command) == 130
-    assert "2 of 3 recordings were judged before" in capsys.readouterr().err
+    assert "2 of 3 recordings were evaluated before" in capsys.readouterr().err
     binding.write_text(binding.read_text().replace('unit = "m/s"', 'unit = "km/h"'))
     assert main(command) == 2
     assert "begun with another specification" in capsys.readouterr().err

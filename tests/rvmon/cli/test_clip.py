@@ -109,8 +109,8 @@ def test_late_rows_are_found(base, capsys):
     ("words", "told"),
     [
         (["-o", "b.csv"], "name what to cut out: --failure R1#3, or --from T and --to T"),
-        (["--failure", "R1", "-o", "a.csv"], "cannot write a.csv: it is what is judged"),
-        (["--failure", "R1", "-o", "link.csv"], "cannot write link.csv: it is what is judged"),
+        (["--failure", "R1", "-o", "a.csv"], "cannot write a.csv: it is an input"),
+        (["--failure", "R1", "-o", "link.csv"], "cannot write link.csv: it is an input"),
         (["--failure", "R1", "-o", "b.bag"], "a piece of a.csv ends in .csv"),
         (["--failure", "R1", "-o", "no/b.csv"], "there is no folder no"),
         (["--failure", "R1#7", "-o", "b.csv"], "no attempt R1#7: there is R1#1 only"),
@@ -122,7 +122,7 @@ def test_late_rows_are_found(base, capsys):
     ],
 )
 def test_mistakes_are_told(base, capsys, words, told):
-    """With what would mend them; nothing is written, and the recording stays."""
+    """With what would fix them; nothing is written, and the recording stays."""
     (base / "link.csv").symlink_to("a.csv")
     assert clip(*words) == 2
     assert told in capsys.readouterr().err

@@ -205,7 +205,7 @@ def test_campaigns_are_compared(door, capsys):
     ],
 )
 def test_mistakes_are_named(door, capsys, words, told):
-    """Exit 2, with place and mend."""
+    """Exit 2, with place and fix."""
     assert main(["cover", *(word.format(door=door) for word in words)]) == 2
     assert told in capsys.readouterr().err
 

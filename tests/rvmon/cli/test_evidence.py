@@ -109,7 +109,7 @@ def test_it_holds_what_verdicts_follow_from(base, capsys):
     ]
     assert b"ISO 1, 4.2" in entries["matrix.html"]
     code, told = verify(capsys, "--sample", "all")
-    assert "judged again: 3 of 3" in told
+    assert "evaluated again: 3 of 3" in told
     assert (code, told.splitlines()[-1]) == (0, "It holds.")
 
 
@@ -172,8 +172,8 @@ def test_recordings_that_are_others_or_gone_are_told(base, capsys):
     (base / "b.csv").write_bytes(kept + b"12000,1,\n")
     code, told = verify(capsys)
     assert code == 1
-    assert "b.csv is not the recording that was judged" in told
-    assert "judged again: 2 of 3" in told
+    assert "b.csv is not the recording that was evaluated" in told
+    assert "evaluated again: 2 of 3" in told
     (base / "b.csv").unlink()
     code, told = verify(capsys)
     assert (code, "b.csv is not there" in told) == (2, True)
@@ -186,7 +186,7 @@ def test_a_sample_follows_from_its_seed(base, capsys):
     run(*TRACES)
     rewritten("e.zip", lambda entries: entries.update(forged(entries)))
     told = {seed: verify(capsys, "--sample", "1", "--seed", str(seed)) for seed in range(4)}
-    assert all("judged again: 1 of 3" in said for _, said in told.values())
+    assert all("evaluated again: 1 of 3" in said for _, said in told.values())
     assert {code for code, _ in told.values()} == {0, 1}
     assert verify(capsys, "--sample", "1", "--seed", "3") == told[3]
 

@@ -136,7 +136,7 @@ def test_a_code_has_its_page(capsys):
         (["door.rv", "D1", "--const", "T"], "NAME=VALUE"),
     ],
 )
-def test_wrong_words_are_answered_with_a_mend(door, capsys, words, said):
+def test_wrong_words_are_answered_with_a_fix(door, capsys, words, said):
     """One message, exit code 2, no traceback."""
     assert main(["explain", *words]) == 2
     assert said in capsys.readouterr().err

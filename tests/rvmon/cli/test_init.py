@@ -124,7 +124,7 @@ def test_a_response_is_timed_from_the_recording(tmp_path, capsys):
     ],
 )
 def test_bad_recordings_are_refused_with_their_place(name, text, said, tmp_path, capsys):
-    """One message with place and mend, exit code 2, and nothing is written."""
+    """One message with place and fix, exit code 2, and nothing is written."""
     path = tmp_path / name
     path.write_text(text)
     assert main(["init", str(path), "-o", str(tmp_path / "made.rv")]) == 2

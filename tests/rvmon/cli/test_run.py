@@ -105,7 +105,7 @@ def test_help_names_the_engines(capsys):
     """All that --engine takes."""
     assert main(["run", "--help"]) == 0
     shown = " ".join(capsys.readouterr().out.split())
-    assert f"how to judge: auto (default), {', '.join(ENGINES[1:-1])}, or c:" in shown
+    assert f"how to evaluate: auto (default), {', '.join(ENGINES[1:-1])}, or c:" in shown
 
 
 def test_many_recordings_are_counted(files, capsys):
@@ -122,7 +122,7 @@ def test_many_recordings_are_counted(files, capsys):
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
 )
 def test_a_process_that_is_killed_costs_only_what_was_not_judged(files, capsys, monkeypatch):
-    """As where memory runs out: what was judged is shown, the rest named, with a mend."""
+    """As where memory runs out: what was judged is shown, the rest named, with a fix."""
 
     def killed(spec, trace, options, **how):
         if trace == "I.csv":
@@ -134,7 +134,9 @@ def test_a_process_that_is_killed_costs_only_what_was_not_judged(files, capsys, 
     code = main(["run", "door.rv", *traces, "--jobs", "2", "--format", "json", "--junit", "j.xml"])
     told = capsys.readouterr()
     assert code == 2
-    assert "I.csv: not judged: the process that had recording 2 was ended from outside" in told.err
+    assert (
+        "I.csv: not evaluated: the process that had recording 2 was ended from outside" in told.err
+    )
     assert "use fewer processes (jobs)" in told.err
     assert "Traceback" not in told.err
     assert len(json.loads(told.out)) == len(traces)
@@ -173,7 +175,7 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys, engine):
     assert main(["run", "door.rv", "cut.csv", "--engine", engine]) == 2
     told = capsys.readouterr().err
     assert "cut.csv: line 6: column `closed`: `maybe`" in told
-    assert "judged before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
+    assert "decided before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
     assert "Traceback" not in told
 
 
@@ -355,7 +357,7 @@ def test_a_specification_without_requirements_is_told(tmp_path, capsys):
     (tmp_path / "one.jsonl").write_text('{"t": 0, "b": true}\n')
     spec, trace = str(tmp_path / "empty.rv"), str(tmp_path / "one.jsonl")
     assert main(["run", spec, trace]) == 0
-    assert "empty has no requirement: nothing is judged" in capsys.readouterr().err
+    assert "empty has no requirement: there is nothing to check" in capsys.readouterr().err
     assert main(["run", spec, trace, "--only", "R1"]) == 2
     assert "there are none" in capsys.readouterr().err
     assert main(["explain", spec]) == 2

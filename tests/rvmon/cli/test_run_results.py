@@ -69,7 +69,7 @@ def test_a_run_that_was_ended_goes_on(folder, capsys, monkeypatch, resume):
     assert main([*words, *(["--resume"] if resume else [])]) == 1
     told = capsys.readouterr()
     assert told.out == whole
-    assert ("1 of 2 recordings were judged before" in told.err) is resume
+    assert ("1 of 2 recordings were evaluated before" in told.err) is resume
     assert (folder / "v.csv").read_text() == table
 
 
@@ -87,7 +87,7 @@ def test_shards_are_joined(folder, capsys):
     (folder / "more.csv").unlink()  # as it is on another machine
     capsys.readouterr()
     assert main([*words, "v.csv", "--resume"]) == 2
-    assert "2 of 5 recordings were judged before" in capsys.readouterr().err
+    assert "2 of 5 recordings were evaluated before" in capsys.readouterr().err
     assert (folder / "v.csv").read_text() == (folder / "whole.csv").read_text()
     assert not list(folder.glob("*.unfinished"))
 
@@ -100,7 +100,7 @@ def test_shards_are_joined(folder, capsys):
     ],
 )
 def test_a_share_of_nothing_is_refused(folder, capsys, words, told):
-    """With what mends it."""
+    """With what fixes it."""
     assert main(["run", "s.rv", "good.csv", "bad.csv", *words]) == 2
     assert told in capsys.readouterr().err
 
@@ -127,7 +127,7 @@ def test_what_is_judged_is_not_written_over(folder, capsys, option):
     before = (folder / "good.csv").read_text()
     (folder / "link.csv").symlink_to(folder / "good.csv")
     assert main(["run", "s.rv", "bad.csv", "good.csv", option, "link.csv"]) == 2
-    assert "cannot write link.csv: it is what is judged" in capsys.readouterr().err
+    assert "cannot write link.csv: it is an input" in capsys.readouterr().err
     assert (folder / "good.csv").read_text() == before
 
 
@@ -182,7 +182,7 @@ def test_what_fails_stands_first_in_the_list_of_recordings(folder):
     index = (folder / "pages" / "index.html").read_text()
     places = [index.index(f'data-name="{name}.csv"') for name in ("cut", "bad", "good")]
     assert places == sorted(places)
-    assert "cannot be judged: " in index
+    assert "cannot be evaluated: " in index
     assert 'href="bad.html#R1"' in index
     assert 'class="filters" hidden="hidden"' in index
 
@@ -199,12 +199,12 @@ def test_two_runs_are_compared(folder, capsys):
     capsys.readouterr()
     assert main(["compare", "old.csv", "new.csv"]) == 1
     text = capsys.readouterr().out
-    assert "2 fails anew:" in text
+    assert "2 fails now:" in text
     assert "R1 in good.csv: P → F: R1#1: `p` became false at 5 s" in text
     assert main(["compare", "old.csv", "new.csv", "--format", "json"]) == 1
     found = json.loads(capsys.readouterr().out)
-    assert [one["change"] for one in found["differences"]] == ["fails anew", "fails anew"]
+    assert [one["change"] for one in found["differences"]] == ["fails now", "fails now"]
     assert main(["compare", "new.csv", "old.csv"]) == 0
-    assert "mended" in capsys.readouterr().out
+    assert "fixed" in capsys.readouterr().out
     assert main(["compare", "old.csv", "none.csv"]) == 2
     assert "there is no file none.csv" in capsys.readouterr().err

@@ -94,7 +94,7 @@ def test_late_samples_are_put_in_order(tmp_path, capsys):
         (["door.rv", "c.csv", "D1"], "never triggered"),
     ],
 )
-def test_wrong_words_are_answered_with_a_mend(door, capsys, words, said):
+def test_wrong_words_are_answered_with_a_fix(door, capsys, words, said):
     """One message, exit code 2, no traceback."""
     (door / "b.csv").write_text("t,closed,knock\n0,1,\n1,maybe,\n")
     (door / "c.csv").write_text("t,closed,knock\n0,1,\n1,1,\n")

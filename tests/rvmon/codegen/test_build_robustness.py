@@ -105,5 +105,5 @@ def test_what_c_does_not_measure_is_refused(tmp_path, capsys):
     words = ["build", str(tmp_path / "s.rv"), "--robustness", "-o", str(tmp_path / "judge")]
     assert main(words) == 2
     told = capsys.readouterr().err
-    assert "R1 uses `let`; compiled C, which measures, cannot judge it: leave it out" in told
+    assert "R1 uses `let`; compiled C, which measures, cannot evaluate it: leave it out" in told
     assert not (tmp_path / "judge").exists()

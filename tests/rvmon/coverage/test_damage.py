@@ -1,4 +1,4 @@
-"""Files that are no whole databases of coverage: an error with place, cause and mend."""
+"""Files that are no whole databases of coverage: an error with place, cause and fix."""
 
 import os
 import random

@@ -167,7 +167,7 @@ def test_a_task_that_cannot_be_sent_is_named():
 
 @pytest.mark.parametrize("jobs", [2, 5])
 def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
-    """All results before are given out; the error names the task and a mend."""
+    """All results before are given out; the error names the task and a fix."""
     found, error = given(execute([*range(0, 200, 2), 13, 8], doing(halved), jobs=jobs, what="run"))
     assert found == [*range(100)]
     assert isinstance(error, WorkerLostError)

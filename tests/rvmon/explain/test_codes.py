@@ -1,4 +1,4 @@
-"""Every rule finds its own example, in the words that are kept, and nothing in the mended one."""
+"""Every rule finds its own example, in the words that are kept, and nothing in the fixed one."""
 
 import os
 from pathlib import Path
@@ -41,8 +41,8 @@ def test_example_breaks_its_rule(code):
 
 
 @pytest.mark.parametrize("code", RULES)
-def test_mended_example_is_in_order(code):
-    """The mended example has no findings at all."""
+def test_fixed_example_is_in_order(code):
+    """The fixed example has no findings at all."""
     assert findings_about(RULES[code], RULES[code].instead) == ()
 
 
@@ -73,8 +73,8 @@ def test_every_page_has_a_rule():
 
 
 @pytest.mark.parametrize("code", RULES)
-def test_message_says_how_to_mend(code):
-    """Each first finding has a place and a mend."""
+def test_message_says_how_to_fix(code):
+    """Each first finding has a place and a fix."""
     first = next(finding for finding in found_in_example(code) if finding.code == code)
     assert first.spans or code == "RV006"
     assert first.help

@@ -164,7 +164,7 @@ def test_text_of_propositions_is_quoted():
 def test_windows_of_time_are_refused():
     """HOA has no clocks; the message says what to do."""
     spec = loads('spec s\nevent e\nrequirement R1 "x"\n  upon start\n  then within 3 s e\n')
-    with pytest.raises(RvmonError, match="windows of time, which HOA cannot say"):
+    with pytest.raises(RvmonError, match="windows of time, which HOA cannot express"):
         hoa(compile_spec(spec.checked).requirements["R1"])
 
 

@@ -185,7 +185,7 @@ def test_late_rows_stand_in_their_place(base):
         (["a.csv", "--mcap", "v.json"], "the name of an MCAP file ends in .mcap"),
         (["a.csv", "b.csv", "--mcap", "v.mcap"], "--mcap shows one recording, and there are 2"),
         (["a.csv", "--mcap", "no/v.mcap"], "there is no folder no"),
-        (["c.mcap", "--mcap", "c.mcap"], "it is what is judged"),
+        (["c.mcap", "--mcap", "c.mcap"], "it is an input"),
         (["early.csv", "--mcap", "v.mcap"], "MCAP has no instants before 0 s"),
     ],
 )

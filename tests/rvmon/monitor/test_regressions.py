@@ -267,7 +267,9 @@ def test_what_cannot_be_judged_within_bounds_says_so():
     )
     monitor = spec.monitor(engine="progression")
     monitor.step(0, {"a": True})
-    with pytest.raises(rvmon.RvmonError, match="an attempt of R1 owes more than 256 obligations"):
+    with pytest.raises(
+        rvmon.RvmonError, match="an attempt of R1 has more than 256 open obligations"
+    ):
         monitor.step(1, {"a": False})
 
 

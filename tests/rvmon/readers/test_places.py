@@ -65,7 +65,7 @@ def test_a_packed_file_that_was_cut_off_is_told(tmp_path, capsys, ending):
 
 @pytest.mark.parametrize("ending", PACKERS)
 def test_a_file_that_is_not_packed_as_its_ending_says_is_told(tmp_path, spec, ending):
-    """Place, cause, mend."""
+    """Place, cause, fix."""
     path = tmp_path / f"a.csv{ending}"
     path.write_text(CSV)
     with pytest.raises(TraceError, match=r"a\.csv\.\w+: cannot be unpacked .* as its ending says"):

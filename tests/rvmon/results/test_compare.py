@@ -27,7 +27,7 @@ def broken(recording="a.csv"):
         ("I", "F", Change.BROKE),
         ("P", "I", Change.NO_LONGER_SHOWN),
         ("P", "NT", Change.NO_LONGER_SHOWN),
-        ("F", "P", Change.MENDED),
+        ("F", "P", Change.FIXED),
         ("F", "NT", Change.NO_LONGER_FAILS),
         ("I", "P", Change.NEWLY_SHOWN),
         ("NT", "I", Change.OTHERWISE),
@@ -42,7 +42,7 @@ def test_each_change_has_its_name(before, after, change):
 def test_a_requirement_has_the_verdict_of_its_worst_attempt():
     """Failures are counted, and the first that there is now tells why."""
     [found] = compare(rows("P", "F", "I"), rows("P", "P", "P")).differences
-    assert (found.change, found.failures) == (Change.MENDED, (1, 0))
+    assert (found.change, found.failures) == (Change.FIXED, (1, 0))
     [found] = compare(rows("P", "P"), rows("P", "F", "F")).differences
     assert (found.failures, found.reason) == ((0, 2), "R1#2: r2")
 

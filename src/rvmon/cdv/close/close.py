@@ -67,7 +67,7 @@ def close(
         strategies: tests are drawn from; default: those that the campaign closes with.
         budget: when to give up.
         jobs: processes, or the address of a scheduler of Dask; default: one process per core.
-        progress: told how far it is.
+        progress: called with how far it is.
 
     Raises:
         TestError: a test cannot be made, or played.

@@ -255,8 +255,8 @@ class Proposer:
         try:
             return from_json(to_json(named), kind, source=f"test `{name}`, {origin}")
         except TestError as error:
-            mend = f"; does `{kind.__name__}` take the strategy `{STRATEGY}`?"
-            raise TestError(f"{error}{mend}") from None
+            fix = f"; does `{kind.__name__}` take the strategy `{STRATEGY}`?"
+            raise TestError(f"{error}{fix}") from None
 
 
 def _stream(campaign: Campaign, strategy: str, robot: str, seed: int) -> Iterator[Test]:

@@ -27,9 +27,9 @@ def print_closed(closed: Closed, console: Console) -> None:
     if idle := len(closed.tests) - len(useful):
         console.print(f"{counted(idle, 'further test')} added nothing.\n")
     _print_reasons("cannot be met: the model proves it:", _by_text(closed.proved), console)
-    _print_reasons("cannot be met, says the campaign:", _by_text(closed.argued), console)
+    _print_reasons("cannot be met, by the campaign's argument:", _by_text(closed.argued), console)
     if closed.wrong:
-        console.print("said to be unreachable, and met all the same:", style="bold red")
+        console.print("declared unreachable, and met all the same:", style="bold red")
         for goal, test in closed.wrong.items():
             console.print(wrapped(f"{name_of(goal)}, by {test}", console.width))
     if closed.open:

@@ -26,7 +26,7 @@ EDGES = "edges of the model"
 """The group of what tests show of the model."""
 
 MOST_STATES = 200_000
-"""Symbolic states in which a query is to be decided, or nothing is said of its item."""
+"""Symbolic states within which a query is to be decided, else its item stays open."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The file of mutants that are said to be equivalent: arguments, and the mutants each is for."""
+"""The file of mutants that are declared equivalent: arguments, and the mutants each is for."""
 
 from __future__ import annotations
 

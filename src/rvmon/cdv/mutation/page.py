@@ -80,7 +80,7 @@ def _suite(report: MutationReport, name: str) -> ET.Element:
             for one in equivalent
         )
         table = _table(("mutant", "change", "argument"), rows, texts=3)
-        summary = e("summary", None, f"{len(equivalent)} said to be equivalent")
+        summary = e("summary", None, f"{len(equivalent)} declared equivalent")
         parts.append(e("details", None, summary, table))
     return _section(name, *parts)
 

@@ -58,7 +58,7 @@ def play_mutants(
         jobs: processes.
         every: play all these tests; else until a requirement fails.
         keep: keep the first run in which a requirement fails.
-        progress: told as mutants are done.
+        progress: called as mutants are done.
 
     Returns:
         What became of each, in their order; it does not depend on `jobs`.

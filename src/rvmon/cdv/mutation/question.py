@@ -81,5 +81,5 @@ def _differs(found: Difference, reading: Mapping[str, Sequence[str]]) -> str:
     told += f"{', '.join(own)} read{'s' * (len(own) == 1)}" if own else "no requirement reads"
     if found.verdicts:
         changes = ", ".join(f"{name} {was} → {now}" for name, was, now in found.verdicts)
-        told += f"; otherwise judged, but not failed: {changes}"
+        told += f"; verdicts differ, but none is a failure: {changes}"
     return told

@@ -21,7 +21,7 @@ class Recorded:
 
     Attributes:
         verdicts: by requirement.
-        run: what the system told at its end.
+        run: what the system reported at its end.
         samples: instants, and what changed or occurred.
         lines: of each file of the code under test, the statements that ran; where it was measured.
         cpu_s: processor time of this process that it took.

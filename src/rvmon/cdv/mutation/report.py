@@ -101,9 +101,9 @@ class MutationReport:
         return any(one.killed < one.rest for one in scores)
 
     def contradictions(self) -> list[str]:
-        """Mutants that are said to be equivalent, and are killed, or make a run differ."""
+        """Mutants that are declared equivalent, and are killed, or make a run differ."""
         return [
-            f"{one.mutant.identity} is said to be equivalent, and {told}"
+            f"{one.mutant.identity} is declared equivalent, and {told}"
             for suite in self.suites.values()
             for one in suite.tried
             if one.mutant.identity in self.equivalent and (told := self._told(one))

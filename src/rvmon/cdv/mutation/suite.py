@@ -111,7 +111,7 @@ def record_suite(
         tests: of the suite; those that are for another robot, or plant a fault of their own, are
             passed over.
         jobs: processes.
-        progress: told as tests are played.
+        progress: called as each test is played.
 
     Raises:
         RvmonError: the campaign measures no code, the robot has no requirements, or no test is
@@ -143,7 +143,7 @@ def record_suite(
                 progress(number)
     if not recorded:
         why = next(iter(left_out.values()), "it has no test for this robot without a planted fault")
-        raise RvmonError(f"the suite says nothing about robot `{robot}`: {why}")
+        raise RvmonError(f"the suite has no result for robot `{robot}`: {why}")
     used = {one.name: one for one in own if one.name in recorded}
     return Suite(robot, under_test, spec, code, used, recorded, left_out)
 

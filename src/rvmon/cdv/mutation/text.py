@@ -21,7 +21,7 @@ HEAD = (
 SPEC_HEAD = ("suite", "third", "mutants", "proved equivalent", "killed", "score")
 
 SPEC_TITLE = (
-    "No recorded run is judged otherwise: is a stimulus missing, or does the requirement say more "
+    "No recorded run gets another verdict: is a stimulus missing, or does the requirement ask more "
     "than matters?"
 )
 

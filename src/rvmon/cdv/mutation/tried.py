@@ -79,7 +79,7 @@ class Score:
 
     Attributes:
         mutants: all that can be planted.
-        equivalent: of them so many are said to change no behaviour, and none of them is killed.
+        equivalent: of them so many are declared to change no behaviour, and none of them is killed.
         killed: by whatever.
         by_requirement: killed by a requirement that fails.
         unreached: so many are in lines that no test runs.
@@ -111,7 +111,7 @@ def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
 
     Args:
         tried: mutants.
-        equivalent: the identities of those that are said to change no behaviour.
+        equivalent: the identities of those that are declared to change no behaviour.
     """
     counted = [one for one in tried if not one.invalid]
     known = set(equivalent)

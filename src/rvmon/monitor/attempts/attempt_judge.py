@@ -1,4 +1,4 @@
-"""The open attempts of one requirement, with what is told of them."""
+"""The open attempts of one requirement, with what is reported of them."""
 
 from __future__ import annotations
 

@@ -158,7 +158,7 @@ class Evaluator(Nodes, Schedule):
         """The last two updates of a signal."""
         found = self.h[self.SIGNALS.index(signal)]
         if found is None:
-            raise AssertionError("nobody asked for it when the evaluator was generated")
+            raise AssertionError("the evaluator was generated without it")
         return found
 
     def payloads_of(self, event: str) -> Sequence[Payload | None]:

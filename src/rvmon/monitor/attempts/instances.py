@@ -120,6 +120,6 @@ class Instances:
                 raise TraceError(
                     f"sample at {format_ticks(t)}: {name} would have {asked} instances of "
                     f"`{source.event}.{source.field}` open at once, of {MOST_OPEN} that there can "
-                    "be: an upper bound in what is owed (`within D`) lets them close, or run "
+                    "be: an upper bound in the consequent (`within D`) lets them close, or run "
                     "one monitor for each part of the values"
                 )

@@ -54,7 +54,7 @@ class WindowJudge(NetworkJudge):
 
     def _begin_network(self) -> None:
         if self._torn:
-            self._mend()
+            self._recover()
         if self._network is None and self._windows is None:
             self._letters = None
             self.sleeps = -NEVER
@@ -62,7 +62,7 @@ class WindowJudge(NetworkJudge):
     def visit(self, t: int) -> None:
         """See `NetworkJudge`."""
         if self._torn:
-            self._mend()
+            self._recover()
         if self._windows is None and not (self._network is None and self._is_waited_for):
             super().visit(t)
             if self._network is not None and self._clear.is_over(t):
@@ -140,7 +140,7 @@ class WindowJudge(NetworkJudge):
         self._journals = [None, None]
         self._ahead = None
 
-    def _mend(self) -> None:
+    def _recover(self) -> None:
         """Go on by networks behind an interrupt: those are told of whole positions."""
         if self._windows is not None:
             self._fall_back()
@@ -201,7 +201,7 @@ class WindowJudge(NetworkJudge):
 
     def _wait(self, limit: int) -> None:
         if self._torn:
-            self._mend()
+            self._recover()
         if self._windows is None:
             super()._wait(limit)
         else:

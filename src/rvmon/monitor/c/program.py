@@ -88,7 +88,7 @@ def _plain_path(checked: CheckedSpec, source: Source, only: Sequence[str] | None
     """The path of a recording that says all that is read, as the program reads it."""
     recording = source.recording
     if not isinstance(recording, FileRecording) or recording.is_configured:
-        raise NotPlainError("it is told otherwise than the program reads")
+        raise NotPlainError("it has another form than the program reads")
     if source.row_by_row or source.until is not None or not hasattr(os, "posix_spawn"):
         raise NotPlainError("it is read by this process")
     if not names_read(checked, only).keys() <= (recording.names or frozenset()):

@@ -95,7 +95,7 @@ class DecidedAttempts(Sequence[Attempt]):
         )
 
     def finding(self, index: int) -> Finding:
-        """What is said of one of them."""
+        """What is reported of one of them."""
         decisions = self.decisions
         return self.reasons.of(
             self._before(index),

@@ -99,7 +99,7 @@ def plan_alone(
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
-        RvmonError: one of them is beyond generated code; which and why is said.
+        RvmonError: one of them is beyond generated code; which one and why is in the message.
     """
     ids = requirements_asked(compiled.checked, only)
     if ids is not None and not ids:

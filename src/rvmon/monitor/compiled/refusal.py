@@ -35,17 +35,17 @@ class Refusal:
 
     Attributes:
         reason: said of the requirement, such as "uses `let`".
-        mend: what to do.
+        fix: what to do.
         engine: the one that takes it.
     """
 
     reason: str
-    mend: str
+    fix: str
     engine: str
 
     def error(self, requirement: str, what: str) -> RvmonError:
         """The error of one that was asked for by name."""
-        return RvmonError(f"{requirement} {self.reason}; {what} cannot judge it: {self.mend}")
+        return RvmonError(f"{requirement} {self.reason}; {what} cannot evaluate it: {self.fix}")
 
 
 def refuse(
@@ -56,7 +56,7 @@ def refuse(
     """Refuse what an engine that was asked for by name cannot judge.
 
     Raises:
-        RvmonError: there is such a requirement; which and why is said.
+        RvmonError: there is such a requirement; which one and why is in the message.
     """
     for one in requirements:
         refusal = refuses(one)
@@ -93,12 +93,12 @@ def too_many(count: int) -> Refusal:
 
 def no_stream(engine: str) -> RvmonError:
     """A stream for an engine of recordings."""
-    return RvmonError(f"the engine `{engine}` judges recordings, not streams: {_AUTO}")
+    return RvmonError(f"the engine `{engine}` evaluates recordings, not streams: {_AUTO}")
 
 
 def no_columns(why: Exception) -> RvmonError:
     """A recording without columns for the engine of columns."""
-    return RvmonError(f"the recording is not judged by columns: {why}: {_AUTO}")
+    return RvmonError(f"the recording is not evaluated by columns: {why}: {_AUTO}")
 
 
 def no_dropping(engine: str) -> RvmonError:
@@ -120,8 +120,8 @@ def of_network(one: CompiledRequirement) -> Refusal | None:
 def of_progression(one: CompiledRequirement) -> Refusal | None:
     """What looks back at what lies ahead."""
     if one.network_plan.looks_back:
-        mend = "use the engine `auto` or `network`"
-        return Refusal("looks back at what lies ahead", mend, "network")
+        fix = "use the engine `auto` or `network`"
+        return Refusal("looks back at what lies ahead", fix, "network")
     return None
 
 
@@ -145,7 +145,7 @@ def of_tables(one: CompiledRequirement) -> Refusal | None:
     if one.automaton is None:
         return Refusal(f"has no automaton ({one.refusal})", _LEAVE_OUT, "network")
     if isinstance(one.automaton.class_of, LetterDiagram):
-        reason = f"tells {one.alphabet.size:,} combinations of its propositions apart"
+        reason = f"distinguishes {one.alphabet.size:,} combinations of its propositions"
         return Refusal(reason, _LEAVE_OUT, "automaton")
     return None
 
@@ -153,8 +153,8 @@ def of_tables(one: CompiledRequirement) -> Refusal | None:
 def of_c(one: CompiledRequirement) -> Refusal | None:
     """What generated code cannot judge without a monitor in this process."""
     if one.spec.max_delay is not None:
-        mend = "leave out `max delay`, or use the engine `auto`"
-        return Refusal("has samples that come late (`max delay`)", mend, "python")
+        fix = "leave out `max delay`, or use the engine `auto`"
+        return Refusal("has samples that come late (`max delay`)", fix, "python")
     # C has only the latest values, which may be newer than the last tick.
     if one.obligation.trigger is None and one.requirement.captures and one.gap not in (None, 1):
         reason = "captures values `upon end`, which may be newer than the last tick of its clock"
@@ -166,7 +166,7 @@ def of_measured_c(one: CompiledRequirement) -> Refusal | None:
     """What compiled C does not measure."""
     reason = ""
     if one.obligation.trigger is None:
-        reason = "is judged `upon end`"
+        reason = "is evaluated `upon end`"
     elif one.gap not in (None, 1):
         reason = "has a clock of several ticks"
     elif one.measures_payloads:
@@ -198,7 +198,7 @@ def _beyond_prepared(one: CompiledRequirement) -> str:
     if one.automaton is None and one.reach is None:
         return f"has no automaton ({one.refusal}), nor bounds within what `always` demands"
     if len(one.network_plan.leaves) > _MOST_BITS and one.automaton is None:
-        return f"tells more than {_MOST_BITS} propositions apart"
+        return f"distinguishes more than {_MOST_BITS} propositions"
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
     if one.gap not in (None, 1) and one.single_payloads:
@@ -316,7 +316,7 @@ def _beyond_columns(one: CompiledRequirement) -> str:
     if one.gap not in (None, 1):
         return "is clocked (`sampled every`)"
     if one.obligation.trigger is None:
-        return "is judged at the end (`upon end`)"
+        return "is evaluated at the end (`upon end`)"
     if found := sorted(stale & one.reads):
         return f"reads `{found[0]}`, which becomes stale"
     if any(len(each.leaves) > _MOST_LEAVES for each in judged):

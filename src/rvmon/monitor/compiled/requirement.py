@@ -383,7 +383,7 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
     """The requirements of a specification, compiled, by id.
 
     Raises:
-        RvmonError: one is beyond all engines; which and why is said.
+        RvmonError: one is beyond all engines; which one and why is in the message.
     """
     factory = Factory()
     made = {}

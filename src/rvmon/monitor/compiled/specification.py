@@ -28,7 +28,7 @@ class CompiledSpec:
         """The compiled requirements by id.
 
         Raises:
-            RvmonError: one is beyond all engines; which and why is said.
+            RvmonError: one is beyond all engines; which one and why is in the message.
         """
         # What compiles them is imported now: some recordings are judged without it.
         from rvmon.monitor.compiled.requirement import compiled_requirements
@@ -49,7 +49,7 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     """Compile a specification, once for all its monitors.
 
     Raises:
-        RvmonError: a requirement is beyond all engines; which and why is said.
+        RvmonError: a requirement is beyond all engines; which one and why is in the message.
     """
     compiled = CompiledSpec(checked)
     _ = compiled.requirements

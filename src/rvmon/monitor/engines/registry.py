@@ -47,7 +47,7 @@ class Asked:
         settle: when a sample is taken for complete: `now`, or by the `next` stamp.
         sources: the signals and events that can arrive; `None`: all.
         keep: so many records of each verdict are kept per requirement; `None`: all.
-        decided: told the attempts as they are decided, where samples are judged one by one.
+        decided: called with the attempts as they are decided, where samples are judged one by one.
     """
 
     only: tuple[str, ...] | None = None

@@ -118,7 +118,7 @@ class HealthLog:
                 found.append(Health(HealthKind.LATE, "samples", count, first, remark="left out"))
             if intake.crowded is not None:
                 count, first = intake.crowded
-                early = f"judged before the delay was over: {MOST_HELD:,} samples were waiting"
+                early = f"evaluated before the delay was over: {MOST_HELD:,} samples were waiting"
                 found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
         return sorted(found, key=by_name)
 

@@ -76,7 +76,7 @@ class Validator:
             if len(value) > 1 and name in self._single:
                 raise TraceError(
                     f"sample at {format_ticks(t)}: {len(value)} payloads of `{name}`: only "
-                    "`for each` can tell them apart, and not all that reads its fields has it"
+                    "`for each` can distinguish them, and not all that reads its fields has it"
                 )
             return tuple(self._payload(name, payload, t) for payload in value)
         raise TraceError(

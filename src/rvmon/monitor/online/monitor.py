@@ -140,8 +140,8 @@ class Monitor:
             )
         if self._reached is not None and t_ns < self._reached:
             raise TimeOrderError(
-                f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) said "
-                "that none before would come: advance later, or drop the sample"
+                f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) "
+                "promised that none before would come: advance later, or drop the sample"
             )
         self._judge(t_ns, self.one_call.spare(self._validator.check, t_ns, values))
         return self._flush()

@@ -1,4 +1,4 @@
-"""What is said of a run of which a call was torn: it began, and did not come to its end.
+"""What is reported of a run of which a call was torn: it began, and did not come to its end.
 
 Attempts may be missing then, or have missed what that call brought. What has failed, has; that
 nothing else did is not known.
@@ -31,6 +31,6 @@ def capped(report: Report, torn: int) -> Report:
         torn: how far it had come when a call was interrupted, ticks.
     """
     first = None if torn == BEFORE_ALL else torn
-    remark = "what followed was not judged in full"
+    remark = "what followed was not evaluated in full"
     why = Health(HealthKind.INTERRUPTED, "monitor", 1, first, tuple(report.verdicts), remark)
     return replace(report, verdicts=not_passed(report.verdicts), health=(why, *report.health))

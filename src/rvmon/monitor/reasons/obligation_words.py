@@ -20,7 +20,7 @@ from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Blame
 
 _APART = 50
-"""Instants that are so many binary digits apart are told from each other."""
+"""Instants that are so many binary digits apart are distinguished."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class Words:
     def text(self, node: Core) -> str:
         """A node as text of the spec."""
         formula = self.formula(node)
-        return "what is owed" if formula is None else format_formula(formula)
+        return "the consequent" if formula is None else format_formula(formula)
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
         """The window of a node, in ticks after its start; of an opened one as it was before."""
@@ -126,11 +126,11 @@ class Words:
         return (*seen, *self._asked(node, atom))
 
     def _in_time(self, node: Literal | Until | Release) -> Sentence:
-        """What is to be said of what came true and ended an obligation."""
+        """What is to be reported of what came true and ended an obligation."""
         if isinstance(node, Literal):
             return ()
         if isinstance(node, Release):
-            return ("; after that nothing more was owed",)
+            return ("; after that no obligation was left",)
         after: Sentence = (", ", Place(Base.AGE), " after ", Place(Base.START))
         high = self.window(node)[1]
         return after if high is None else (*after, "; it was due by ", Place(Base.START, high))
@@ -182,7 +182,7 @@ class Words:
         return (f"{atom.quoted} {atom.due}", *window, ", and did not; ", seen)
 
     def _quoted(self, node: Core) -> str:
-        return "what was owed" if self.formula(node) is None else f"`{self.text(node)}`"
+        return "the consequent" if self.formula(node) is None else f"`{self.text(node)}`"
 
     def _atom(self, literal: Literal) -> _Atom:
         """A proposition, and what it has to be for the literal to hold."""
@@ -224,7 +224,7 @@ class Words:
         return ", or ".join(dict.fromkeys(clauses))
 
     def label(self, residual: Residual) -> tuple[str, int | None]:
-        """All that people are told of a residual, for clocks that were started at any time."""
+        """All that is reported of a residual, for clocks that were started at any time."""
         clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
         return self.owed(residual, anchors), deadline(residual, anchors)

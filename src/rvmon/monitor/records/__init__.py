@@ -1,1 +1,1 @@
-"""The records of attempts: numbers, order, and what is told of each."""
+"""The records of attempts: numbers, order, and what is reported of each."""

@@ -1,4 +1,4 @@
-"""What is told of a decision, from what was noted when it was made."""
+"""What is reported of a decision, from what was noted when it was made."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def _why_decided(noted: Noted, verdict: bool, triggered: int) -> Explanation:
     integer = position // network.positions.gap
     cause = NetworkCauseFinder(network, verdict, found[1]).of(core, integer)
     if cause is None:
-        return Explanation("nothing was owed" if verdict else "it can never hold")
+        return Explanation("there was no obligation" if verdict else "it can never hold")
     words, start = noted.compiled.words, cause.start
     blame: Blame | None = None if verdict else words.blame(cause, t, start, noted.flow)
     deadline = None

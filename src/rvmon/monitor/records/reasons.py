@@ -1,4 +1,4 @@
-"""What is said of decisions that are alike, worked out once."""
+"""What is reported of decisions that are alike, worked out once."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Reasons:
         return cuts
 
     def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
-        """What is said of a decision."""
+        """What is reported of a decision."""
         location, anchors = before
         ages = zip(self.cuts(location), anchors, strict=True)
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
@@ -79,7 +79,7 @@ class Reasons:
         valuation = self._alphabet.valuation(letter)
         cause = CauseFinder(valuation, ages, verdict=verdict, by_time=by_time).of(residual)
         if cause is None:
-            return Finding(None, ("nothing was owed" if verdict else "it can never hold",))
+            return Finding(None, ("there was no obligation" if verdict else "it can never hold",))
         return Finding(cause, self.words.sentence(cause, verdict))
 
     def deadline(self, before: Token) -> int | None:

@@ -91,19 +91,19 @@ def expect_kinds(
         found = kind_of(field, topic)
         if found is None:
             continue
-        mend = ""
+        fix = ""
         if kind is Kind.LABEL and isinstance(term, Field):
             fits = bool(labels) or found is Kind.LABEL
-            mend = ": say in a binding which `labels` its values stand for"
+            fix = ": name in a binding which `labels` its values stand for"
         else:
             fits = found is not Kind.LABEL
         if kind is Kind.BOOL and found is Kind.REAL and isinstance(term, Field):
-            fits, mend = False, f": compare it in a binding, as `{field} > 0`"
+            fits, fix = False, f": compare it in a binding, as `{field} > 0`"
         if not fits:
             holds = {Kind.LABEL: "text", Kind.REAL: "numbers"}.get(found, "whole numbers")
             raise TraceError(
                 f"`{name}` is declared {kind}, and `{field}` of topic {topic.name} "
-                f"({topic.type}) holds {holds}{mend}"
+                f"({topic.type}) holds {holds}{fix}"
             )
 
 

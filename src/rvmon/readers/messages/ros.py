@@ -16,12 +16,12 @@ from rvmon.trace.schema import Kind
 Definition = tuple[str, str]
 """The language of a definition (`msg` or `idl`), or the type that it defines, and its text."""
 
-_MENDS = {
+_FIXES = {
     "not indexed": "it was not closed: `rosbag reindex` closes it",
     "encryption": "it is encrypted: decrypt it first",
     "empty": "it is an empty file: record it again",
 }
-_MEND = {
+_FIX = {
     "ros1": "is it cut off? Copy it again, or try `rosbag reindex`",
     "ros2": "is it cut off? Copy it again, or try `ros2 bag reindex`",
 }
@@ -117,8 +117,8 @@ def bag_errors(form: str) -> Iterator[None]:
         raise
     except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
         text = str(error)
-        mend = next((mend for sign, mend in _MENDS.items() if sign in text), _MEND[form])
-        raise TraceError(f"cannot be read as a bag ({first_line(error)}): {mend}") from None
+        fix = next((fix for sign, fix in _FIXES.items() if sign in text), _FIX[form])
+        raise TraceError(f"cannot be read as a bag ({first_line(error)}): {fix}") from None
 
 
 def ros_topic(

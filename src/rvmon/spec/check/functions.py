@@ -23,7 +23,7 @@ from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import Call, Name
-from rvmon.spec.syntax.mends import NEVER
+from rvmon.spec.syntax.fixes import NEVER
 from rvmon.spec.syntax.unit import PLAIN
 from rvmon.spec.syntax.units import parse_unit, quotient
 from rvmon.trace.schema import Kind
@@ -106,6 +106,6 @@ def _unknown(operands: Operands, call: Call) -> Diagnostic:
         return name_rules.unknown_function(
             call.function.span, name, f"put a space before the bracket: `{name} {rest[:20]}`"
         )
-    mend = did_you_mean(name, [*FUNCTIONS, *operands.table.declared])
-    mend = NEVER if name == "never" else mend
-    return name_rules.unknown_function(call.function.span, name, mend)
+    fix = did_you_mean(name, [*FUNCTIONS, *operands.table.declared])
+    fix = NEVER if name == "never" else fix
+    return name_rules.unknown_function(call.function.span, name, fix)

@@ -30,7 +30,7 @@ def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
     """The formula that a run fulfils if and only if it is one of a system with the property.
 
     Raises:
-        Refusal: the property is not in the fragment; which part and why is said.
+        Refusal: the property is not in the fragment; which part and why is in the message.
     """
     return _Linear(place, time).of(property_.formula, True)
 

@@ -63,9 +63,9 @@ def traps_at_start(
         if truth_at(part, {}) is not None:
             continue
         if always and isinstance(part, Unary) and part.op.entry.pulse:
-            mend = "an edge is one instant: say what follows it, `upon … then …`"
+            fix = "an edge is one instant: say what follows it, `upon … then …`"
             when = "at the second instant at the latest" if part.op is UnaryOp.RISE else _FIRST
-            yield rules.false_at_first(place, when, mend)
+            yield rules.false_at_first(place, when, fix)
         elif truth_at(part, FIRST) is False:
             yield rules.false_at_first(place, _FIRST, _later(part))
 
@@ -113,10 +113,10 @@ def _at_trigger(part: Formula, said: Facts, time: TimeModel, place: Span) -> Ite
             shown = format_formula(part.left)
             yield rules.false_at_trigger(place, shown, escape, _from_later_on(part, time))
     elif truth_at(part, said) is False:
-        mend = "let what is owed begin a tick later: `always[1 ns, …] …`"
+        fix = "let the consequent begin a tick later: `always[1 ns, …] …`"
         if time is not TimeModel.HELD:
-            mend = "let what is owed begin at the next position: `next (…)`"
-        yield rules.false_at_trigger(place, format_formula(part), "", mend)
+            fix = "let the consequent begin at the next position: `next (…)`"
+        yield rules.false_at_trigger(place, format_formula(part), "", fix)
 
 
 def _from_later_on(part: Binary, time: TimeModel) -> str:

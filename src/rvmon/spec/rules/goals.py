@@ -36,7 +36,7 @@ CROSS = Rule(
     "cross",
     Severity.ERROR,
     "A cross names what is no coverpoint, or has a clause that does not fit.",
-    "A cross combines the bins of coverpoints; what it ignores is said over their bins.",
+    "A cross combines the bins of coverpoints; what it ignores is written over their bins.",
     """spec demo
 signal gaze_ok, pressure_ok : bool
 
@@ -57,7 +57,7 @@ RULES = (BIN, CROSS)
 
 bin_without_values = Breach(
     BIN,
-    "bin `{}` does not say which values it holds",
+    "bin `{}` names no values",
     "write `name: value`, `name: [low, high)`, `name: value => value` or `name: formula`",
 )
 bin_needs_expression = Breach(
@@ -78,7 +78,7 @@ same_value = Breach(
 sampled_apart = Breach(
     CROSS,
     "its coverpoints are looked at `upon` different things",
-    "say where the cross is: add `upon` to it",
+    "name the instants of the cross: add `upon` to it",
 )
 unwanted_in_point = Breach(
     BIN, "a coverpoint marks its bins inside the brackets", "write `{ignore name: values}`"
@@ -87,13 +87,13 @@ unwanted_in_point = Breach(
 
 def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
     """A cross over something else."""
-    mend = did_you_mean(name, known, "declare it with `coverpoint`")
-    return finding(CROSS, f"no coverpoint named `{name}`", span, mend=mend)
+    fix = did_you_mean(name, known, "declare it with `coverpoint`")
+    return finding(CROSS, f"no coverpoint named `{name}`", span, fix=fix)
 
 
 def same_point(span: Span, name: str) -> Diagnostic:
     """A cross that names a coverpoint twice."""
-    return finding(CROSS, f"`{name}` stands twice in one cross", span, mend="name it once")
+    return finding(CROSS, f"`{name}` stands twice in one cross", span, fix="name it once")
 
 
 def too_many_combinations(span: Span, count: int) -> Diagnostic:
@@ -102,7 +102,7 @@ def too_many_combinations(span: Span, count: int) -> Diagnostic:
         CROSS,
         f"{count:,} combinations are more than {MOST_COMBINATIONS:,}",
         span,
-        mend="cross fewer coverpoints, or give them fewer bins",
+        fix="cross fewer coverpoints, or give them fewer bins",
     )
 
 

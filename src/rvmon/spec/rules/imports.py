@@ -41,7 +41,7 @@ def unreadable(span: Span, target: str, reason: str) -> Diagnostic:
         IMPORT,
         f"cannot read `{target}`: {reason}",
         span,
-        mend="the path is relative to the file that imports",
+        fix="the path is relative to the file that imports",
     )
 
 
@@ -51,7 +51,7 @@ def outside(span: Span, target: str, root: str) -> Diagnostic:
         IMPORT,
         f"cannot read `{target}`: it lies outside {root}, the folder of the project",
         span,
-        mend="copy it into the project, or name its folder in RVMON_ALLOW_IMPORTS",
+        fix="copy it into the project, or name its folder in RVMON_ALLOW_IMPORTS",
     )
 
 
@@ -61,7 +61,7 @@ def unknown_library(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
         IMPORT,
         f"no library named `{name}`",
         span,
-        mend=f'there is {", ".join(known)}; a file is imported as "{name}.rv", in quotes',
+        fix=f'there is {", ".join(known)}; a file is imported as "{name}.rv", in quotes',
     )
 
 
@@ -72,7 +72,7 @@ def circle(here: Span, first: Span) -> Diagnostic:
         "files import each other in a circle",
         here,
         Label(first, "it starts here"),
-        mend="move what both need into a third file",
+        fix="move what both need into a third file",
     )
 
 
@@ -82,5 +82,5 @@ def too_deep(span: Span) -> Diagnostic:
         IMPORT,
         f"imports are nested more than {DEEPEST} levels deep",
         span,
-        mend="import the last file directly",
+        fix="import the last file directly",
     )

@@ -34,7 +34,7 @@ def reserved(span: Span) -> Diagnostic:
         RESERVED_NAME,
         f"`{span.text}` is a word of the language, expected a name",
         span,
-        mend=f"choose another name or quote it: `` `{span.text}` ``",
+        fix=f"choose another name or quote it: `` `{span.text}` ``",
     )
 
 
@@ -192,32 +192,32 @@ def double(name: str, kind: str, here: Span, first: Span) -> Diagnostic:
         f"{kind} `{name}` is declared twice",
         here,
         Label(first, "first here"),
-        mend="rename one of them",
+        fix="rename one of them",
     )
 
 
 def unknown(span: Span, name: str, close: str) -> Diagnostic:
     """A name that stands for nothing; `close` describes one that is alike, or is empty."""
-    mend = close or f"declare it, as `signal {name} : bool` or `event {name}`"
-    return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, mend=mend)
+    fix = close or f"declare it, as `signal {name} : bool` or `event {name}`"
+    return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, fix=fix)
 
 
 def unknown_constant(name: str, known: Sequence[str]) -> Diagnostic:
     """A constant that is overridden and does not exist."""
     listed = f"there are {', '.join(known)}" if known else "the file declares none"
-    return finding(UNKNOWN_NAME, f"no constant named `{name}` to override", mend=listed)
+    return finding(UNKNOWN_NAME, f"no constant named `{name}` to override", fix=listed)
 
 
 def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:
     """A label that the signal does not take."""
     listed = ", ".join(labels[:12]) + (", …" if len(labels) > 12 else "")
-    mend = did_you_mean(name, labels, f"the labels are {listed}")
-    return finding(UNKNOWN_LABEL, f"no label named `{name}`", span, mend=mend)
+    fix = did_you_mean(name, labels, f"the labels are {listed}")
+    return finding(UNKNOWN_LABEL, f"no label named `{name}`", span, fix=fix)
 
 
-def unknown_function(span: Span, name: str, mend: str) -> Diagnostic:
+def unknown_function(span: Span, name: str, fix: str) -> Diagnostic:
     """A call of nothing."""
-    return finding(UNKNOWN_FUNCTION, f"no function or macro named `{name}`", span, mend=mend)
+    return finding(UNKNOWN_FUNCTION, f"no function or macro named `{name}`", span, fix=fix)
 
 
 def recursive(names: list[str], span: Span) -> Diagnostic:
@@ -227,7 +227,7 @@ def recursive(names: list[str], span: Span) -> Diagnostic:
         RECURSIVE,
         f"`{names[0]}` is defined by itself: {circle}",
         span,
-        mend="for what goes on for ever there are `always`, `until` and their kin",
+        fix="for what goes on without end use `always`, `until` and the like",
     )
 
 
@@ -242,12 +242,12 @@ def built_in(span: Span) -> Diagnostic:
         DOUBLE_NAME,
         f"`{span.text}` is a function of the language",
         span,
-        mend="choose another name",
+        fix="choose another name",
     )
 
 
 def unused(span: Span, kind: str) -> Diagnostic:
     """A name that nothing uses; `kind` is `define`, `const` or `let`."""
     name = span.text.strip("`")
-    mend = "remove it, or look for what should use it"
-    return finding(UNUSED, f"`{kind} {name}` is used nowhere", span, mend=mend)
+    fix = "remove it, or look for what should use it"
+    return finding(UNUSED, f"`{kind} {name}` is used nowhere", span, fix=fix)

@@ -29,7 +29,7 @@ MOST_FINDINGS = 5
 
 
 def rule_page(rule: Rule, found: Sequence[Diagnostic]) -> str:
-    """A rule's page as Markdown: what, why, an example with its message, the same mended."""
+    """A rule's page as Markdown: what, why, an example with its message, the same fixed."""
     return "\n".join(
         (
             f"# {rule.code} {rule.name}",

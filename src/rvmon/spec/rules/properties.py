@@ -78,10 +78,10 @@ NO_RESPONSE = Rule(
     "RV053",
     "role-split",
     Severity.ERROR,
-    "`monitor as response` cannot split the property into what the environment gives and what "
-    "the system owes.",
+    "`monitor as response` cannot split the property into an "
+    "environment part and an obligation of the system.",
     "The derived monitor is triggered by the `input` part of `E<> (p and q and …)` and awaits the "
-    "`output` part. Each conjunct has to belong to one side, and something has to be owed.",
+    "`output` part. Each conjunct has to belong to one side, and one at least to the output.",
     """spec demo
 signal ready : bool input
 event released output
@@ -104,8 +104,8 @@ NOT_LINEAR = Rule(
     "RV054",
     "not-on-one-run",
     Severity.ERROR,
-    "`monitor as written` cannot judge the property on single runs.",
-    "A monitor sees one run. A property on all paths can be judged on each of them if it means the "
+    "`monitor as written` cannot evaluate the property on single runs.",
+    "A monitor sees one run. A property on all paths can be evaluated on each if it means the "
     "same there: what is to come is about one instant, and of two ways one is open at a time. "
     "What is on some path (`AG EF reset`) needs a model.",
     """spec demo
@@ -134,7 +134,7 @@ path_outside = Breach(
 )
 bare_time = Breach(
     BARE_TIME,
-    "`{}` says neither on all paths nor on some path",
+    "`{}` has no path quantifier",
     "write `AF`, `AG`, `EF`, `EG`, `A[φ U ψ]` or `E[φ U ψ]`",
 )
 next_window = Breach(BARE_TIME, "`AX` and `EX` take no interval", "use `AF` or `EF` with it")
@@ -152,7 +152,7 @@ def foreign_name(span: Span, name: str, close: str) -> Diagnostic:
         FOREIGN_NAME,
         f"`{name}` is no name of this file and is taken for a clock or location of a model",
         span,
-        mend=close,
+        fix=close,
     )
 
 
@@ -172,7 +172,7 @@ def reads_model(span: Span, text: str) -> Diagnostic:
         NOT_LINEAR,
         f"`{short(text)}` reads a clock or location of a model, which no run shows",
         span,
-        mend="check it with `rvmon verify`, or say it by signals of this file",
+        fix="check it with `rvmon verify`, or write it with signals of this file",
     )
 
 
@@ -203,7 +203,7 @@ def mixed_roles(span: Span, roles: Mapping[str, str]) -> Diagnostic:
     listed = ", ".join(f"`{name}` is {role}" for name, role in roles.items())
     text = short(span.text)
     message = f"`{text}` mixes roles: {listed}" if roles else f"`{text}` reads no signal"
-    return finding(NO_RESPONSE, message, span, mend="write the requirement with `upon` and `then`")
+    return finding(NO_RESPONSE, message, span, fix="write the requirement with `upon` and `then`")
 
 
 def no_role(span: Span, name: str) -> Diagnostic:
@@ -212,12 +212,12 @@ def no_role(span: Span, name: str) -> Diagnostic:
         NO_RESPONSE,
         f"`{name}` is declared neither `input` nor `output`",
         span,
-        mend="declare its role",
+        fix="declare its role",
     )
 
 
 no_output = Breach(
     NO_RESPONSE,
-    "the property reads no output: nothing is owed by the system",
+    "the property reads no output: the system has no obligation",
     "declare what the system sets as `output`",
 )

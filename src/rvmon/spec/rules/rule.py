@@ -19,7 +19,7 @@ class Rule:
         what: one sentence: what is found.
         why: why it matters.
         example: a specification that breaks the rule.
-        instead: the same mended.
+        instead: the same fixed.
     """
 
     code: str
@@ -43,17 +43,17 @@ class Reported(Exception):  # noqa: N818 - it never leaves this package
     """Something is wrong, and the finding about it is recorded already."""
 
 
-def finding(rule: Rule, message: str, *places: Span | Label, mend: str = "") -> Diagnostic:
+def finding(rule: Rule, message: str, *places: Span | Label, fix: str = "") -> Diagnostic:
     """A breach of a rule.
 
     Args:
         rule: the rule.
         message: one sentence: what is wrong here.
         places: the offending place first.
-        mend: how to mend it, or empty.
+        fix: how to fix it, or empty.
     """
     labels = tuple(place if isinstance(place, Label) else Label(place) for place in places)
-    return Diagnostic(rule.code, rule.name, rule.severity, message, labels, mend)
+    return Diagnostic(rule.code, rule.name, rule.severity, message, labels, fix)
 
 
 def short(text: str, most: int = 60) -> str:
@@ -69,13 +69,13 @@ class Breach:
     Attributes:
         rule: the rule.
         message: one sentence: what is wrong; `{}` is the text of the place, shortened.
-        mend: how to mend it, or empty.
+        fix: how to fix it, or empty.
     """
 
     rule: Rule
     message: str
-    mend: str = ""
+    fix: str = ""
 
     def __call__(self, span: Span) -> Diagnostic:
         """The finding at a place."""
-        return finding(self.rule, self.message.format(short(span.text)), span, mend=self.mend)
+        return finding(self.rule, self.message.format(short(span.text)), span, fix=self.fix)

@@ -13,8 +13,8 @@ SYNTAX = Rule(
     "syntax",
     Severity.ERROR,
     "The text does not belong to the language at this place.",
-    "Nothing can be said about an item that cannot be read. The message names what could have "
-    "stood there; the other items of the file are checked all the same.",
+    "An item that cannot be read is not checked. The message names what could have "
+    "stood there; the other items of the file are checked.",
     """spec demo
 event asked, released
 
@@ -154,9 +154,9 @@ requirement R1
 RULES = (SYNTAX, REACH, MIXED_CHAIN, COMPARISON_CHAIN, TOO_DEEP, TOO_MANY, EMPTY)
 
 
-def syntax_error(message: str, span: Span, mend: str = "") -> Diagnostic:
+def syntax_error(message: str, span: Span, fix: str = "") -> Diagnostic:
     """Something else was expected here."""
-    return finding(SYNTAX, message, span, mend=mend)
+    return finding(SYNTAX, message, span, fix=fix)
 
 
 def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
@@ -169,7 +169,7 @@ def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
         REACH,
         f"`{head}` can be read in two ways here",
         operator.to(operand),
-        mend=f"write `{head} ({far})` or `({head} {near}) {short(rest.text)}`",
+        fix=f"write `{head} ({far})` or `({head} {near}) {short(rest.text)}`",
     )
 
 
@@ -180,7 +180,7 @@ def mixed_chain(first: Span, second: Span) -> Diagnostic:
         f"`{short(first.text)}` and `{short(second.text)}` in one chain need brackets",
         second,
         first,
-        mend="put brackets around the part that belongs together",
+        fix="put brackets around the part that belongs together",
     )
 
 
@@ -191,7 +191,7 @@ def comparison_chain(left: Span, first: str, middle: Span, second: str, right: S
         COMPARISON_CHAIN,
         "comparisons cannot be chained",
         left.to(right),
-        mend=f"write `{texts[0]} {first} {texts[1]} and {texts[1]} {second} {texts[2]}`",
+        fix=f"write `{texts[0]} {first} {texts[1]} and {texts[1]} {second} {texts[2]}`",
     )
 
 
@@ -201,7 +201,7 @@ def too_deep(span: Span, limit: int) -> Diagnostic:
         TOO_DEEP,
         f"this is nested more than {limit} levels deep",
         span,
-        mend="say it in several requirements",
+        fix="split it into several requirements",
     )
 
 
@@ -211,7 +211,7 @@ def too_large(span: Span, limit: int) -> Diagnostic:
         TOO_DEEP,
         f"this has more than {limit:,} operators once its macros are expanded",
         span,
-        mend="say it in several requirements",
+        fix="split it into several requirements",
     )
 
 
@@ -230,5 +230,5 @@ empty_file = Breach(
 def too_many(most: int, *, broken: bool) -> Diagnostic:
     """The end of a long list of findings: an error where one of them is."""
     message = f"only the first {most} findings are shown"
-    made = finding(TOO_MANY, message, mend="mend these first")
+    made = finding(TOO_MANY, message, fix="fix these first")
     return made if broken else replace(made, severity=Severity.WARNING)

@@ -77,7 +77,7 @@ LATE_WEAK_WINDOW = Rule(
     "window-after-now",
     Severity.ERROR,
     "`W`, `unless` and `M` take no window that starts after 0.",
-    "Their usual definitions disagree for such windows; `R` and `U` say what is meant.",
+    "Their usual definitions disagree for such windows; `R` and `U` are unambiguous.",
     """spec demo
 signal a, b : bool
 
@@ -154,12 +154,12 @@ RULES = (
 def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
     """Something that is no constant with a unit of time; `plain`: a number without unit."""
     text = short(span.text)
-    mend = (
+    fix = (
         f"did you mean `{text.strip('() ')} s`?"
         if plain
         else "a duration is written as `3 s` or `200 ms`"
     )
-    return finding(NO_DURATION, f"`{text}` is no duration", span, mend=mend)
+    return finding(NO_DURATION, f"`{text}` is no duration", span, fix=fix)
 
 
 part_of_tick = Breach(
@@ -187,14 +187,14 @@ def reversed_bounds(span: Span, low: Span, high: Span) -> Diagnostic:
         EMPTY_INTERVAL,
         f"`{short(span.text)}` ends before it starts",
         span,
-        mend=f"did you mean `{swapped}`?",
+        fix=f"did you mean `{swapped}`?",
     )
 
 
 def not_positive(span: Span, what: str) -> Diagnostic:
     """A duration of 0 where it makes no sense; `what` names its use."""
     return finding(
-        EMPTY_INTERVAL, f"{what} must be longer than 0", span, mend="give it some time: `1 ms`"
+        EMPTY_INTERVAL, f"{what} must be longer than 0", span, fix="give it some time: `1 ms`"
     )
 
 
@@ -204,7 +204,7 @@ def late_weak_window(operator: str, span: Span) -> Diagnostic:
         LATE_WEAK_WINDOW,
         f"`{operator}` takes no window that starts after 0",
         span,
-        mend="let it start at 0, or write it with `U` or `R`",
+        fix="let it start at 0, or write it with `U` or `R`",
     )
 
 
@@ -214,7 +214,7 @@ def step_in_held_time(operator: str, span: Span) -> Diagnostic:
         STEP_IN_HELD_TIME,
         f"`{operator}` has no meaning in `time held`: it would speak of the next nanosecond",
         span,
-        mend="give a duration (`within`, `once[0, D]`) or declare `time sampled`",
+        fix="give a duration (`within`, `once[0, D]`) or declare `time sampled`",
     )
 
 
@@ -224,5 +224,5 @@ def no_window(operator: str, span: Span) -> Diagnostic:
         NO_WINDOW,
         f"`{operator}` takes no interval",
         span,
-        mend="use `eventually`, `always`, `once` or `historically` with it",
+        fix="use `eventually`, `always`, `once` or `historically` with it",
     )

@@ -12,7 +12,7 @@ NO_VALUE = Rule(
     Severity.WARNING,
     "`let` captures a field of an event that need not occur at the trigger.",
     "An event has fields only at the instant at which it occurs. Where the trigger is another, the "
-    "captured value is unknown, and whatever is compared with it stays open for ever.",
+    "captured value is unknown, and whatever is compared with it stays open.",
     """spec demo
 event asked
 event picked(id: int)
@@ -39,10 +39,10 @@ AT_TRIGGER = Rule(
     "RV047",
     "false-at-trigger",
     Severity.WARNING,
-    "What is owed is false at the trigger itself, by what the trigger says.",
-    "The instant of the trigger belongs to what is owed: `upon a then not a unless b` fails where "
-    "`a` starts it, unless `b` comes at that very instant. What has to hold afterwards begins a "
-    "tick later.",
+    "The consequent is false at the trigger itself, by the trigger's own condition.",
+    "The instant of the trigger belongs to the consequent: `upon a then not a unless b` fails "
+    "where `a` starts it, unless `b` comes at that very instant. What has to hold afterwards "
+    "begins a tick later.",
     """spec demo
 event asked, answered
 
@@ -63,7 +63,7 @@ AT_FIRST = Rule(
     "RV048",
     "false-at-first",
     Severity.WARNING,
-    "What is owed from the start on is false at the first instant, or the second, whatever comes.",
+    "A consequent from the start on is false at the first instant, or the second, whatever comes.",
     "Before the first instant there is nothing: `previous p`, `held(p, D)`, `fall(p)` and "
     "`once[a, b] p` with a > 0 are false there, and `rise(p)` is never true twice in a row. As an "
     "invariant each fails on every run.",
@@ -87,7 +87,7 @@ ONCE_CAPTURED = Rule(
     Severity.WARNING,
     "`let` stands under `whenever`, which captures once per stretch, not at each instant.",
     "The instants at which the condition of a `whenever` holds on end are one attempt. The value "
-    "is that of its first instant, also for what is owed at a later one.",
+    "is that of its first instant, also for the consequent at a later one.",
     """spec demo
 signal moving : bool
 signal speed : real [m/s]
@@ -116,29 +116,29 @@ def no_value(span: Span, event: str) -> Diagnostic:
     return finding(
         NO_VALUE,
         f"`{short(span.text)}` has no value unless `{event}` occurs at the trigger, which does "
-        "not say so",
+        "not require it",
         span,
-        mend=f"let `{event}` trigger it: `upon {event} and …`",
+        fix=f"let `{event}` trigger it: `upon {event} and …`",
     )
 
 
-def false_at_trigger(span: Span, part: str, escape: str, mend: str) -> Diagnostic:
+def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic:
     """What is owed contradicts its trigger."""
     unless = f" unless `{short(escape)}` holds at that very instant" if escape else ""
     return finding(
         AT_TRIGGER,
-        f"`{short(part)}` is false at the trigger itself, by what that says: it fails there"
+        f"`{short(part)}` is false at the trigger itself, by its condition: it fails there"
         + (unless or " each time"),
         span,
-        mend=mend,
+        fix=fix,
     )
 
 
-def false_at_first(span: Span, when: str, mend: str) -> Diagnostic:
+def false_at_first(span: Span, when: str, fix: str) -> Diagnostic:
     """What is owed from the start on cannot hold then; `when` says at which instant."""
     text = short(span.text)
     return finding(
-        AT_FIRST, f"`{text}` is false {when}, whatever comes: it fails there", span, mend=mend
+        AT_FIRST, f"`{text}` is false {when}, whatever comes: it fails there", span, fix=fix
     )
 
 
@@ -150,5 +150,5 @@ def captured_once(span: Span, trigger: str) -> Diagnostic:
         ONCE_CAPTURED,
         f"`{short(span.text)}` is captured once, at the first instant {when}",
         span,
-        mend=f"write {said}, which says that it starts there and captures then",
+        fix=f"write {said}, which starts there and captures then",
     )

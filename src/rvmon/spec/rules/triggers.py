@@ -37,7 +37,7 @@ END_NOT_ALONE = Rule(
     "end-not-alone",
     Severity.ERROR,
     "`end` stands elsewhere than alone behind `upon`.",
-    "Nobody knows at an instant whether it is the last one, so `end` is judged only when the "
+    "No instant is known to be the last one, so `end` is evaluated only when the "
     "trace is finished.",
     """spec demo
 signal done : bool
@@ -58,10 +58,10 @@ ONE_INSTANT = Rule(
     "RV042",
     "one-instant",
     Severity.WARNING,
-    "What is owed has no word of time, so that a single instant is checked.",
+    "The consequent has no temporal operator, so that a single instant is checked.",
     "`upon asked then released` demands the release at the very nanosecond of the asking. If that "
-    "is meant, `immediately` says so. A requirement that is one formula without a word of time, "
-    "as `not (stop and go)`, is checked at the start of the run only.",
+    "is meant, `immediately` says so. A requirement that is one formula without a temporal "
+    "operator, as `not (stop and go)`, is checked at the start of the run only.",
     """spec demo
 event asked, released
 
@@ -224,7 +224,7 @@ end_not_alone = Breach(
 end_in_scope = Breach(
     END_NOT_ALONE,
     "`upon end` takes no scope: the end of the run may lie outside of it",
-    "say in the consequent what has to hold at the end",
+    "write into the consequent what has to hold at the end",
 )
 
 
@@ -235,7 +235,7 @@ def one_instant(span: Span) -> Diagnostic:
         ONE_INSTANT,
         f"`{text}` is checked at one instant only",
         span,
-        mend=f"say for how long or until when (`within D`, `for D`), or `immediately {text}`",
+        fix=f"write for how long or until when (`within D`, `for D`), or `immediately {text}`",
     )
 
 
@@ -246,7 +246,7 @@ def bare_instant(span: Span) -> Diagnostic:
         ONE_INSTANT,
         f"`{text}` is checked at one instant only, the start of the run",
         span,
-        mend=f"did you mean `always ({text})`? If the start is meant, write `immediately ({text})`",
+        fix=f"did you mean `always ({text})`? If the start is meant, write `immediately ({text})`",
     )
 
 
@@ -258,7 +258,7 @@ def mixed_trigger(pulse: Span, level: Span) -> Diagnostic:
         "holds, the event triggers nothing",
         pulse,
         level,
-        mend=f"write `rise({short(level.text)})`, or make two requirements",
+        fix=f"write `rise({short(level.text)})`, or make two requirements",
     )
 
 
@@ -269,14 +269,14 @@ def double_clause(word: str, here: Span, first: Span) -> Diagnostic:
         f"a requirement has one `{word}` clause",
         here,
         Label(first, "first here"),
-        mend="join them, or remove one",
+        fix="join them, or remove one",
     )
 
 
 def unknown_policy(span: Span, policies: Sequence[str]) -> Diagnostic:
     """A policy that does not exist."""
-    mend = did_you_mean(span.text, policies, f"there are {', '.join(policies)}")
-    return finding(UNKNOWN_POLICY, f"no policy named `{short(span.text)}`", span, mend=mend)
+    fix = did_you_mean(span.text, policies, f"there are {', '.join(policies)}")
+    return finding(UNKNOWN_POLICY, f"no policy named `{short(span.text)}`", span, fix=fix)
 
 
 def bad_run_share(span: Span) -> Diagnostic:
@@ -285,7 +285,7 @@ def bad_run_share(span: Span) -> Diagnostic:
         RUN_SHARE,
         f"`{short(span.text)}` is no percentage between 0 and 100",
         span,
-        mend="write `in at least 95 % of runs`; for all runs the clause is left out",
+        fix="write `in at least 95 % of runs`; for all runs the clause is left out",
     )
 
 
@@ -295,5 +295,5 @@ def never_read(span: Span, kind: str) -> Diagnostic:
         NEVER_READ,
         f"{kind} `{span.text.strip('`')}` is read by no requirement",
         span,
-        mend="remove it, or look for the requirement that should read it",
+        fix="remove it, or look for the requirement that should read it",
     )

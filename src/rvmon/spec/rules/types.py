@@ -164,7 +164,7 @@ IGNORED_NAN = Rule(
     "RV027",
     "nan-of-no-real",
     Severity.ERROR,
-    "`ignore NaN` is said of a signal that is not `real`.",
+    "`ignore NaN` is given for a signal that is not `real`.",
     "Only real numbers have NaN. `null` of a `bool`, `int` or label signal says that the value is "
     "lost, and stays that.",
     """spec demo
@@ -200,17 +200,17 @@ def ignored_nan(span: Span, kind: str) -> Diagnostic:
         IGNORED_NAN,
         f"a signal {shown} is never NaN",
         span,
-        mend="remove `ignore NaN`, or declare the signal `real`",
+        fix="remove `ignore NaN`, or declare the signal `real`",
     )
 
 
 def needs_formula(span: Span, kind: str) -> Diagnostic:
     """A number or label where something true or false is needed; `kind` says what it is."""
     text = short(span.text)
-    mend = f"compare it, as in `{text} > 0`" if kind == "a number" else ""
+    fix = f"compare it, as in `{text} > 0`" if kind == "a number" else ""
     if kind == "a label":
-        mend = "compare it with a label by `==`"
-    return finding(WRONG_TYPE, f"`{text}` is {kind}, expected a formula", span, mend=mend)
+        fix = "compare it with a label by `==`"
+    return finding(WRONG_TYPE, f"`{text}` is {kind}, expected a formula", span, fix=fix)
 
 
 needs_number = Breach(
@@ -231,7 +231,7 @@ def age_alone(span: Span) -> Diagnostic:
         WRONG_TYPE,
         f"`{short(span.text)}` can only be compared with a constant duration, by < <= > >=",
         span,
-        mend=f"write `{short(span.text)} > 200 ms`",
+        fix=f"write `{short(span.text)} > 200 ms`",
     )
 
 
@@ -246,7 +246,7 @@ def argument_count(span: Span, name: str, takes: str, given: int) -> Diagnostic:
         WRONG_ARGUMENTS,
         f"`{name}` takes {takes}, {given} given",
         span,
-        mend="arguments are separated by commas",
+        fix="arguments are separated by commas",
     )
 
 
@@ -261,7 +261,7 @@ def mismatch(span: Span, left: str, right: str, doing: str) -> Diagnostic:
         UNIT_MISMATCH,
         f"[{left}] {doing} [{right}]",
         span,
-        mend="both sides need units of the same kind",
+        fix="both sides need units of the same kind",
     )
 
 
@@ -269,7 +269,7 @@ def missing_unit(span: Span, unit: str) -> Diagnostic:
     """A plain number where a unit is needed."""
     text = short(span.text)
     return finding(
-        MISSING_UNIT, f"`{text}` needs a unit", span, mend=f"did you mean `{text} {unit}`?"
+        MISSING_UNIT, f"`{text}` needs a unit", span, fix=f"did you mean `{text} {unit}`?"
     )
 
 
@@ -279,7 +279,7 @@ def superfluous_unit(span: Span, unit: str, other: Span) -> Diagnostic:
         UNIT_MISMATCH,
         f"[{unit}] meets `{short(other.text)}`, which has no unit",
         span,
-        mend=f"declare the signal as `real [{unit}]`, or leave the unit out",
+        fix=f"declare the signal as `real [{unit}]`, or leave the unit out",
     )
 
 
@@ -289,14 +289,14 @@ def no_root(span: Span, unit: str) -> Diagnostic:
         UNIT_MISMATCH,
         f"[{unit}] has no square root",
         span,
-        mend="the root of a square has a unit: `sqrt(x * x + y * y)`",
+        fix="the root of a square has a unit: `sqrt(x * x + y * y)`",
     )
 
 
 def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
     """A unit that is not in the table; `close` is one that is alike, or empty."""
-    mend = f"did you mean `{close}`?" if close else "units are made of m, kg, s, A, K, rad, …"
-    return finding(UNKNOWN_UNIT, f"no unit named `{short(part)}`", span, mend=mend)
+    fix = f"did you mean `{close}`?" if close else "units are made of m, kg, s, A, K, rad, …"
+    return finding(UNKNOWN_UNIT, f"no unit named `{short(part)}`", span, fix=fix)
 
 
 def swallowed_name(span: Span, number: str) -> Diagnostic:
@@ -306,7 +306,7 @@ def swallowed_name(span: Span, number: str) -> Diagnostic:
         UNKNOWN_UNIT,
         f"`{name}` is read as the unit of `{number}`, and there is no such unit",
         span,
-        mend=f"give the number its unit: `{number} s {name}`",
+        fix=f"give the number its unit: `{number} s {name}`",
     )
 
 

@@ -13,7 +13,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.rules import names, syntax, types
 from rvmon.spec.rules.rule import short
-from rvmon.spec.syntax.mends import NAMELESS, mend_of
+from rvmon.spec.syntax.fixes import NAMELESS, fix_of
 from rvmon.spec.syntax.units import unit_table
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
 
@@ -101,8 +101,8 @@ def explain_unexpected(
     expected = _in_words(accepted, parser)
     shown = f"`{short(found)}`" if found else "the end of the item"
     message = f"found {shown}" + (f", expected {expected}" if expected else "")
-    mend = mend_of(found, accepted, parser, Span(source, start, place.start))
-    return syntax.syntax_error(message, place, mend)
+    fix = fix_of(found, accepted, parser, Span(source, start, place.start))
+    return syntax.syntax_error(message, place, fix)
 
 
 def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span:

@@ -68,7 +68,7 @@ class Peer:
 
 
 def _per_tick(verdicts: dict[float, Any], ticks: int) -> list[Any]:
-    """A verdict holds until the next one; nothing is said of ticks after the last."""
+    """A verdict holds until the next one; nothing is known of ticks after the last."""
     values: list[Any] = [None] * ticks
     if not verdicts:
         return values

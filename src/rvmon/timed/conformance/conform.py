@@ -62,8 +62,8 @@ def conform(
     """
     check_start(network)
     if network.unit is None or network.unit % RESOLUTION:
-        mend = "write its unit of time, such as `unit 50 ms`"
-        raise model_error("TA023", "time is not in whole milliseconds", None, mend)
+        fix = "write its unit of time, such as `unit 50 ms`"
+        raise model_error("TA023", "time is not in whole milliseconds", None, fix)
     watcher = _Watcher(finer(network, network.unit // RESOLUTION), observed)
     states = list(watcher.start())
     explained = 0

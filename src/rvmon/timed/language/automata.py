@@ -69,9 +69,9 @@ def automaton_of(
     initial = 0
     with findings.collect():
         if template.initial is None:
-            mend = "write `start` and the location's name"
+            fix = "write `start` and the location's name"
             message = f"`{template.name}` has no initial location"
-            raise model_error("TA013", message, template.span, mend)
+            raise model_error("TA013", message, template.span, fix)
         initial = _location(template.initial, names)
     return Automaton(
         scope.prefix.removesuffix("."), tuple(locations), tuple(edges), initial, template.span
@@ -80,16 +80,16 @@ def automaton_of(
 
 def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
     if name.name not in names:
-        mend = did_you_mean(name.name, list(names))
-        raise model_error("TA002", f"no location `{name.name}`", name.span, mend)
+        fix = did_you_mean(name.name, list(names))
+        raise model_error("TA002", f"no location `{name.name}`", name.span, fix)
     return names[name.name]
 
 
 def _invariant(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Guard:
     guard = split_guard(resolver.expression(written, scope), written.span)
     if any(compare.op in (ClockOp.GE, ClockOp.GT) for compare in guard.clocks):
-        mend = "put it on the guards of the edges that lead here"
-        raise model_error("TA009", "an invariant bounds a clock from below", written.span, mend)
+        fix = "put it on the guards of the edges that lead here"
+        raise model_error("TA009", "an invariant bounds a clock from below", written.span, fix)
     return guard
 
 
@@ -145,25 +145,25 @@ def _sync(written: syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
         case ChannelSymbol():
             raise model_error("TA004", "an array of channels", written.span, "give an index")
         case _:
-            mend = f"declare it: chan {written.channel.span.text}"
-            raise model_error("TA004", "this is no channel", written.span, mend)
+            fix = f"declare it: chan {written.channel.span.text}"
+            raise model_error("TA004", "this is no channel", written.span, fix)
 
 
 def _refuse_clock_guard(guard: Guard, channel: Channel, sync: Sync, span: Span) -> None:
     if guard.clocks and channel.urgent:
-        mend = "move the clock guard to an edge before, or make the channel not urgent"
-        raise model_error("TA011", "a clock guard on an urgent channel", span, mend)
+        fix = "move the clock guard to an edge before, or make the channel not urgent"
+        raise model_error("TA011", "a clock guard on an urgent channel", span, fix)
     if guard.clocks and channel.broadcast and not sync.sends:
-        mend = "put the clock guard on the sender, or on an edge behind"
-        raise model_error("TA012", "a clock guard on a broadcast receiver", span, mend)
+        fix = "put the clock guard on the sender, or on an edge behind"
+        raise model_error("TA012", "a clock guard on a broadcast receiver", span, fix)
 
 
 def _update(written: syntax.UpdateText, scope: Scope, resolver: Resolver) -> Update:
     clock = resolver.clock(written.target, scope)
     value = resolver.expression(written.value, scope)
     if not is_discrete(value):
-        mend = "set variables by numbers and variables only"
-        raise model_error("TA009", "a clock's state is written to a variable", written.span, mend)
+        fix = "set variables by numbers and variables only"
+        raise model_error("TA009", "a clock's state is written to a variable", written.span, fix)
     if clock is not None:
         if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
@@ -172,5 +172,5 @@ def _update(written: syntax.UpdateText, scope: Scope, resolver: Resolver) -> Upd
         case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
             return Assignment(replace(slot, span=written.target.span), value)
         case _:
-            mend = "only variables and clocks can be set"
-            raise model_error("TA004", "this cannot be set", written.target.span, mend)
+            fix = "only variables and clocks can be set"
+            raise model_error("TA004", "this cannot be set", written.target.span, fix)

@@ -64,8 +64,8 @@ class AutomatonBuilder:
         place = f"{self.name}: {source} → {target}"
         span = _span(place, f"{source} → {target}")
         if not 0 < weight <= 1:
-            mend = "a weight is a share: above 0, at most 1"
-            raise model_error("TA017", f"weight {weight}", span, mend)
+            fix = "a weight is a share: above 0, at most 1"
+            raise model_error("TA017", f"weight {weight}", span, fix)
         self.edges.append(
             syntax.EdgeText(
                 syntax.Name(source, _span(place, source)),

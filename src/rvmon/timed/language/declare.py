@@ -122,8 +122,8 @@ def _warn_of_range(variable: Variable, item: syntax.Declared, findings: Findings
     count = variable.high - variable.low + 1
     if count > WIDE:
         message = f"`{item.name}` has {count:,} values: each that it takes makes states of its own"
-        mend = "give it the range that it needs, such as int[0, 10]"
-        findings.add(finding("TA005", message, item.span, mend, severity=Severity.WARNING))
+        fix = "give it the range that it needs, such as int[0, 10]"
+        findings.add(finding("TA005", message, item.span, fix, severity=Severity.WARNING))
 
 
 def refuse_double(name: str, span: Span, scope: Scope) -> None:
@@ -144,8 +144,8 @@ def _symbol(item: syntax.Declared, scope: Scope, parts: Parts, resolver: Resolve
     name = scope.prefix + item.name
     if kind.const:
         if value is None:
-            mend = f"write const {item.name} = …"
-            raise model_error("TA006", f"the constant `{item.name}` has no value", item.span, mend)
+            fix = f"write const {item.name} = …"
+            raise model_error("TA006", f"the constant `{item.name}` has no value", item.span, fix)
         return ConstantSymbol(value, extents)
     match kind.base:
         case BaseType.CLOCK | BaseType.CHANNEL if value is not None:
@@ -177,8 +177,8 @@ def _room(
 ) -> int:
     """The index of the next part, if as many as a declaration makes may be added."""
     if len(parts) + prod(map(len, extents)) > most:
-        mend = "declare smaller arrays, or fewer instances of what has them"
-        raise model_error("TA019", f"more than {most:,} {what}", span, mend)
+        fix = "declare smaller arrays, or fewer instances of what has them"
+        raise model_error("TA019", f"more than {most:,} {what}", span, fix)
     return len(parts)
 
 
@@ -221,8 +221,8 @@ def _initial(
 ) -> ConstantValue:
     if not isinstance(written, syntax.Values):
         if extents:
-            mend = "write {a, b, …}"
-            raise model_error("TA004", "an array needs a list of values", written.span, mend)
+            fix = "write {a, b, …}"
+            raise model_error("TA004", "an array needs a list of values", written.span, fix)
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
         return value

@@ -46,8 +46,8 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
         automata.append(automaton_of(process, locations, parts, resolver, findings))
         edges += len(automata[-1].edges)
         if edges > MAX_EDGES:
-            mend = "narrow the types of parameters and selections"
-            findings.add(finding("TA019", f"more than {MAX_EDGES:,} edges", None, mend))
+            fix = "narrow the types of parameters and selections"
+            findings.add(finding("TA019", f"more than {MAX_EDGES:,} edges", None, fix))
         if findings.has("TA019"):
             break
     if not automata and not findings.found:
@@ -83,8 +83,8 @@ def _with_constants(
         if isinstance(item, syntax.Declaration) and item.type.const and not item.sizes
     }
     for name in constants.keys() - known:
-        mend = did_you_mean(name, sorted(known))
-        findings.add(finding("TA002", f"no constant `{name}` to set", None, mend))
+        fix = did_you_mean(name, sorted(known))
+        findings.add(finding("TA002", f"no constant `{name}` to set", None, fix))
     changed: list[syntax.Declared] = []
     for item in document.declarations:
         if isinstance(item, syntax.Declaration) and item.name in constants.keys() & known:
@@ -143,8 +143,8 @@ def _signals(written: Iterable[SignalText], names: Names, findings: Findings) ->
             taken.places[signal.name] = signal.span
             value = resolver.expression(signal.value, names.top)
             if not is_discrete(value):
-                mend = "use locations and variables only"
-                raise model_error("TA009", "a signal with clocks or runs", signal.span, mend)
+                fix = "use locations and variables only"
+                raise model_error("TA009", "a signal with clocks or runs", signal.span, fix)
             signals.append(Signal(signal.name, value))
     return tuple(signals)
 
@@ -168,15 +168,15 @@ def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findi
     for index, (channel, span) in enumerate(zip(parts.channels, parts.channel_spans, strict=True)):
         match index in senders, index in receivers:
             case False, False:
-                problem, mend = "is used by nobody", "remove it, or use it on an edge"
+                problem, fix = "is never used", "remove it, or use it on an edge"
             case True, False if not channel.broadcast:
-                problem, mend = "is never received", f"add an edge with {channel.name}?"
+                problem, fix = "is never received", f"add an edge with {channel.name}?"
             case False, True:
-                problem, mend = "is never sent", f"add an edge with {channel.name}!"
+                problem, fix = "is never sent", f"add an edge with {channel.name}!"
             case _:
                 continue
         message = f"the channel `{channel.name}` {problem}: edges with it are never taken"
-        findings.add(finding("TA010", message, span, mend, severity=Severity.WARNING))
+        findings.add(finding("TA010", message, span, fix, severity=Severity.WARNING))
 
 
 def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]:
@@ -187,8 +187,8 @@ def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[Query]
     """
     if asked is None:
         if not network.queries:
-            mend = "give one with --query, or write `query: …` into the model"
-            raise model_error("TA020", "the model has no query", None, mend)
+            fix = "give one with --query, or write `query: …` into the model"
+            raise model_error("TA020", "the model has no query", None, fix)
         return list(network.queries)
     by_id = {query.id: query for query in network.queries if query.id}
     for text in asked:

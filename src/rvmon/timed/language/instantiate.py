@@ -57,8 +57,8 @@ def processes_of(
     for name in system:
         with findings.collect():
             if name.name not in families:
-                mend = did_you_mean(name.name, list(families))
-                raise model_error("TA002", f"no automaton `{name.name}`", name.span, mend)
+                fix = did_you_mean(name.name, list(families))
+                raise model_error("TA002", f"no automaton `{name.name}`", name.span, fix)
             processes += _instances(families[name.name], families, top, resolver)
     return processes
 
@@ -71,14 +71,14 @@ def _instances(
     ranges = []
     for parameter in family.parameters:
         if parameter.reference or parameter.sizes:
-            mend = f"write instance = {family.name}(…)"
+            fix = f"write instance = {family.name}(…)"
             message = f"the parameter `{parameter.name}` needs an argument"
-            raise model_error("TA015", message, parameter.span, mend)
+            raise model_error("TA015", message, parameter.span, fix)
         ranges.append(values_of(resolver.type(parameter.type, top), parameter.type.span))
     for count, arguments in enumerate(product(*ranges)):
         if count >= MAX_VALUES:
-            mend = "narrow the types of its parameters"
-            raise model_error("TA019", f"more than {MAX_VALUES:,} instances", family.span, mend)
+            fix = "narrow the types of its parameters"
+            raise model_error("TA019", f"more than {MAX_VALUES:,} instances", family.span, fix)
         bound = [ConstantSymbol(value) for value in arguments]
         template, scope = _bind(family, bound, families, top, resolver)
         listed = f"({', '.join(map(str, arguments))})" if arguments else ""
@@ -92,9 +92,9 @@ def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:
     current: Family | None = family
     while isinstance(current, syntax.Instance):
         if current.name in seen:
-            mend = "make it an instance of an automaton"
+            fix = "make it an instance of an automaton"
             message = f"`{current.name}` is an instance of itself"
-            raise model_error("TA015", message, current.span, mend)
+            raise model_error("TA015", message, current.span, fix)
         seen.add(current.name)
         current = families.get(current.template.name)
 
@@ -115,9 +115,9 @@ def _bind(
         return family, scope
     target = families.get(family.template.name)
     if target is None:
-        mend = did_you_mean(family.template.name, list(families))
+        fix = did_you_mean(family.template.name, list(families))
         message = f"no template `{family.template.name}`"
-        raise model_error("TA002", message, family.template.span, mend)
+        raise model_error("TA002", message, family.template.span, fix)
     if len(target.parameters) != len(family.arguments):
         count = len(target.parameters)
         message = f"`{target.name}` takes {count} argument{'' if count == 1 else 's'}"
@@ -156,6 +156,6 @@ def _argument(
         case _:
             fits = isinstance(symbol, ConstantSymbol) and kind.const
     if not fits:
-        mend = f"`{parameter.name}` is declared as {parameter.type.span.text}"
-        raise model_error("TA015", "this argument is of the wrong kind", written.span, mend)
+        fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
+        raise model_error("TA015", "this argument is of the wrong kind", written.span, fix)
     return symbol

@@ -30,8 +30,8 @@ def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None
     except OSError as error:
         raise model_error("TA022", f"{path}: {error.strerror}", None) from None
     except UnicodeDecodeError:
-        mend = "save it as UTF-8 text"
-        raise model_error("TA022", f"{path} is no text", None, mend) from None
+        fix = "save it as UTF-8 text"
+        raise model_error("TA022", f"{path} is no text", None, fix) from None
     return loads_network(text, name=str(path), constants=constants)
 
 

@@ -114,11 +114,11 @@ def _syntax_error(
         return model_error("TA016", reason[0], place(start, start + length), reason[1])
     words = _words(set(expected))
     message = f"found {found}" + (f", expected {words}" if words else "")
-    return model_error("TA001", message, place(start, start + length), _mend(text, start))
+    return model_error("TA001", message, place(start, start + length), _fix(text, start))
 
 
-def _mend(text: str, offset: int) -> str:
-    """What mends a syntax error, if it is a common one."""
+def _fix(text: str, offset: int) -> str:
+    """What fixes a syntax error, if it is a common one."""
     for operator in _PATH.finditer(text):
         if operator.start() <= offset < operator.end():
             return f"inside a formula it takes brackets: ({operator[0]} …)"

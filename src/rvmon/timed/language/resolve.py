@@ -122,8 +122,8 @@ class Resolver:
                     raise model_error("TA020", "only queries speak of runs", span)
                 return PathFormula(op, self.expression(body, scope), self.limit(bound, scope))
             case syntax.LeadsTo(_, _, _, span):
-                mend = "write A[] (p imply A<> q)"
-                raise model_error("TA020", "`-->` can only stand outermost", span, mend)
+                fix = "write A[] (p imply A<> q)"
+                raise model_error("TA020", "`-->` can only stand outermost", span, fix)
             case _:
                 assert_never(written)
 
@@ -143,8 +143,8 @@ class Resolver:
             case Constant(value):
                 return value
             case _:
-                mend = "use numbers, `const` names and parameters only"
-                raise model_error("TA006", "this is not constant", written.span, mend)
+                fix = "use numbers, `const` names and parameters only"
+                raise model_error("TA006", "this is not constant", written.span, fix)
 
     def limit(self, written: syntax.Expression | None, scope: Scope) -> int | None:
         """The bound of a path operator in units of time, if it has one.
@@ -156,8 +156,8 @@ class Resolver:
             return None
         units = self.constant(written, scope)
         if not 0 <= units < MAX_TIME:
-            mend = f"bounds are from 0 to {MAX_TIME - 1:,}"
-            raise model_error("TA007", f"a bound of {units}", written.span, mend)
+            fix = f"bounds are from 0 to {MAX_TIME - 1:,}"
+            raise model_error("TA007", f"a bound of {units}", written.span, fix)
         return units
 
     def type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
@@ -175,8 +175,8 @@ class Resolver:
                 if (reason := type_reason(written.name)) is not None:
                     raise model_error("TA016", reason[0], written.span, reason[1])
                 types = [n for n in scope.names() if isinstance(scope.find(n), TypeSymbol)]
-                mend = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
-                raise model_error("TA002", f"no type named `{written.name}`", written.span, mend)
+                fix = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
+                raise model_error("TA002", f"no type named `{written.name}`", written.span, fix)
             base = symbol.type
             return replace(
                 base,
@@ -188,8 +188,8 @@ class Resolver:
             return ResolvedType(written.base, 0, 1, **prefixes)
         if written.low is None or written.high is None:
             if not (self.open_ints or written.const):
-                mend = "give its range: int[low, high]"
-                raise model_error("TA005", "an int without a range", written.span, mend)
+                fix = "give its range: int[low, high]"
+                raise model_error("TA005", "an int without a range", written.span, fix)
             return ResolvedType(BaseType.INT, *(INT32 if written.const else INT16), **prefixes)
         low, high = self.constant(written.low, scope), self.constant(written.high, scope)
         if low > high:
@@ -229,13 +229,13 @@ class Resolver:
             case syntax.Call(name, _, span):
                 if any(name == known for known, _ in self.automata):
                     raise _no_value(span)
-                mend = "write the value out, or use an array"
+                fix = "write the value out, or use an array"
                 raise model_error(
-                    "TA016", f"functions such as `{name}` are not supported", span, mend
+                    "TA016", f"functions such as `{name}` are not supported", span, fix
                 )
             case _:
-                mend = "name a variable, a clock or a channel"
-                raise model_error("TA004", "this is no name", written.span, mend)
+                fix = "name a variable, a clock or a channel"
+                raise model_error("TA004", "this is no name", written.span, fix)
 
     def clock(self, written: syntax.Expression, scope: Scope) -> int | None:
         """The clock that an expression names, if it names one."""
@@ -253,8 +253,8 @@ class Resolver:
         _refuse_difference(self, written, scope)
         left, right = self.clock(written.left, scope), self.clock(written.right, scope)
         if left is not None and right is not None:
-            mend = "compare each clock with a number; a clock reset with the one can stand for it"
-            raise model_error("TA008", "two clocks are compared", written.span, mend)
+            fix = "compare each clock with a number; a clock reset with the one can stand for it"
+            raise model_error("TA008", "two clocks are compared", written.span, fix)
         if left is not None:
             bound = self.expression(written.right, scope)
             return compare_clock(left, written.op, bound, written.span)
@@ -282,10 +282,10 @@ class Resolver:
                 key = ("", ())
         if key not in self.automata:
             families = {name for name, _ in self.automata}
-            mend = (
+            fix = (
                 did_you_mean(key[0], sorted(families)) if self.automata else "only queries see them"
             )
-            raise model_error("TA002", f"no automaton `{span.text}`", span, mend)
+            raise model_error("TA002", f"no automaton `{span.text}`", span, fix)
         return self.automata[key]
 
 
@@ -294,8 +294,8 @@ def _refuse_difference(resolver: Resolver, written: syntax.Binary, scope: Scope)
         if not isinstance(side, syntax.Binary) or side.op not in (BinaryOp.SUB, BinaryOp.ADD):
             continue
         if any(resolver.clock(part, scope) is not None for part in (side.left, side.right)):
-            mend = "diagonal constraints are not supported: compare each clock with a number"
-            raise model_error("TA008", "a difference or sum of clocks", written.span, mend)
+            fix = "diagonal constraints are not supported: compare each clock with a number"
+            raise model_error("TA008", "a difference or sum of clocks", written.span, fix)
 
 
 def compare_clock(clock: int, op: BinaryOp, bound: Expression, span: Span) -> Expression:
@@ -307,8 +307,8 @@ def compare_clock(clock: int, op: BinaryOp, bound: Expression, span: Span) -> Ex
     if not is_discrete(bound):
         raise model_error("TA008", "a clock compared with clocks", span)
     if isinstance(bound, Constant) and not 0 <= bound.value < MAX_TIME:
-        mend = f"clocks are compared with numbers from 0 to {MAX_TIME - 1:,}"
-        raise model_error("TA007", f"a clock compared with {bound.value}", span, mend)
+        fix = f"clocks are compared with numbers from 0 to {MAX_TIME - 1:,}"
+        raise model_error("TA007", f"a clock compared with {bound.value}", span, fix)
     match op:
         case BinaryOp.EQ:
             return BinaryOperation(
@@ -336,8 +336,8 @@ def _unary(op: UnaryOp, operand: Expression, span: Span) -> Expression:
 
 def _refuse_clocks(operand: Expression, span: Span) -> None:
     if not is_discrete(operand):
-        mend = "arithmetic is for numbers; join conditions by and, or, not, imply"
-        raise model_error("TA009", "a condition on clocks or runs is no number", span, mend)
+        fix = "arithmetic is for numbers; join conditions by and, or, not, imply"
+        raise model_error("TA009", "a condition on clocks or runs is no number", span, fix)
 
 
 def _binary(op: BinaryOp, left: Expression, right: Expression, span: Span) -> Expression:
@@ -364,8 +364,8 @@ def _binary(op: BinaryOp, left: Expression, right: Expression, span: Span) -> Ex
 
 
 def _no_value(span: Span) -> ModelError:
-    mend = f"name a location: {span.text}.location"
-    return model_error("TA004", "an automaton is no value", span, mend)
+    fix = f"name a location: {span.text}.location"
+    return model_error("TA004", "an automaton is no value", span, fix)
 
 
 def _joined(op: BinaryOp, parts: Sequence[Expression], span: Span) -> Expression:
@@ -390,6 +390,6 @@ def values_of(kind: ResolvedType, span: Span) -> range:
     if kind.base not in (BaseType.INT, BaseType.BOOL):
         raise model_error("TA004", "only int and bool types can be enumerated", span)
     if kind.high - kind.low >= MAX_VALUES:
-        mend = "give a small range: int[low, high]"
-        raise model_error("TA019", f"more than {MAX_VALUES:,} values", span, mend)
+        fix = "give a small range: int[low, high]"
+        raise model_error("TA019", f"more than {MAX_VALUES:,} values", span, fix)
     return range(kind.low, kind.high + 1)

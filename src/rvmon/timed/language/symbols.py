@@ -35,13 +35,13 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
         case ChosenSymbol(values, extent, index):
             return Lookup(values, extent, index, span)
         case ClockSymbol():
-            mend = "a clock can only be compared with a number, or be set"
-            raise model_error("TA009", "a clock has no value here", span, mend)
+            fix = "a clock can only be compared with a number, or be set"
+            raise model_error("TA009", "a clock has no value here", span, fix)
         case VariableSymbol() | ConstantSymbol():
             raise model_error("TA004", "an array is no value", span, "give an index")
         case ChannelSymbol() | TypeSymbol():
-            mend = "channels stand in synchronisations, types in declarations"
-            raise model_error("TA004", f"`{span.text}` is no value", span, mend)
+            fix = "channels stand in synchronisations, types in declarations"
+            raise model_error("TA004", f"`{span.text}` is no value", span, fix)
         case _:
             assert_never(symbol)
 

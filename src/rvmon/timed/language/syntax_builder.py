@@ -78,8 +78,8 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def unit(self, meta: Meta, items: Sequence[Token]) -> Tree[int]:
         number, unit = self._whole(items[0]), items[1]
         if unit not in TICKS_PER_UNIT or number == 0:
-            mend = "write a whole number above 0 of " + ", ".join(TICKS_PER_UNIT)
-            raise model_error("TA001", "this is no unit of time", self._span(meta), mend)
+            fix = "write a whole number above 0 of " + ", ".join(TICKS_PER_UNIT)
+            raise model_error("TA001", "this is no unit of time", self._span(meta), fix)
         return Tree("unit", [number * TICKS_PER_UNIT[unit]])
 
     def system_line(self, meta: Meta, items: Sequence[Token]) -> Tree[syntax.Name]:
@@ -155,8 +155,8 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def weight(self, meta: Meta, items: Sequence[Token]) -> Tree[float]:
         weight = float(items[0])
         if not 0 < weight <= 1:
-            mend = "a weight is a share: above 0, at most 1"
-            raise model_error("TA017", f"weight {items[0]}", self._span(meta), mend)
+            fix = "a weight is a share: above 0, at most 1"
+            raise model_error("TA017", f"weight {items[0]}", self._span(meta), fix)
         return Tree("weight", [weight])
 
     def instance(self, meta: Meta, items: Sequence[Any]) -> syntax.Instance:
@@ -301,8 +301,8 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def _whole(self, token: Token) -> int:
         # Python itself refuses to read a few thousand digits.
         if len(token.lstrip("0")) > len(str(LARGEST)) or int(token) > LARGEST:
-            mend = f"numbers go up to {LARGEST:,}"
-            raise model_error("TA007", "the number is too large", self._token_span(token), mend)
+            fix = f"numbers go up to {LARGEST:,}"
+            raise model_error("TA007", "the number is too large", self._token_span(token), fix)
         return int(token)
 
     def truth(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:

@@ -48,8 +48,8 @@ def read_uppaal(source: Source) -> tuple[syntax.Document, list[Diagnostic]]:
     """
     root = read_xml(source)
     if root.name != "nta":
-        mend = "the outermost element of UPPAAL's models is `nta`"
-        raise model_error("TA018", f"`{root.name}` is no model", root.span(), mend)
+        fix = "the outermost element of UPPAAL's models is `nta`"
+        raise model_error("TA018", f"`{root.name}` is no model", root.span(), fix)
     findings, warnings = Findings(), list[Diagnostic]()
     declarations = _part(root.first("declaration"), "declarations", findings, ())
     templates = tuple(_template(element, findings) for element in root.all("template"))
@@ -105,9 +105,9 @@ def _template(element: Element, findings: Findings) -> syntax.Template:
         place.attributes.get("id", ""): _location_name(place) for place in element.all("location")
     }
     for branch in element.all("branchpoint"):
-        mend = "make one edge for each branch, with its probability as weight"
+        fix = "make one edge for each branch, with its probability as weight"
         message = "branch points (probabilities) are not supported"
-        findings.add(finding("TA016", message, branch.span(), mend))
+        findings.add(finding("TA016", message, branch.span(), fix))
     locations = tuple(_location(place, findings) for place in element.all("location"))
     return syntax.Template(
         _text(name).strip(),
@@ -154,8 +154,8 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
     comments = _text(labels.get("comments"))
     weight, label = _WEIGHT.search(comments), _LABEL.search(comments)
     if weight and not 0 < float(weight[1]) <= 1:
-        message, mend = f"weight {weight[1]}", "a weight is a share: above 0, at most 1"
-        findings.add(finding("TA017", message, labels["comments"].span(), mend))
+        message, fix = f"weight {weight[1]}", "a weight is a share: above 0, at most 1"
+        findings.add(finding("TA017", message, labels["comments"].span(), fix))
         weight = None
     if "probability" in labels:
         message = "probabilities of branches are not supported"
@@ -188,8 +188,8 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
             why = "; ".join(diagnostic.message for diagnostic in error.diagnostics)
             span = error.diagnostics[0].spans[0].span if error.diagnostics[0].spans else None
             message = f"query {number} is left out: {why}"
-            mend = error.diagnostics[0].help or "E<>, A[], A<>, E[] and --> are understood"
-            warnings.append(finding("TA020", message, span, mend, severity=Severity.WARNING))
+            fix = error.diagnostics[0].help or "E<>, A[], A<>, E[] and --> are understood"
+            warnings.append(finding("TA020", message, span, fix, severity=Severity.WARNING))
             continue
         length = len(formula.text.rstrip())
         text = formula.text.strip()

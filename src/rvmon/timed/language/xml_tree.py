@@ -139,6 +139,6 @@ class _Reader:
 
     def _entity(self, name: str, *_rest: object) -> None:
         here = self._here()
-        mend = "write the text itself"
+        fix = "write the text itself"
         span = Span(self._source, here, here)
-        raise model_error("TA018", f"the entity `{name}` is declared", span, mend)
+        raise model_error("TA018", f"the entity `{name}` is declared", span, fix)

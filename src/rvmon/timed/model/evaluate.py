@@ -178,8 +178,8 @@ def _binary_evaluator(
             def quotient(ls: Locations, vs: Values) -> int:
                 divisor = right(ls, vs)
                 if divisor == 0:
-                    mend = "guard it with a test of the divisor"
-                    raise model_error("TA007", "division by zero", span, mend)
+                    fix = "guard it with a test of the divisor"
+                    raise model_error("TA007", "division by zero", span, fix)
                 return divide(left(ls, vs), divisor)
 
             return quotient
@@ -208,8 +208,8 @@ def slot_evaluator(slot: Slot) -> Evaluator:
 def check_index(position: int, extent: range, span: Span | None) -> None:
     """Refuse an index outside its array."""
     if position not in extent:
-        mend = (
+        fix = (
             f"the indices are {extent.start} to {extent.stop - 1}: "
             "guard the edge, or narrow the index's type"
         )
-        raise model_error("TA007", f"index {position} is outside the array", span, mend)
+        raise model_error("TA007", f"index {position} is outside the array", span, fix)

@@ -136,6 +136,6 @@ def split_guard(expression: Expression, span: Span) -> Guard:
         elif is_discrete(part):
             data = part if data == TRUE else BinaryOperation(BinaryOp.AND, data, part)
         else:
-            mend = "make one edge (or location) for each alternative"
-            raise model_error("TA009", "a clock under `or`", span, mend)
+            fix = "make one edge (or location) for each alternative"
+            raise model_error("TA009", "a clock under `or`", span, fix)
     return Guard(data, tuple(clocks))

@@ -40,21 +40,21 @@ def finding(
     code: str,
     message: str,
     span: Span | None,
-    mend: str = "",
+    fix: str = "",
     *,
     others: Sequence[Label] = (),
     severity: Severity = Severity.ERROR,
 ) -> Diagnostic:
     """Make a diagnostic of one of the `RULES`; `others` are further places that matter."""
     places = () if span is None else (Label(span),)
-    return Diagnostic(code, RULES[code], severity, message, (*places, *others), mend)
+    return Diagnostic(code, RULES[code], severity, message, (*places, *others), fix)
 
 
 def model_error(
-    code: str, message: str, span: Span | None, mend: str = "", *, others: Sequence[Label] = ()
+    code: str, message: str, span: Span | None, fix: str = "", *, others: Sequence[Label] = ()
 ) -> ModelError:
     """A single finding as an exception."""
-    return refusal(finding(code, message, span, mend, others=others))
+    return refusal(finding(code, message, span, fix, others=others))
 
 
 def refusal(*findings: Diagnostic) -> ModelError:

@@ -47,7 +47,7 @@ from rvmon.timed.zones.zone_unions import Constraint
 from rvmon.trace.time import TICKS_PER_UNIT
 
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
-"""What is said of a requirement without deadline that no finite run fails."""
+"""What is reported of a requirement without deadline that no finite run fails."""
 
 _Node = Node[ObservedSite, ObservedLink]
 
@@ -104,7 +104,7 @@ def _observe(
     labelling = Labelling(signals_of(network), frozenset(labels_of(network)))
     trigger = obligation.trigger
     if trigger is None:
-        raise NotExpressibleError("it is judged at the end of a trace")
+        raise NotExpressibleError("it is evaluated at the end of a trace")
     if not (trigger.op is StateOp.LEAF and isinstance(trigger.leaf, BoundAtom)):
         labelling.require(trigger)
     for proposition in alphabet.propositions:

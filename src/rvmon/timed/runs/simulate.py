@@ -108,14 +108,14 @@ def _goal(query: Query, until: int | None) -> tuple[Expression, bool, int]:
     """What a run must reach, whether that is a success, and within how many units."""
     formula = query.formula
     if not isinstance(formula, PathFormula) or has_paths(formula.body):
-        mend = "use E<>, A<>, A[] or E[] with a state formula"
-        raise model_error("TA020", "this cannot be judged on one run", query.span, mend)
+        fix = "use E<>, A<>, A[] or E[] with a state formula"
+        raise model_error("TA020", "this cannot be evaluated on one run", query.span, fix)
     if speaks_of_deadlock(formula.body):
         raise model_error("TA020", "a simulated run does not know deadlocks", query.span)
     horizon = until if formula.bound is None else formula.bound
     if horizon is None:
-        mend = "bound it, as in E<>[<=100] p, or say how long a run lasts"
-        raise model_error("TA020", "a simulated run needs an end", query.span, mend)
+        fix = "bound it, as in E<>[<=100] p, or give the length of a run"
+        raise model_error("TA020", "a simulated run needs an end", query.span, fix)
     meets = formula.op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
     return normal_form(formula.body, positive=meets), meets, horizon
 
@@ -143,9 +143,9 @@ def _reaches(
         for clock, value in move.resets:
             clocks[clock] = int(value) * GRID
         state = move.target
-    mend = "look for a loop in which no time passes: A<> of its end finds one"
+    fix = "look for a loop in which no time passes: A<> of its end finds one"
     message = f"a simulated run made {MOST_MOVES:,} moves in {now / GRID:g} units of time"
-    raise model_error("TA019", message, None, mend)
+    raise model_error("TA019", message, None, fix)
 
 
 def _draw(

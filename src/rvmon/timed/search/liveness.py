@@ -1,7 +1,7 @@
 """Ways to stay inside a formula for ever: by idling, by a deadlock, by going round.
 
-Zones are coarsened up to bisimulation and told apart exactly, since a loop of larger zones need not
-be a loop of runs.
+Zones are coarsened up to bisimulation and distinguished exactly, since a loop of larger zones need
+not be a loop of runs.
 
 Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993 (runs and loops); Bouyer,
 Fahrenberg, Larsen, Markey, Ouaknine, Worrell, Model Checking Real-Time Systems, 2018, section 4.

@@ -89,7 +89,7 @@ def verify(
 def _remark(run: Run | None) -> str:
     match run:
         case Run(ending=Ending.ZENO_LOOP):
-            return "only by a Zeno loop: it goes round for ever while time does not pass on"
+            return "only by a Zeno loop: it goes round without end while time does not pass"
         case Run(ending=Ending.TIME_LOCK):
             return "time stops here: no edge can be taken, and time may not pass"
         case _:
@@ -127,21 +127,21 @@ def _search(question: _Question, query: Query) -> tuple[bool, Run | None, Policy
                 case _:
                     assert_never(op)
         case _:
-            mend = "begin it with E<>, A[], A<> or E[], or write p --> q"
-            raise model_error("TA020", "a query speaks of runs", query.span, mend)
+            fix = "begin it with E<>, A[], A<> or E[], or write p --> q"
+            raise model_error("TA020", "a query speaks of runs", query.span, fix)
 
 
 def _refuse_nests(query: Query, *parts: Expression) -> None:
     if any(has_paths(part) for part in parts):
         message = "path operators inside this one are not decided"
-        mend = "inside E<> and A[] are decided: E<> and A[], and A[] (p imply A<> q)"
-        raise model_error("TA020", message, query.span, mend)
+        fix = "inside E<> and A[] are decided: E<> and A[], and A[] (p imply A<> q)"
+        raise model_error("TA020", message, query.span, fix)
 
 
 def _refuse_deadlock(query: Query, *parts: Expression) -> None:
     if any(speaks_of_deadlock(part) for part in parts):
-        mend = "ask for it with E<> or A[]"
-        raise model_error("TA020", "`deadlock` can only be reached", query.span, mend)
+        fix = "ask for it with E<> or A[]"
+        raise model_error("TA020", "`deadlock` can only be reached", query.span, fix)
 
 
 # Reaching.

@@ -101,8 +101,8 @@ def atom_of(compare: ClockCompare, number: int) -> Atom:
 def check_time(number: int, span: Span | None) -> int:
     """Refuse a number that no clock can be compared with or set to."""
     if not 0 <= number < MAX_TIME:
-        mend = f"keep it from 0 to {MAX_TIME - 1:,}, or choose a larger unit of time"
-        raise model_error("TA007", f"{number} is no time for a clock", span, mend)
+        fix = f"keep it from 0 to {MAX_TIME - 1:,}, or choose a larger unit of time"
+        raise model_error("TA007", f"{number} is no time for a clock", span, fix)
     return number
 
 

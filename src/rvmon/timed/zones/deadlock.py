@@ -79,10 +79,10 @@ def check_start(network: Network) -> None:
     zone = zero(steps.dim)
     if state is None or not settle_in(state, zone, steps.dim):
         message = "an invariant of the initial locations is false at time 0"
-        mend = "weaken it, or start elsewhere"
-        raise model_error("TA014", message, span, mend, others=others)
+        fix = "weaken it, or start elsewhere"
+        raise model_error("TA014", message, span, fix, others=others)
     beginning = zero(steps.dim)
     if is_time_bounded(state) and Deadlocks(steps.space).dead(state, normalise(beginning)):
         message = "time stops in the initial state: no edge can ever be taken, nor time pass on"
-        mend = "weaken the invariant, or the guards of the edges from here"
-        raise model_error("TA014", message, span, mend, others=others)
+        fix = "weaken the invariant, or the guards of the edges from here"
+        raise model_error("TA014", message, span, fix, others=others)

@@ -83,9 +83,7 @@ def test_an_equivalent_mutant_that_is_killed_fails(campaign, tmp_path, capsys):
     name = "Lift.ride:dropped-statement"
     known = equivalent(campaign, tmp_path, name)
     assert main(known, ["mutate", "--of", "code", "--only", name, "--jobs", "1"]) == 1
-    assert (
-        f"lift:{name}:5 is said to be equivalent, and requirement (L1)" in capsys.readouterr().err
-    )
+    assert f"lift:{name}:5 is declared equivalent, and requirement (L1)" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

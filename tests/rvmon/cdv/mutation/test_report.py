@@ -47,7 +47,7 @@ def report(*tried, equivalent=(), shows=False):
         ),
         (
             Tried(SHOWN[0], 2, 2, (), Difference("t", 5, "go", "", "True", (("R1", "P", "I"),))),
-            "which R1 reads; otherwise judged, but not failed: R1 P → I",
+            "which R1 reads; verdicts differ, but none is a failure: R1 P → I",
         ),
         (
             Tried(SHOWN[0], 2, 2, (), Difference("t", 10**9, "", "", "")),
@@ -93,7 +93,7 @@ def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
     found = report(Tried(SHOWN[0], 1, 1), Tried(SHOWN[1], 1, 1, (KILLED,)), equivalent=SHOWN[:2])
     assert found.survivors("s") == {}
     assert found.contradictions() == [
-        f"{SHOWN[1].identity} is said to be equivalent, and requirement (R1) in t kills it"
+        f"{SHOWN[1].identity} is declared equivalent, and requirement (R1) in t kills it"
     ]
     assert found.scores("s")["all"].rest == 1
 
@@ -132,7 +132,7 @@ def test_equivalents_are_read(tmp_path):
     ],
 )
 def test_equivalents_that_are_wrong_are_refused(tmp_path, text, message):
-    """With the file, and what is to be mended."""
+    """With the file, and what is to be fixed."""
     path = tmp_path / "equivalent.toml"
     path.write_text(text)
     with pytest.raises(RvmonError, match=message):

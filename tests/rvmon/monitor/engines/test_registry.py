@@ -80,7 +80,7 @@ def test_auto_judges_by_the_engine_that_is_named(form):
     [pytest.param(one, marks=pytest.mark.compiler) if one == "c" else one for one in ENGINES],
 )
 @pytest.mark.parametrize("form", FORMS | OTHERS)
-def test_a_refusal_has_a_reason_a_mend_and_an_engine_that_takes_it(form, engine):
+def test_a_refusal_has_a_reason_a_fix_and_an_engine_that_takes_it(form, engine):
     """Asked for by name, an engine judges what it does not refuse, and else says all three."""
     spec = spec_of(form)
     (one,) = spec._compiled.requirements.values()
@@ -89,12 +89,12 @@ def test_a_refusal_has_a_reason_a_mend_and_an_engine_that_takes_it(form, engine)
     if refusal is None or engine in HANDING_ON:
         assert engine == "auto" or engine in spec.judge(source, engine=engine).engine or refusal
     else:
-        told = re.escape(f"R {refusal.reason}; "), re.escape(f" cannot judge it: {refusal.mend}")
+        told = re.escape(f"R {refusal.reason}; "), re.escape(f" cannot evaluate it: {refusal.fix}")
         with pytest.raises(RvmonError, match=".*".join(told)):
             spec.judge(source, engine=engine)
     if refusal is not None:
         assert refusal.reason
-        assert refusal.mend
+        assert refusal.fix
         assert engine_named(refusal.engine).refuses(one) is None
 
 
@@ -138,9 +138,13 @@ def test_what_is_judged_beside_columns_is_told():
 def test_columns_are_for_recordings_that_have_them(tmp_path):
     """By its name the engine `columns` says why something is none for it."""
     spec = spec_of("invariant")
-    with pytest.raises(RvmonError, match="judges recordings, not streams: use the engine `auto`"):
+    with pytest.raises(
+        RvmonError, match="evaluates recordings, not streams: use the engine `auto`"
+    ):
         spec.monitor(engine="columns")
-    with pytest.raises(RvmonError, match="not judged by columns: its samples come one by one: use"):
+    with pytest.raises(
+        RvmonError, match="not evaluated by columns: its samples come one by one: use"
+    ):
         spec.evaluate([(0, {"x": 1.0})], engine="columns")
     path = tmp_path / "a.csv"
     path.write_text("t,x\n0,1\n1,2\n1,3\n")

@@ -266,6 +266,6 @@ def test_a_torn_run_is_told_in_every_output() -> None:
     report = monitor.finish_ns(4 * _S)
     [line] = [line for line in health_lines(report.health) if "interrupted" in line]
     assert line.startswith(
-        "  monitor  interrupted once, first at 2 s: what followed was not judged in full"
+        "  monitor  interrupted once, first at 2 s: what followed was not evaluated in full"
     )
-    assert "was not judged in full" in junit_xml([report], spec.checked)
+    assert "was not evaluated in full" in junit_xml([report], spec.checked)

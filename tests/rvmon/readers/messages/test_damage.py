@@ -1,4 +1,4 @@
-"""Bags and MCAP files that cannot be read, or lack what is read: place, cause, mend."""
+"""Bags and MCAP files that cannot be read, or lack what is read: place, cause, fix."""
 
 import struct
 
@@ -54,7 +54,7 @@ def spec():
 @pytest.mark.slow
 @pytest.mark.parametrize("kept", [0.999, 0.5, 0.02])
 @pytest.mark.parametrize(
-    ("name", "mend"),
+    ("name", "fix"),
     [
         ("a.bag", "rosbag reindex"),
         ("sqlite3", "ros2 bag reindex"),
@@ -62,7 +62,7 @@ def spec():
         ("b.mcap", "mcap recover"),
     ],
 )
-def test_what_was_cut_off_is_told_and_the_others_are_judged(tmp_path, capsys, name, mend, kept):
+def test_what_was_cut_off_is_told_and_the_others_are_judged(tmp_path, capsys, name, fix, kept):
     """Nothing of it passes for the whole."""
     whole = write_ros1(tmp_path / "whole.bag", SENT)
     path, file = written(tmp_path, name)
@@ -72,7 +72,7 @@ def test_what_was_cut_off_is_told_and_the_others_are_judged(tmp_path, capsys, na
     assert main(["run", str(tmp_path / "base.rv"), str(path), str(whole)]) == 2
     told = capsys.readouterr()
     assert f"error: {path}: cannot be read as" in told.err
-    assert mend in told.err
+    assert fix in told.err
     assert "whole.bag" in told.out.replace("\n", "")
     assert "Traceback" not in told.err
 
@@ -150,7 +150,7 @@ def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, capsys, name
         (
             "{idle, busy}",
             "/base/scan.state",
-            "whole numbers: say in a binding which `labels`",
+            "whole numbers: name in a binding which `labels`",
         ),
         ("real", "/base/scan.stat", "has no field `stat`: did you mean `state`"),
         (

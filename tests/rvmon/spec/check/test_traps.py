@@ -157,13 +157,13 @@ def test_a_pulse_in_sampled_time_makes_stretches(codes):
         "always (a since[1 s, 2 s] b)",
     ],
 )
-def test_the_mend_is_of_the_language(time, body, codes):
-    """What stands in the mend can be written, and is not found again."""
+def test_the_fix_is_of_the_language(time, body, codes):
+    """What stands in the fix can be written, and is not found again."""
     head = f"time {time}\nsignal a, b, c : bool\nevent e, f\nrequirement R\n  "
     (finding,) = (f for f in compile_text(head + body)[1] if f.code in ("RV047", "RV048"))
-    mended = finding.help.split("`")[1]
+    fixed = finding.help.split("`")[1]
     before = body[: body.index("then") + 4] + " " if "then" in body else ""
-    assert not {f.code for f in compile_text(head + before + mended)[1]} & {"RV047", "RV048"}
+    assert not {f.code for f in compile_text(head + before + fixed)[1]} & {"RV047", "RV048"}
 
 
 def owed_first():

@@ -167,5 +167,5 @@ def test_only_real_signals_ignore_nan(type_, codes):
 
 @pytest.mark.parametrize("text", ["stale after 1 s ignore NaN", "ignore nan", "ignore"])
 def test_where_what_is_ignored_stands(text, message):
-    """Elsewhere, or spelt otherwise, it is refused with the mend."""
+    """Elsewhere, or spelt otherwise, it is refused with the fix."""
     assert "write `ignore NaN` behind the type" in message(f"signal z : real {text}\n")

@@ -230,7 +230,7 @@ def test_all_errors_of_a_file_appear_at_once(codes):
     ],
 )
 def test_syntax_errors_speak_the_language(message, text, expected):
-    """A syntax error says what could have stood there, or how to mend it."""
+    """A syntax error says what could have stood there, or how to fix it."""
     assert expected in message(text)
 
 

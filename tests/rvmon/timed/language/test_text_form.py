@@ -266,7 +266,7 @@ def test_a_finding_says_what_was_probably_meant():
     assert diagnostic.help == "did you mean `speed`?"
 
 
-def test_an_unbounded_int_is_mended_by_a_range():
+def test_an_unbounded_int_is_fixed_by_a_range():
     """An int without a range is refused, and the message says how to write one."""
     diagnostic = one("int v automaton A { location a start a }")
     assert diagnostic.name == "unbounded-int"
@@ -287,7 +287,7 @@ def test_a_channel_used_by_nobody_is_a_warning():
     """)
     told = [(w.code, w.message.split(":")[0], w.spans[0].span.text) for w in network.warnings]
     assert told == [
-        ("TA010", "the channel `lonely` is used by nobody", "lonely"),
+        ("TA010", "the channel `lonely` is never used", "lonely"),
         ("TA010", "the channel `sent` is never received", "sent"),
         ("TA010", "the channel `heard` is never sent", "heard"),
     ]
@@ -358,7 +358,7 @@ def test_a_division_by_zero_has_its_place(guard):
         ("automaton a { location 1st start l }", "st"),
     ],
 )
-def test_what_is_no_name_is_mended(text, name):
+def test_what_is_no_name_is_fixed(text, name):
     """Dashes and digits in front are no part of names; one that would do is given."""
     assert f"first a letter: `{name}`" in one(text).help
 

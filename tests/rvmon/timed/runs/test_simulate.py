@@ -80,7 +80,7 @@ def test_bounds_are_clopper_and_pearsons(successes, runs):
 @pytest.mark.parametrize(
     ("text", "query", "message"),
     [
-        (COIN, "A.a --> A.b", "cannot be judged on one run"),
+        (COIN, "A.a --> A.b", "cannot be evaluated on one run"),
         (COIN, "E<> A.b", "needs an end"),
         (COIN, "E<>[<=5] deadlock", "does not know deadlocks"),
         (

@@ -73,7 +73,7 @@ def test_what_is_not_decided_is_refused(query):
     assert caught.value.diagnostics[0].code == "TA020"
 
 
-def test_a_nest_without_brackets_is_mended():
+def test_a_nest_without_brackets_is_fixed():
     """The message says that an inner operator of UPPAAL's kind takes brackets elsewhere."""
     with pytest.raises(ModelError) as caught:
         verify(loads_network(TRAP), "A[] (A.open or A<> A.trap)")

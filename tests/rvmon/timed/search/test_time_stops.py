@@ -113,7 +113,7 @@ def test_a_deadlock_in_part_of_a_zone_is_found():
     ],
 )
 def test_a_model_that_cannot_start_is_refused(text):
-    """A time-lock at the start is a finding with place and mend, not an answer."""
+    """A time-lock at the start is a finding with place and fix, not an answer."""
     with pytest.raises(ModelError) as caught:
         verify(loads_network(text), "E<> A.a")
     (diagnostic,) = caught.value.diagnostics

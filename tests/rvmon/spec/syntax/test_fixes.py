@@ -1,4 +1,4 @@
-"""What people write who come from elsewhere is mended in the words of the language."""
+"""What people write who come from elsewhere is fixed in the words of the language."""
 
 import pytest
 
@@ -22,7 +22,7 @@ def first_finding(text):
 
 
 @pytest.mark.parametrize(
-    ("owed", "mend"),
+    ("owed", "fix"),
     [
         ("within -1 s released", "write it without `-`"),
         ("within -T released", "write it without `-`"),
@@ -46,17 +46,17 @@ def first_finding(text):
         ("after 2 s released", "write `eventually[2 s, 2 s] (…)`"),
     ],
 )
-def test_what_is_owed(owed, mend):
+def test_what_is_owed(owed, fix):
     """Durations, numbers and names that are written as they are elsewhere."""
-    assert mend in first_finding(f"requirement R\n  upon asked\n  then {owed}\n").help
+    assert fix in first_finding(f"requirement R\n  upon asked\n  then {owed}\n").help
 
 
 @pytest.mark.parametrize(
-    ("item", "mend"),
+    ("item", "fix"),
     [
         ("requirement R if asked then within 3 s released", "for `if` write `upon`"),
         ("requirement R when asked then within 3 s released", "for `when` write `upon`"),
-        ("requirement R upon asked, then released", "what is owed stands behind `then`"),
+        ("requirement R upon asked, then released", "the consequent stands after `then`"),
         ('requirement "R" upon asked then released', "its name comes first"),
         ("signal x", "a signal has a type"),
         ("signal x : float", "write `real`"),
@@ -66,15 +66,15 @@ def test_what_is_owed(owed, mend):
         ("requirement always released", "its name comes first: `requirement R1 always …`"),
         ("requirement upon asked then released", "its name comes first"),
         ("requirement\n  released", "`released` is taken for its name"),
-        ("requirement R let z = speed upon asked then released", "stands behind what is owed"),
-        ("requirement R upon asked let z = speed then released", "stands behind what is owed"),
-        ("requirement R upon asked then let z = speed released", "stands behind what is owed"),
+        ("requirement R let z = speed upon asked then released", "stands after the consequent"),
+        ("requirement R upon asked let z = speed then released", "stands after the consequent"),
+        ("requirement R upon asked then let z = speed released", "stands after the consequent"),
         ("event e(x)", "a field has a type"),
     ],
 )
-def test_items(item, mend):
+def test_items(item, fix):
     """Items in the manner of other languages."""
-    assert mend in first_finding(item + "\n").help
+    assert fix in first_finding(item + "\n").help
 
 
 def test_a_trigger_and_what_is_owed_are_both_looked_at():
@@ -93,26 +93,26 @@ def test_the_expected_is_said_in_words():
 
 
 @pytest.mark.parametrize(
-    ("word", "mend"), [("boolean", "bool"), ("integer", "int"), ("reals", "real")]
+    ("word", "fix"), [("boolean", "bool"), ("integer", "int"), ("reals", "real")]
 )
-def test_words_are_found_whole(word, mend):
+def test_words_are_found_whole(word, fix):
     """A word that starts like one of the language is not cut in two."""
     found = first_finding(f"signal x : {word}\n")
     assert found.message.startswith(f"found `{word}`, ")
-    assert f"`{mend}`" in found.help
+    assert f"`{fix}`" in found.help
 
 
 @pytest.mark.parametrize(
-    ("formula", "mend", "expected"),
+    ("formula", "fix", "expected"),
     [
         ('state = "idle"', "labels have no quotes: `idle`", "a number or a name"),
         ("(asked) => (released)", "write `->`", "the end of the item"),
     ],
 )
-def test_signs_of_other_languages(formula, mend, expected):
+def test_signs_of_other_languages(formula, fix, expected):
     """Labels in quotes and other arrows; what could have stood there is said in words."""
     found = first_finding(f"signal state : {{idle, on}}\nrequirement R\n  always {formula}\n")
-    assert mend in found.help
+    assert fix in found.help
     assert found.message.endswith(expected)
 
 

@@ -1,4 +1,4 @@
-"""What mends a syntax error: what people write who come from another language."""
+"""What fixes a syntax error: what people write who come from another language."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rvmon.diagnostics.span import Span
 from rvmon.spec.syntax.units import unit_table
 from rvmon.spec.syntax.words import ITEM_WORDS, RESERVED
 
-_MEND = {
+_FIX = {
     "≤": "write `<=`",
     "≥": "write `>=`",
     "≠": "write `!=`",
@@ -44,8 +44,8 @@ _TYPES = {
 }
 
 
-def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
-    """What mends a syntax error; empty if nothing is known to.
+def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
+    """What fixes a syntax error; empty if nothing is known to.
 
     Args:
         found: the word or sign that could not stand there; empty at the end of the item.
@@ -54,22 +54,22 @@ def mend_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> 
         before: what of the item stands before it.
     """
     return (
-        _MEND.get(found, "")
-        or _sign_mend(found, accepted, before.text)
-        or _number_mend(found, before)
-        or _never_mend(found, before.text)
-        or _name_mend(found, before.text)
-        or _let_mend(found, before.text)
-        or _ignore_mend(found, before.text)
-        or _share_mend(found, accepted)
-        or _structure_mend(found, accepted, before.text)
-        or _word_mend(found, accepted, parser, before.text)
+        _FIX.get(found, "")
+        or _sign_fix(found, accepted, before.text)
+        or _number_fix(found, before)
+        or _never_fix(found, before.text)
+        or _name_fix(found, before.text)
+        or _let_fix(found, before.text)
+        or _ignore_fix(found, before.text)
+        or _share_fix(found, accepted)
+        or _structure_fix(found, accepted, before.text)
+        or _word_fix(found, accepted, parser, before.text)
         or _decimal_comma(before.text)
     )
 
 
-def _sign_mend(found: str, accepted: set[str], before: str) -> str:
-    """What mends a label in quotes, or an arrow of another language."""
+def _sign_fix(found: str, accepted: set[str], before: str) -> str:
+    """What fixes a label in quotes, or an arrow of another language."""
     label = re.fullmatch(r'"([^\W\d]\w*)"', found)
     if label and "NAME" in accepted and before.rstrip().endswith(("=", "{", ",")):
         return f"labels have no quotes: `{label[1]}`"
@@ -78,14 +78,14 @@ def _sign_mend(found: str, accepted: set[str], before: str) -> str:
     return ""
 
 
-def _never_mend(found: str, before: str) -> str:
-    """What mends `never φ`, which is no operator here."""
+def _never_fix(found: str, before: str) -> str:
+    """What fixes `never φ`, which is no operator here."""
     never = found and re.search(r"(?<![\w.])never[ \t]+$", before)
     return NEVER if never else ""
 
 
-def _name_mend(found: str, before: str) -> str:
-    """What mends a requirement whose name is none, or that has none."""
+def _name_fix(found: str, before: str) -> str:
+    """What fixes a requirement whose name is none, or that has none."""
     dashed = re.fullmatch(r"requirement\s+([\w.]+(?:-\w+)+)\s*", before)
     if dashed:
         name = dashed[1].replace("-", "_")
@@ -97,37 +97,37 @@ def _name_mend(found: str, before: str) -> str:
     return f"its name comes first: `requirement R1 {found} …`" if nameless else ""
 
 
-def _let_mend(found: str, before: str) -> str:
-    """What mends a `let` before what is owed."""
+def _let_fix(found: str, before: str) -> str:
+    """What fixes a `let` before what is owed."""
     behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
     if found == "let" or behind:
-        return "`let` stands behind what is owed: `upon … then … let x = …`"
+        return "`let` stands after the consequent: `upon … then … let x = …`"
     return ""
 
 
-def _ignore_mend(found: str, before: str) -> str:
-    """What mends what a signal ignores, in a wrong place or spelling."""
+def _ignore_fix(found: str, before: str) -> str:
+    """What fixes what a signal ignores, in a wrong place or spelling."""
     if found == "ignore" and before.startswith("signal"):
         return "write `ignore NaN` behind the type and role, before `stale after`"
     return ""
 
 
-def _share_mend(found: str, accepted: set[str]) -> str:
-    """What mends a share of runs in other words."""
+def _share_fix(found: str, accepted: set[str]) -> str:
+    """What fixes a share of runs in other words."""
     if "_OF_RUNS" in accepted or (found == "in" and "AND" in accepted):
         return "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
     return ""
 
 
-def _structure_mend(found: str, accepted: set[str], before: str) -> str:
-    """What mends parts of an item that are in a wrong place or missing."""
+def _structure_fix(found: str, accepted: set[str], before: str) -> str:
+    """What fixes parts of an item that are in a wrong place or missing."""
     call = re.search(r"([^\W\d]\w*)[ \t]+$", before)
     if found == "(" and call:
         return f"a call has no space before its bracket: `{call[1]}(`"
     if re.match(r"[AE][\[<]", found) and "AND" not in accepted:
         return f"put brackets around `{found} …`"
     if "THEN" in accepted:
-        return "what is owed stands behind `then`"
+        return "the consequent stands after `then`"
     if accepted == {"NAME"} and before.split() == ["requirement"]:
         return 'its name comes first: `requirement R1 "text"`'
     if "COLON" in accepted and re.match(r"signal\b", before):
@@ -141,8 +141,8 @@ def _structure_mend(found: str, accepted: set[str], before: str) -> str:
     return ""
 
 
-def _word_mend(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
-    """What mends a word that is none of the language, or stands where none can."""
+def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
+    """What fixes a word that is none of the language, or stands where none can."""
     if not re.fullmatch(r"[^\W\d]\w*", found):
         return ""
     if "LBRACE" in accepted and found.lower() in _TYPES:
@@ -161,8 +161,8 @@ def _word_mend(found: str, accepted: set[str], parser: lark.Lark, before: str) -
     return f"an operator is missing before `{found}`, or a word too many"
 
 
-def _number_mend(found: str, before: Span) -> str:
-    """What mends a number or duration that is written as it is elsewhere."""
+def _number_fix(found: str, before: Span) -> str:
+    """What fixes a number or duration that is written as it is elsewhere."""
     digits = re.search(r"(?<![\w.])\d*$", before.text)
     behind = re.compile(r"[.,](\d*)").match(before.source.text, before.end)
     if digits and behind and (behind[1] or (digits[0] and found == ".")):
@@ -180,7 +180,7 @@ def _number_mend(found: str, before: Span) -> str:
 
 
 def _decimal_comma(text: str) -> str:
-    """What mends a number that is written with a comma, if there is one."""
+    """What fixes a number that is written with a comma, if there is one."""
     comma = re.search(r"(?<![\w.,])(\d+),(\d+)(?![\w.,])", text)
     return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
 
