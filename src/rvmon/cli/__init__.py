@@ -31,6 +31,7 @@ COMMANDS = {
     "run": "judge recordings by a specification",
     "watch": "judge a running robot: verdicts as they fall",
     "format": "lay specifications out in the canonical form",
+    "lsp": "the language server that editors start",
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
     "clip": "a recording cut around an attempt; a file that reproduces it",

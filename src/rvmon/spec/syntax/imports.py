@@ -76,9 +76,7 @@ class _Loader:
         except Refusal as refusal:
             self._findings.add(refusal.finding)
 
-    def _sources(
-        self, item: ImportItem, directory: Path
-    ) -> Iterator[tuple[Source, Path, str]]:
+    def _sources(self, item: ImportItem, directory: Path) -> Iterator[tuple[Source, Path, str]]:
         """The texts that an import means, each with its folder and a key of its own."""
         if not item.library:
             path = directory / item.target
