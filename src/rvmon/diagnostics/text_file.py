@@ -29,14 +29,14 @@ def text_of_file(path: str | Path, encoding: str = "utf-8") -> str:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             raise OSError(errno.EINVAL, "a device or a pipe: a regular file is expected")
         data = file.read(_most() + 1)
-    refuse_large(len(data))
+    _refuse_large(len(data))
     return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def text_of_input() -> str:
     """Read a specification from standard input; see `text_of_file`."""
     text = sys.stdin.read(_most() + 1)
-    refuse_large(len(text))
+    _refuse_large(len(text))
     return text
 
 
@@ -50,12 +50,7 @@ def _most() -> int:
     return (int(given) if given.isascii() and given.isdigit() else MOST) * MEGABYTE
 
 
-def refuse_large(size: int) -> None:
-    """Refuse a text of so many bytes or characters if it is too large.
-
-    Raises:
-        OSError: it is; `strerror` says what it may be.
-    """
+def _refuse_large(size: int) -> None:
     most = _most()
     if size > most:
         reason = f"larger than {most // MEGABYTE} MB: if that is meant, set RVMON_MAX_TEXT (in MB)"

@@ -11,7 +11,6 @@ from rvmon.lsp.names import Names
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.specification import EndPolicy
 from rvmon.spec.syntax.expected import accepted_terminals
-from rvmon.spec.syntax.imports import LIBRARIES
 from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem
 from rvmon.spec.syntax.mends import word_pattern
 from rvmon.spec.syntax.parse import grammar
@@ -104,13 +103,8 @@ def _operands(names: Names, item: str, *, formulas: bool) -> Iterator[tuple[str,
 
 def _named(names: Names, item: str) -> Iterator[tuple[str, str]]:
     """Names where only some may stand; none where a new one is expected."""
-    if re.search(r"\Aimport\s+\Z", item):
-        yield from ((library, "name") for library in LIBRARIES)
-    elif re.search(r"(?<![\w.])at\s+end\s*:?\s*\Z", item):
+    if re.search(r"(?<![\w.])at\s+end\s*:?\s*\Z", item):
         yield from ((policy.value, "keyword") for policy in EndPolicy)
-    elif re.search(r"(?<![\w.])each\s+\S+\s+in\s+\Z", item):
-        fields = (name for name, ident in names.declared.items() if ident.text != name)
-        yield from ((name, "name") for name in fields)
     elif item.startswith("cross") and "=" in item:
         yield from _coverpoints(names)
 

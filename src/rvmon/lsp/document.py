@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator
-from functools import cached_property
+from contextlib import suppress
+from functools import cache, cached_property
 from importlib import resources
 from itertools import islice
 from pathlib import Path
@@ -13,20 +14,19 @@ from pathlib import Path
 from lsprotocol import types as lsp
 from pygls.uris import from_fs_path, to_fs_path
 
+from rvmon.cache import cache_folder
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.nearest import proposed
 from rvmon.diagnostics.shown import shown
 from rvmon.diagnostics.span import Source, Span
-from rvmon.diagnostics.text_file import refuse_large
-from rvmon.errors import RvmonError
-from rvmon.lsp.code_pages import page_uri
+from rvmon.explain.codes import page_of
 from rvmon.lsp.names import Names
 from rvmon.lsp.text import Text
 from rvmon.spec.compile import Compilation, compilation
-from rvmon.spec.print.printer import format_name
 from rvmon.spec.syntax.expressions import Ident
-from rvmon.spec.syntax.items import EventItem, ImportItem, Item, ParsedSpec, SignalItem
+from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem
 from rvmon.spec.syntax.split import split_items
+from rvmon.writing import write_whole
 
 MOST_FIXES = 5
 """Of so many findings at a place it is tried whether what they propose helps."""
@@ -68,18 +68,12 @@ class Document:
         self._read = read
         path = to_fs_path(uri)
         self._folder = Path(path).parent if path else None
-        try:
-            refuse_large(len(text.raw))
-            self.source = Source(path or uri, text.code)
-            self.compiled = self._compiled(self.source, read)
-        except OSError as error:
-            self.source = Source(path or uri, "")
-            found = Diagnostic("", "too-large", Severity.ERROR, f"this is {error.strerror}")
-            self.compiled = Compilation((ParsedSpec(self.source, ()),), None, (found,))
+        self.source = Source(path or uri, text.code)
+        self.compiled = self._compiled(self.source)
         self.names = Names(self.compiled.files)
 
-    def _compiled(self, source: Source, read: Callable[[Path], str]) -> Compilation:
-        return compilation(source, self._folder, {}, read)
+    def _compiled(self, source: Source) -> Compilation:
+        return compilation(source, self._folder, {}, self._read)
 
     def place(self, position: lsp.Position) -> Span:
         """A position in the text."""
@@ -110,13 +104,12 @@ class Document:
 
     def _diagnostic(self, finding: Diagnostic, where: lsp.Range) -> lsp.Diagnostic:
         help_ = f"\nhelp: {finding.help}" if finding.help else ""
-        page = page_uri(finding.code)
         return lsp.Diagnostic(
             where,
             shown(finding.message + help_),
             _SEVERITIES[finding.severity],
             finding.code,
-            lsp.CodeDescription(page) if page else None,
+            _page(finding.code),
             "rvmon",
             [lsp.DiagnosticTag.Unnecessary] if finding.name in _UNNEEDED else None,
             [
@@ -138,7 +131,7 @@ class Document:
         inside = (p for p in proposals if p[2] and p[1].start <= end and start <= p[1].end)
         for finding, span, instead in islice(inside, MOST_FIXES):
             text = self.source.text[: span.start] + instead + self.source.text[span.end :]
-            after = self._compiled(Source(self.source.name, text), self._read)
+            after = self._compiled(Source(self.source.name, text))
             if len(after.findings) < len(self.compiled.findings):
                 place = self.text.range(span.start, span.end)
                 yield lsp.CodeAction(
@@ -189,36 +182,18 @@ class Document:
         """All places of the names that stand for a declaration."""
         return (span for span, target in self.names.all() if _key(target) == key)
 
-    def renamed(self, key: Key, name: str) -> dict[str, list[lsp.TextEdit]]:
-        """The edits that rename what is declared, by address.
 
-        Raises:
-            RvmonError: the name is none, or something would mean another thing afterwards.
-        """
-        if not os.path.isabs(key[0]) and key[0] != os.path.normpath(self.source.name):
-            raise RvmonError("what a library of rvmon declares keeps its name")
-        if not re.fullmatch(r"[^`\n]*[^`\s][^`\n]*", name):
-            raise RvmonError("a name is on one line and has no backticks")
-        if any(file.doubtful for file in self.compiled.files):
-            raise RvmonError("some items cannot be read, and may hold the name: correct them first")
-        written = format_name(name)
-        spans = list(dict.fromkeys(self.uses(key)))
-        texts = {file.source.name: file.source.text for file in self.compiled.files}
-        for span in sorted(spans, key=lambda span: -span.start):
-            text = texts[span.source.name]
-            texts[span.source.name] = text[: span.start] + written + text[span.end :]
-        after = self._compiled(
-            Source(self.source.name, texts[self.source.name]),
-            lambda path: texts.get(str(path)) or self._read(path),
-        )
-        same = _structure(Names(after.files)) == _structure(self.names)
-        if not same or len(after.findings) > len(self.compiled.findings):
-            raise RvmonError(f"something would mean another thing if this were called `{name}`")
-        edits: dict[str, list[lsp.TextEdit]] = {}
-        for span in spans:
-            place = self.location(span)
-            edits.setdefault(place.uri, []).append(lsp.TextEdit(place.range, written))
-        return edits
+@cache
+def _page(code: str) -> lsp.CodeDescription | None:
+    """The page of a code as a file that editors open; `None` if it cannot be kept."""
+    folder = cache_folder()
+    if folder is None:
+        return None
+    path = folder / "codes" / f"{code}.md"
+    with suppress(OSError):
+        path.parent.mkdir(mode=0o700, exist_ok=True)
+        write_whole(str(path), page_of(code))
+    return lsp.CodeDescription(path.as_uri())
 
 
 def _address(source: Source) -> str:
@@ -246,9 +221,3 @@ def _detail(item: Item) -> str:
 
 def _key(name: Ident) -> Key:
     return os.path.normpath(name.span.source.name), name.span.start
-
-
-def _structure(names: Names) -> list[int]:
-    """Which places of names stand for the same thing, whatever that is called."""
-    numbers: dict[Key, int] = {}
-    return [numbers.setdefault(_key(target), len(numbers)) for _, target in names.all()]

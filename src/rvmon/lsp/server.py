@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from lsprotocol import types as lsp
-from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.uris import to_fs_path
@@ -17,7 +16,7 @@ from pygls.uris import to_fs_path
 from rvmon import __version__
 from rvmon.diagnostics.span import Source, Span
 from rvmon.diagnostics.text_file import text_of_file
-from rvmon.errors import RvmonError, SpecError
+from rvmon.errors import SpecError
 from rvmon.lsp.completion import proposals
 from rvmon.lsp.document import Document
 from rvmon.lsp.hover import hover
@@ -160,21 +159,6 @@ def _references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Locatio
     return [place for number, place in enumerate(places) if place not in places[:number]]
 
 
-def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    key = server.document(params.text_document.uri).key(params.position)
-    if key is None:
-        return None
-    edits: dict[str, list[lsp.TextEdit]] = {}
-    try:
-        for uri in server.texts:
-            for address, changes in server.document(uri).renamed(key, params.new_name).items():
-                known = edits.setdefault(address, [])
-                known += [change for change in changes if change not in known]
-    except RvmonError as error:
-        raise JsonRpcInvalidParams(str(error)) from None
-    return lsp.WorkspaceEdit(edits)
-
-
 def _symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
     return list(server.document(params.text_document.uri).symbols())
 
@@ -220,7 +204,6 @@ _FEATURES: dict[str, tuple[Callable[..., Any], Any]] = {
     lsp.TEXT_DOCUMENT_HOVER: (_hover, None),
     lsp.TEXT_DOCUMENT_DEFINITION: (_definition, None),
     lsp.TEXT_DOCUMENT_REFERENCES: (_references, None),
-    lsp.TEXT_DOCUMENT_RENAME: (_rename, None),
     lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: (_symbols, None),
     lsp.TEXT_DOCUMENT_CODE_ACTION: (_fixes, lsp.CodeActionOptions([lsp.CodeActionKind.QuickFix])),
     lsp.TEXT_DOCUMENT_COMPLETION: (_completion, lsp.CompletionOptions(["."])),

@@ -80,9 +80,9 @@ def _formula(formula: Formula, level: int) -> str:
         case Constant(value=value):
             return "true" if value else "false"
         case SignalAtom(name=name) | EventAtom(name=name):
-            return format_name(name)
+            return _name(name)
         case ProbeAtom(probe=probe, name=name):
-            return f"{probe}({format_name(name)})"
+            return f"{probe}({_name(name)})"
         case BoundAtom(bound=bound):
             return str(bound)
         case Compare(left=left, right=Literal(value=bool())):  # a bool payload field and its kin
@@ -173,11 +173,11 @@ def _numeric(numeric: Numeric, level: int) -> str:
         case Literal():
             return _literal(numeric, level)
         case SignalValue(name=name) | Captured(name=name):
-            return format_name(name)
+            return _name(name)
         case FieldValue(event=event, field=field):
-            return format_name(f"{event}.{field}")
+            return _name(f"{event}.{field}")
         case UpdateValue(function=function, name=name):
-            return f"{function}({format_name(name)})"
+            return f"{function}({_name(name)})"
         case Arithmetic():
             own = _ARITHMETIC.get(numeric.op, _OPERAND)
             text = _arithmetic(numeric)
@@ -202,7 +202,7 @@ def _arithmetic(numeric: Arithmetic) -> str:
 
 def _literal(literal: Literal, level: int) -> str:
     if isinstance(literal.value, str):
-        return format_name(literal.value)
+        return _name(literal.value)
     text = format(Decimal(repr(literal.value)).normalize(), "f")
     if len(text) > 20:
         text = repr(literal.value)
@@ -214,7 +214,7 @@ def _literal(literal: Literal, level: int) -> str:
     return f"({text})" if literal.value < 0 and level > _NEGATIVE else text
 
 
-def format_name(name: str) -> str:
+def _name(name: str) -> str:
     """A name, in quotes if it would be read as something else."""
     plain = all(part.isidentifier() for part in name.split("."))
     return name if plain and name not in RESERVED else f"`{name}`"
