@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 
 from rvmon.errors import RvmonError
@@ -30,6 +31,8 @@ def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way 
         raise RvmonError(
             "the language server needs pygls, which is not installed: pip install 'rvmon[lsp]'"
         ) from None
+    for ending in (signal.SIGINT, signal.SIGTERM):  # at once: a thread waits for the editor
+        signal.signal(ending, lambda *_: os._exit(130))
     # Standard output is the protocol's alone: what anything else prints there goes to the log.
     with os.fdopen(os.dup(1), "wb") as answers:
         os.dup2(2, 1)
