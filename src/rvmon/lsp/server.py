@@ -155,8 +155,12 @@ def _references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Locatio
     if key is None:
         return []
     documents = [server.document(uri) for uri in server.texts]
-    places = [d.location(span) for d in documents for span in d.uses(key)]
-    return [place for number, place in enumerate(places) if place not in places[:number]]
+    places = {  # several documents may import the same file
+        (span.source.name, span.start): document.location(span)
+        for document in documents
+        for span in document.uses(key)
+    }
+    return list(places.values())
 
 
 def _symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
