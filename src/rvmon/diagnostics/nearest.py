@@ -36,7 +36,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     return f"did you mean `{close}`?" if close else otherwise
 
 
-_PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d]+)`\Z")
+_PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d{]+)`\Z")
 
 
 def proposed(mend: str) -> str:

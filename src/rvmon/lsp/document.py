@@ -131,8 +131,7 @@ class Document:
         inside = (p for p in proposals if p[2] and p[1].start <= end and start <= p[1].end)
         for finding, span, instead in islice(inside, MOST_FIXES):
             text = self.source.text[: span.start] + instead + self.source.text[span.end :]
-            after = self._compiled(Source(self.source.name, text))
-            if len(after.findings) < len(self.compiled.findings):
+            if _badness(self._compiled(Source(self.source.name, text))) < _badness(self.compiled):
                 place = self.text.range(span.start, span.end)
                 yield lsp.CodeAction(
                     f"Write `{instead}`",
@@ -181,6 +180,11 @@ class Document:
     def uses(self, key: Key) -> Iterator[Span]:
         """All places of the names that stand for a declaration."""
         return (span for span, target in self.names.all() if _key(target) == key)
+
+
+def _badness(compiled: Compilation) -> tuple[int, int]:
+    found = compiled.findings
+    return sum(one.severity is Severity.ERROR for one in found), len(found)
 
 
 @cache

@@ -5,9 +5,6 @@ from pathlib import Path
 from types import MappingProxyType
 
 import pytest
-
-pytest.importorskip("pygls")
-
 from lsprotocol.types import Position, Range
 from pygls.uris import to_fs_path
 
@@ -200,7 +197,7 @@ def test_findings_of_other_files():
     ]
 
 
-FIXED = {"RV012", "RV013", "RV014"}
+FIXED = {"RV012", "RV013", "RV014", "RV023", "RV030", "RV032", "RV045", "RV052"}
 
 
 def test_fixes_mend():
@@ -220,6 +217,8 @@ def test_fixes_mend():
             )
             mended.add(code)
     assert mended == FIXED
+    sign = "event a, b\nrequirement R a → b\n"
+    assert [fix.title for fix in document(sign).fixes(everywhere)] == ["Write `->`"]
 
 
 def test_no_fix_that_makes_things_worse():

@@ -2,12 +2,8 @@
 
 import re
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-pytest.importorskip("pygls")
-
 from lsprotocol.types import (
     Position,
     Range,
