@@ -165,10 +165,12 @@ class Document:
         place = self.place(position)
         item = self.names.item_at(place)
         if isinstance(item, ImportItem):
-            folder = self._folder or Path()
-            named = f"{item.target}/" if item.library else str(folder / item.target)
+            file = str((self._folder or Path()) / item.target)
             sources = (file.source for file in self.compiled.files[1:])
-            return [self.location(Span(s, 0, 0)) for s in sources if s.name.startswith(named)]
+            meant = (
+                s for s in sources if s.name == file or str(Path(s.name).parent) == item.target
+            )
+            return [self.location(Span(source, 0, 0)) for source in meant]
         found = self.names.at(place)
         return [self.location(found[1].span)] if found else []
 
@@ -197,7 +199,8 @@ def _page(code: str) -> lsp.CodeDescription | None:
     with suppress(OSError):
         path.parent.mkdir(mode=0o700, exist_ok=True)
         write_whole(str(path), page_of(code))
-    return lsp.CodeDescription(path.as_uri())
+        return lsp.CodeDescription(path.as_uri())
+    return None
 
 
 def _address(source: Source) -> str:

@@ -101,13 +101,12 @@ class Names:
     def of(self, item: Item) -> Iterator[Use]:
         """Every place of a name in an item."""
         nodes = list(_nodes(item))
-        own = own_names(item)
+        own = _own(item)
         labels = {id(name) for node in nodes for name in self._labels(node)}
-        places = {id(name) for name in (*self.declared.values(), *self.goals.values())}
-        places.update(map(id, own.values()))
+        places = {id(name) for name in own.values()}
         for node in nodes:
             match node:
-                case Ident() if id(node) in places:
+                case Ident() if id(node) in places or id(node) in self.owners:
                     yield node.span, node
                 case Call(function=function) if function.text in self.declared:
                     yield function.span, self.declared[function.text]
@@ -153,7 +152,7 @@ class Names:
             yield from (n for n in _nodes(values) if isinstance(n, Name) and n.text in known)
 
 
-def own_names(item: Item | None) -> dict[str, Ident]:
+def _own(item: Item) -> dict[str, Ident]:
     """Names that only an item knows: parameters, captured values, the value of `for each`."""
     match item:
         case DefineItem(parameters=parameters):

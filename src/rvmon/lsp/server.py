@@ -56,7 +56,7 @@ class Server(LanguageServer):
             self.feature(name, options)(answer)
         self.texts: dict[str, Text] = {}
         self._documents: dict[str, Document] = {}
-        self._sent: dict[str, Document | None] = {}
+        self._sent: dict[str, Document] = {}
 
     def document(self, uri: str) -> Document:
         """A document as it is now."""
@@ -192,7 +192,7 @@ def _completion(server: Server, params: lsp.CompletionParams) -> list[lsp.Comple
 def _format(server: Server, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
     text = server.texts[params.text_document.uri]
     try:
-        laid_out = format_text(text.raw.replace("\r\n", "\n").replace("\r", "\n"))
+        laid_out = format_text(text.code)
     except SpecError:
         return []  # what is wrong is shown already
     if "\r\n" in text.raw:
