@@ -39,11 +39,11 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
 _PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d{]+)`\Z")
 
 
-def proposed(mend: str) -> str:
-    """What a mend proposes to write in place of what is wrong; empty if that is not all of it.
+def proposed(help_: str) -> str:
+    """What a help proposes to write in place of what is wrong; empty if that is not all of it.
 
     >>> proposed("did you mean `released`?  (event, line 9)"), proposed("put brackets around it")
     ('released', '')
     """
-    found = _PROPOSED.match(mend)
+    found = _PROPOSED.match(help_)
     return found[1] or found[2] if found else ""

@@ -24,8 +24,8 @@ def _about(names: Names, checked: CheckedSpec | None, name: Ident) -> str:
     item = names.item_at(name.span)
     own = checked.requirements.get(name.text) if checked else None
     if own is not None and isinstance(item, RequirementItem) and name is item.name:
-        told = {"source": own.source, "rationale": own.rationale, "severity": own.severity}
-        clauses = [f"*{word}*: {text}" for word, text in told.items() if text]
+        kept = {"source": own.source, "rationale": own.rationale, "severity": own.severity}
+        clauses = [f"*{word}*: {text}" for word, text in kept.items() if text]
         words = "  \n".join(requirement_in_words(own))
         return "\n\n".join([f"**{own.id}** {own.text}", words, *clauses])
     clauses_ = item.clauses if isinstance(item, RequirementItem) else ()

@@ -123,11 +123,11 @@ def test_names_in_what_cannot_be_read():
 
 def test_a_requirement_in_words():
     """Over its name stands what it means, as `rvmon explain` says it, and where it comes from."""
-    word, told = about(document(SPEC), after(SPEC, "R1"))
+    word, text = about(document(SPEC), after(SPEC, "R1"))
     assert word == "R1"
-    assert "What is picked moves" in told
-    assert "within 3 s, moving occurs" in told
-    assert "ISO 0000" in told
+    assert "What is picked moves" in text
+    assert "within 3 s, moving occurs" in text
+    assert "ISO 0000" in text
 
 
 def test_declarations():
@@ -147,9 +147,9 @@ def test_words_of_the_language():
     parts = {part for word in meanings() for part in word.split()}
     words = (RESERVED | INFIX_WORDS | CLAUSE_WORDS) - {"A", "E", "true", "false"}
     assert words <= parts
-    word, told = about(document(SPEC), after(SPEC, "after 200"))
+    word, text = about(document(SPEC), after(SPEC, "after 200"))
     assert word == "stale after"
-    assert told == meanings()["stale after"]
+    assert text == meanings()["stale after"]
 
 
 def test_nothing_is_said_about_texts_and_comments():
@@ -189,7 +189,7 @@ def test_findings():
 
 
 def test_findings_of_other_files():
-    """What is wrong in an imported file is told of that file."""
+    """What is wrong in an imported file is reported of that file."""
     of = document('import "a.rv"\nrequirement R always p\n', {"a.rv": "signal p : boo\n"})
     assert [(uri, len(found)) for uri, found in of.diagnostics.items()] == [
         (of.uri, 0),

@@ -39,7 +39,7 @@ class Editor:
         """What requests call a document."""
         return lsp.TextDocumentIdentifier((self.folder / name).as_uri())
 
-    async def told(self):
+    async def notified(self):
         """Wait for the next findings."""
         method = lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
         return await asyncio.wait_for(self.client.wait_for_notification(method), 60)
@@ -48,7 +48,7 @@ class Editor:
         """Open a document, and give what was found in it, each by code and place."""
         item = lsp.TextDocumentItem(self.document(name).uri, "rv", 1, text)
         self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
-        await self.told()
+        await self.notified()
         return self.found(name)
 
     def type(self, name, line, start, end, text):
@@ -88,7 +88,7 @@ def test_a_session(tmp_path):
             assert await of.open("signals.rv", "event ask\n") == []
             assert await of.open("main.rv", MAIN) == [("RV012", "2:44-2:49")]
             of.type("signals.rv", 0, 9, 9, ", answer")
-            await of.told()
+            await of.notified()
             document = of.document("main.rv")
             at = lsp.Position(2, 45)
             context = lsp.CodeActionContext([])
@@ -101,11 +101,11 @@ def test_a_session(tmp_path):
                 place = 44 + number
                 of.type("main.rv", 2, place, place if number else 49, letter)
             while of.found("main.rv"):
-                await of.told()
-            told = await of.client.text_document_hover_async(
+                await of.notified()
+            shown = await of.client.text_document_hover_async(
                 lsp.HoverParams(document, lsp.Position(2, 12))
             )
-            assert "within 3 s, answer occurs" in told.contents.value
+            assert "within 3 s, answer occurs" in shown.contents.value
             (place,) = await of.client.text_document_definition_async(
                 lsp.DefinitionParams(document, at)
             )
@@ -123,7 +123,7 @@ def test_a_session(tmp_path):
             )
             assert [(one.name, one.detail) for one in outline] == [("R", "😋")]
             of.client.text_document_did_close(lsp.DidCloseTextDocumentParams(document))
-            await of.told()
+            await of.notified()
             assert of.client.diagnostics[document.uri] in ([], ())
 
     asyncio.run(session())
