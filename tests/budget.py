@@ -39,6 +39,7 @@ BUDGETS = {
     "tests/rvmon/formula": 2,
     "tests/rvmon/laws": 75,
     "tests/rvmon/live": 15,
+    "tests/rvmon/lsp": 8,
     "tests/rvmon/monitor": 180,
     "tests/rvmon/readers": 60,
     "tests/rvmon/report": 12,

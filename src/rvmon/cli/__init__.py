@@ -31,6 +31,7 @@ COMMANDS = {
     "run": "check recordings against a specification",
     "watch": "monitor a running robot: verdicts as they are decided",
     "format": "lay specifications out in the canonical form",
+    "lsp": "the language server that editors start",
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
     "clip": "a recording cut around an attempt; a file that reproduces it",

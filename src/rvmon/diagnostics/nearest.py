@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from itertools import islice
 
@@ -33,3 +34,16 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     """
     close = nearest(name, known)
     return f"did you mean `{close}`?" if close else otherwise
+
+
+_PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d{]+)`\Z")
+
+
+def proposed(help_: str) -> str:
+    """What a help proposes to write in place of what is wrong; empty if that is not all of it.
+
+    >>> proposed("did you mean `released`?  (event, line 9)"), proposed("put brackets around it")
+    ('released', '')
+    """
+    found = _PROPOSED.match(help_)
+    return found[1] or found[2] if found else ""

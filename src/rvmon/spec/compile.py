@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.render import render_full
 from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
 from rvmon.spec.check.specification import check
 from rvmon.spec.checked.specification import CheckedSpec
@@ -18,6 +20,27 @@ from rvmon.spec.names.unused import unused_names
 from rvmon.spec.rules.findings import MOST, Enough, Findings
 from rvmon.spec.rules.syntax import empty_file, too_many
 from rvmon.spec.syntax.imports import load_files
+from rvmon.spec.syntax.items import ParsedSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Compilation:
+    """What the passes made of a text, right or wrong.
+
+    Attributes:
+        files: the text and what it imports, the items that could be read.
+        checked: what could be checked; `None` if there were too many errors.
+        findings: errors and warnings, those of the text itself first, in order of place.
+    """
+
+    files: Sequence[ParsedSpec]
+    checked: CheckedSpec | None
+    findings: tuple[Diagnostic, ...]
+
+    @property
+    def broken(self) -> bool:
+        """Whether a finding is an error."""
+        return _errors(self.findings)
 
 
 def compile_text(
@@ -45,12 +68,32 @@ def compile_text(
     >>> spec.requirements["R"].pulse, warnings
     (True, ())
     """
-    source = Source(name, text)
+    made = compilation(Source(name, text), directory, constants or {})
+    if made.checked is None or made.broken:
+        raise SpecError(made.findings, render_full(made.findings))
+    return made.checked, made.findings
+
+
+def compilation(
+    source: Source,
+    directory: Path | None,
+    constants: Mapping[str, str],
+    read: Callable[[Path], str] = text_of_file,
+) -> Compilation:
+    """Compile a text as far as that goes; arguments as of `compile_text`.
+
+    Args:
+        source: the text.
+        directory: where imports are looked up.
+        constants: to override.
+        read: gives the text of a file that is imported.
+    """
     findings = Findings()
     checked: CheckedSpec | None = None
+    files: Sequence[ParsedSpec] = ()
     with suppress(Enough):
-        files = load_files(source, directory, findings)
-        files = overridden(files, constants or {}, findings)
+        files = load_files(source, directory, findings, read)
+        files = overridden(files, constants, findings)
         resolved = resolve(files, findings)
         checked = check(resolved, findings)
         if not _errors(findings.found):
@@ -58,12 +101,9 @@ def compile_text(
         if not files[0].items and not findings.found:
             findings.add(empty_file(Span(source, 0, 0)))
     found = sorted(findings.found, key=lambda finding: _place(finding, source))
-    broken = _errors(found)
     if findings.more:
-        found.append(too_many(MOST, broken=broken))
-    if checked is None or broken:
-        raise SpecError(found, render_full(found))
-    return checked, tuple(found)
+        found.append(too_many(MOST, broken=_errors(found)))
+    return Compilation(files, checked, tuple(found))
 
 
 def _errors(findings: Iterable[Diagnostic]) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from contextlib import suppress
 from typing import Any
 
 import lark
@@ -89,7 +88,7 @@ def explain_unexpected(
         rule: the start rule.
     """
     place = _place(error, source, start, end)
-    accepted = _accepted(parser, source.text[start:end], rule)
+    accepted, _ = accepted_terminals(parser, source.text[start:end], rule)
     found = place.text
     nameless = found in NAMELESS and source.text[start : place.start].split() == ["requirement"]
     if found in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
@@ -119,12 +118,19 @@ def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span
     return Span(source, last, last)
 
 
-def _accepted(parser: lark.Lark, text: str, rule: str) -> set[str]:
-    """The terminals with which the text could really go on; the error's own list is too long."""
+def accepted_terminals(parser: lark.Lark, text: str, rule: str) -> tuple[set[str], bool]:
+    """The terminals with which a text could really go on; the list of an error is too long.
+
+    Returns:
+        They, and whether the text can be read up to its end.
+    """
     interactive: Any = parser.parse_interactive(text, start=rule)
-    with suppress(UnexpectedInput):
+    try:
         interactive.exhaust_lexer()
-    return set(interactive.accepts())
+        read = True
+    except UnexpectedInput:
+        read = False
+    return set(interactive.accepts()), read
 
 
 def _in_words(accepted: set[str], parser: lark.Lark) -> str:

@@ -147,7 +147,7 @@ def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) ->
         return ""
     if "LBRACE" in accepted and found.lower() in _TYPES:
         return f"write `{_TYPES[found.lower()]}`"
-    words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", _word_pattern(t, parser))]
+    words = [w for t in accepted for w in re.findall(r"[a-z]{3,}", word_pattern(t, parser))]
     close = nearest(found, sorted({*words, *ITEM_WORDS}), 0.75)
     if close and close != found:
         return f"did you mean `{close}`?"
@@ -185,7 +185,8 @@ def _decimal_comma(text: str) -> str:
     return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
 
 
-def _word_pattern(terminal: str, parser: lark.Lark) -> str:
+def word_pattern(terminal: str, parser: lark.Lark) -> str:
+    """The pattern of a terminal that stands for words; empty if it is another."""
     if terminal in ("$END", "NAME", "NUMBER", "CALL", "UNIT", "STRING"):
         return ""
     return str(parser.get_terminal(terminal).pattern.value)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib import resources
 from pathlib import Path
 
@@ -20,27 +20,34 @@ LIBRARIES = ("patterns",)
 """Folders of this package with specifications that can be imported by name."""
 
 
-def load_files(source: Source, directory: Path | None, findings: Findings) -> list[ParsedSpec]:
+def load_files(
+    source: Source,
+    directory: Path | None,
+    findings: Findings,
+    read: Callable[[Path], str] = text_of_file,
+) -> list[ParsedSpec]:
     """Read a file and those it imports.
 
     Args:
         source: the main file.
         directory: its folder; default the current one.
         findings: takes what is wrong with how they are written or imported.
+        read: gives the text of an imported file.
 
     Returns:
         The main file, then the imported ones in the order of their first import.
     """
-    loader = _Loader(findings, tree_of(directory or Path()))
+    loader = _Loader(findings, tree_of(directory or Path()), read)
     loader.read(source, directory or Path(), _key(Path(source.name)), ())
     return loader.files
 
 
 class _Loader:
-    def __init__(self, findings: Findings, tree: Tree) -> None:
+    def __init__(self, findings: Findings, tree: Tree, read: Callable[[Path], str]) -> None:
         self.files: list[ParsedSpec] = []
         self._findings = findings
         self._tree = tree
+        self._text = read
         self._seen: set[str] = set()
 
     def read(
@@ -58,7 +65,7 @@ class _Loader:
         self, item: ImportItem, directory: Path, path: tuple[tuple[str, ImportItem], ...]
     ) -> None:
         try:
-            for source, folder, key in _sources(item, directory, self._tree):
+            for source, folder, key in self._sources(item, directory):
                 circle = [step for _, step in path[_index(path, key) :]]
                 if circle:
                     self._findings.add(rules.circle(item.span, circle[0].span))
@@ -69,40 +76,38 @@ class _Loader:
         except Refusal as refusal:
             self._findings.add(refusal.finding)
 
+    def _sources(self, item: ImportItem, directory: Path) -> Iterator[tuple[Source, Path, str]]:
+        """The texts that an import means, each with its folder and a key of its own."""
+        if not item.library:
+            path = directory / item.target
+            yield Source(str(path), self._read(path, item)), path.parent, _key(path)
+            return
+        if item.target not in LIBRARIES:
+            raise Refusal(rules.unknown_library(item.span, item.target, LIBRARIES))
+        folder = resources.files("rvmon.spec") / item.target
+        for file in sorted(folder.iterdir(), key=lambda entry: entry.name):
+            if file.name.endswith(".rv"):
+                name = f"{item.target}/{file.name}"
+                text = file.read_text(encoding="utf-8")
+                yield Source(name, text), Path(), f"library {name}"
+
+    def _read(self, file: Path, item: ImportItem) -> str:
+        try:
+            if not self._tree.holds(file):
+                raise Refusal(rules.outside(item.span, item.target, str(self._tree.root)))
+            return self._text(file)
+        except OSError as error:
+            reason = error.strerror or str(error)
+        except UnicodeDecodeError:
+            reason = "it is not UTF-8 text"
+        except ValueError as error:  # a null character in the name
+            reason = str(error)
+        raise Refusal(rules.unreadable(item.span, item.target, reason))
+
 
 def _index(path: tuple[tuple[str, ImportItem], ...], key: str) -> int:
     keys = [step for step, _ in path]
     return keys.index(key) if key in keys else len(keys)
-
-
-def _sources(item: ImportItem, directory: Path, tree: Tree) -> Iterator[tuple[Source, Path, str]]:
-    """The texts that an import means, each with its folder and a key of its own."""
-    if not item.library:
-        path = directory / item.target
-        yield Source(str(path), _text(path, item, tree)), path.parent, _key(path)
-        return
-    if item.target not in LIBRARIES:
-        raise Refusal(rules.unknown_library(item.span, item.target, LIBRARIES))
-    folder = resources.files("rvmon.spec") / item.target
-    for file in sorted(folder.iterdir(), key=lambda entry: entry.name):
-        if file.name.endswith(".rv"):
-            name = f"{item.target}/{file.name}"
-            text = file.read_text(encoding="utf-8")
-            yield Source(name, text), Path(), f"library {name}"
-
-
-def _text(file: Path, item: ImportItem, tree: Tree) -> str:
-    try:
-        if not tree.holds(file):
-            raise Refusal(rules.outside(item.span, item.target, str(tree.root)))
-        return text_of_file(file)
-    except OSError as error:
-        reason = error.strerror or str(error)
-    except UnicodeDecodeError:
-        reason = "it is not UTF-8 text"
-    except ValueError as error:  # a null character in the name
-        reason = str(error)
-    raise Refusal(rules.unreadable(item.span, item.target, reason))
 
 
 def _key(path: Path) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from typing import Any
 
@@ -28,6 +28,9 @@ from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, OPERATOR_TERMINALS, R
 
 DEEPEST = 100
 """Expressions nested more deeply are refused."""
+
+KEPT = 4_000
+"""Trees of items that are kept for the next time that the same text is read."""
 
 _NO_CODE = re.compile(r'"[^"\n]*"|`[^`\n]*`|#[^\n]*')
 _OPERATOR = re.compile(r"(?<![\w.])(?:and|or|xor|implies|iff)(?![\w.])|&&?|\|\|?|[+*]")
@@ -76,7 +79,7 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
         return None, [rules.too_large(place, LARGEST)]
     builder = Builder(source, start)
     try:
-        tree = grammar().parse(source.text[start:end], start=rule)
+        tree = _tree(source.text[start:end], rule)
         if _depth(tree) > DEEPEST:
             place = Span(source, start, start + len(source.text[start:end].rstrip()))
             return None, [rules.too_deep(place, DEEPEST)]
@@ -87,6 +90,12 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
         if isinstance(error.orig_exc, Refusal):
             return None, [error.orig_exc.finding]
         raise
+
+
+@lru_cache(KEPT)
+def _tree(text: str, rule: str) -> lark.Tree[Any]:
+    """The parser's tree; those of items that stay as they are while a file is edited are kept."""
+    return grammar().parse(text, start=rule)
 
 
 def _operators(text: str) -> int:

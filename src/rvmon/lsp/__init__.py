@@ -1,0 +1,1 @@
+"""A language server for specifications: what editors ask about a text that is being written."""
