@@ -130,15 +130,28 @@ class Run:
             self.found.append(_apart(wanted, got))
 
     def see_next_due(self) -> None:
-        """Both name the same next instant; that of a network may come in vain, but not too late."""
+        """Both name the same next instant; that of a network may come in vain, but not too late.
+
+        What Python names may come in vain, too: then nothing is decided before the other.
+        """
         plan = self.pair.forms.plan
         has_network = any(rule.automaton is None for rule in plan.rules)
         if not has_network and plan.gap in (None, 1):
             self.both(lambda m: m.next_due)
             return
         wanted, got = _next_decision(self.plain), self.lending.next_due
-        if wanted is not None and (got is None or got > wanted):
+        if (
+            wanted is not None
+            and (got is None or got > wanted)
+            and self._decides_by(wanted if got is None else got - 1)
+        ):
             self.found.append(f"next due: {got} is later than {wanted}")
+
+    def _decides_by(self, t: int) -> bool:
+        """Whether time alone decides something up to an instant."""
+        run = Run(self.pair, self.keep, False)
+        _put_back(self.pair.compiled, run.plain, self.plain.snapshot())
+        return bool(run.plain.advance_ns(t))
 
     def put_away(self, *, across: bool) -> None:
         """Put both away, and take them up again, perhaps each as the other was."""

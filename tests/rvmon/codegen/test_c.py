@@ -122,6 +122,48 @@ def test_all_operators_compile_strictly_and_run_clean(tmp_path):
     assert len(done.stdout.splitlines()) > 20
 
 
+FULL = """
+#include "s.c"
+#include <stdio.h>
+static s_monitor m;
+static s_attempt attempts[2];
+static void hear_of(void *user, const s_record *r) {
+    (void)user;
+    printf("%d%d ", r->requirement, r->verdict);
+}
+int main(void) {
+    static const double x[] = {1, 1, 5, 1, 1};
+    int i;
+    s_init(&m, attempts, 2, hear_of, NULL);
+    for (i = 0; i < 5; i++) {
+        s_sample sample = {0};
+        sample.signal[0] = s_YES;
+        sample.value[0] = x[i];
+        sample.event[0] = s_YES;
+        if (!s_step(&m, i * INT64_C(3600000000000), &sample)) { return 1; }
+    }
+    printf("%d", s_overflowed(&m));
+    return 0;
+}
+"""
+
+
+def test_where_no_attempt_has_room_an_episode_goes_on_without(tmp_path):
+    """It is not looked for room at each nanosecond of the hours that follow the failure."""
+    spec = rvmon.loads(
+        "spec s\nsignal x : real\nevent e\n"
+        "requirement R1\n  always x <= 3\nrequirement R2\n  upon e then eventually x > 9\n"
+    )
+    for name, text in c_files(spec.plan()).texts.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "main.c").write_text(FULL)
+    subprocess.run(["gcc", "main.c", "-o", "main"], cwd=tmp_path, check=True)  # noqa: S607
+    done = subprocess.run(  # noqa: S603
+        [tmp_path / "main"], capture_output=True, text=True, check=True, timeout=20
+    )
+    assert done.stdout == "00 1"
+
+
 def test_the_source_allocates_nothing_and_needs_little():
     """No heap, no recursion into libc: only freestanding headers and string.h."""
     made = c_files(rvmon.loads(SPEC).plan())

@@ -1,6 +1,7 @@
 """The engine `auto` with compiled code beside it: nobody can tell but by speed."""
 
 import random
+import tracemalloc
 
 import pytest
 from tests.tools.differential import cases_of
@@ -76,7 +77,7 @@ def test_both_say_the_same_of_random_cases(time, seed):
 
 
 WITHOUT_AUTOMATON = {
-    "held": "always F[0 ns, 30 ns] G[0 ns, 1 ns] q",
+    "held": "always F[0 ns, 30 ns] G[0 ns, 9 ns] q",
     "sampled": "whenever p then ((F[2 ns, 7 ns] q) or (r U[0 ns, 9 ns] not q))",
     "sampled every 2 ns": "whenever p then F[4 ns, 10 ns] G[0 ns, 6 ns] (q or r)",
 }
@@ -96,15 +97,18 @@ def test_both_say_the_same_where_a_network_judges(time):
     assert sum(taken for _, taken in found) > 0
 
 
+OPEN = "time held\nsignal q : bool\nrequirement R\n  always F[0 ns, 30 ns] G[0 ns, 9 ns] q\n"
+
+
 def test_an_attempt_that_stays_open_is_judged_alike():
     """Over many more letters than are noted at once, and asked for now and then."""
-    text = "time held\nsignal q : bool\nrequirement R\n  always F[0 ns, 30 ns] G[0 ns, 1 ns] q\n"
-    pair = compiled_beside(rvmon.loads(text).checked)
+    pair = compiled_beside(rvmon.loads(OPEN).checked)
     assert pair is not None
+    assert [rule.automaton for rule in pair.forms.plan.rules] == [None]
     run = Run(pair, None, listens=False)
     asked = 0
     for t in range(1, 3000, 2):
-        values = {"q": t % 4 == 1 and t % 700 < 660}
+        values = {"q": (t % 30 < 12 or t % 4 == 1) and t % 700 < 660}
         run.both(lambda monitor, t=t, values=values: [*map(repr, monitor.step_ns(t, values))])
         if t - asked > 130 + t % 120:
             asked = t
@@ -113,6 +117,24 @@ def test_an_attempt_that_stays_open_is_judged_alike():
     run.both(lambda monitor: repr(monitor.finish_ns(3001).attempts))
     assert run.found == []
     assert run.lending.taken > 300
+
+
+def test_letters_that_no_attempt_can_ask_for_take_no_room():
+    """However long an attempt is open, C keeps those within the reach of its windows."""
+    pair = compiled_beside(rvmon.loads(OPEN).checked)
+    assert pair is not None
+    assert [rule.automaton for rule in pair.forms.plan.rules] == [None]
+    run = Run(pair, None, listens=False)
+    tracemalloc.start()
+    try:
+        for t in range(0, 60_000, 3):
+            assert not run.lending.step_ns(t, {"q": t % 30 < 15 or t % 2 == 0})
+        taken, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert taken < 100_000
+    run.lending.finish()
+    assert run.lending.taken > 19_000
 
 
 def test_reports_are_the_same(pair):

@@ -7,6 +7,7 @@ import pytest
 
 import rvmon
 from rvmon.cli import main
+from rvmon.monitor.c.prepare import Prepared
 from rvmon.monitor.compiled.refusal import of_prepared_margins
 from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
@@ -78,6 +79,21 @@ def test_the_command_says_what_is_ready(form, tmp_path, capsys):
         head, *lines = told.splitlines()
         assert head.split() == ["for", "took", "size", "file"]
         assert [line.split("  ")[0] for line in lines] == USES
+
+
+def test_the_command_says_what_auto_does_not_take(tmp_path, capsys, monkeypatch):
+    """Each requirement that stands in the way, and why."""
+    found = (Prepared("streams", tmp_path / "s.so", 1000, 0.1),)
+    monkeypatch.setattr(rvmon.Spec, "prepare", lambda *_, **__: found)
+    more = "requirement R9\n  upon p then within 3 s x > a let a = x\n"
+    text = f"spec s\nsignal p : bool\nsignal x : real\nrequirement R1\n  always p\n{more}"
+    (tmp_path / "s.rv").write_text(text)
+    assert main(["prepare", str(tmp_path / "s.rv")]) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert told[-2:] == [
+        "auto judges streams in Python: it takes all requirements or none, and not",
+        "  R9: uses `let`",
+    ]
 
 
 def test_a_requirement_that_c_refuses_is_named(tmp_path, capsys):
