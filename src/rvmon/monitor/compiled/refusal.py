@@ -82,6 +82,7 @@ _MODERATE = 1e50
 """Sums and a few products of numbers up to this magnitude are finite."""
 
 _AUTO = "use the engine `auto`"
+_BY_NAME = "use the engine `automaton` if few attempts are open"
 _LEAVE_OUT = "leave it out (`only`, --only), or use the engine `auto`"
 
 
@@ -137,7 +138,8 @@ def _of_captured(one: CompiledRequirement) -> Refusal | None:
 
 def of_generated(one: CompiledRequirement) -> Refusal | None:
     """What generated Python cannot judge."""
-    return _of_captured(one) or of_tables(one)
+    slow = Refusal("has an automaton that steps each open attempt", _BY_NAME, "network")
+    return _of_captured(one) or of_tables(one) or (slow if one.follows_windows else None)
 
 
 def of_tables(one: CompiledRequirement) -> Refusal | None:
@@ -177,7 +179,8 @@ def of_measured_c(one: CompiledRequirement) -> Refusal | None:
 
 def of_prepared(one: CompiledRequirement) -> Refusal | None:
     """What `auto` does not have compiled C judge, be that prepared: Python does all of it."""
-    generated = _of_captured(one) if one.automaton is None else of_generated(one)
+    by_network = one.engine("auto") == "network"
+    generated = _of_captured(one) if by_network else of_generated(one)
     reason = _beyond_prepared(one) if generated is None else generated.reason
     return Refusal(reason, _AUTO, "python") if reason else None
 
@@ -197,7 +200,7 @@ def of_prepared_margins(one: CompiledRequirement) -> Refusal | None:
 def _beyond_prepared(one: CompiledRequirement) -> str:
     if one.automaton is None and one.reach is None:
         return f"has no automaton ({one.refusal}), nor bounds within what `always` demands"
-    if len(one.network_plan.leaves) > _MOST_BITS and one.automaton is None:
+    if len(one.network_plan.leaves) > _MOST_BITS and one.engine("auto") == "network":
         return f"tells more than {_MOST_BITS} propositions apart"
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
@@ -298,7 +301,7 @@ def _remembers(state: State) -> bool:
 
 def of_columns(one: CompiledRequirement) -> Refusal | None:
     """What is not judged by arrays: it needs more than one clock, or more than present values."""
-    generated = of_generated(one)
+    generated = _of_captured(one) or of_tables(one)
     if generated is not None:
         return Refusal(generated.reason, _AUTO, generated.engine)
     reason = _beyond_columns(one)

@@ -17,7 +17,7 @@ from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.codegen.python_windows import windows_class
-from rvmon.dataflow.chain import Windows, chain_of, reach_of
+from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.soonest_news import delay_of
@@ -51,7 +51,7 @@ class CompileReport:
     """What became of a requirement.
 
     Attributes:
-        engine: `automaton`, or `network` where that does not close.
+        engine: `automaton`, or `network` where that does not close, or would be slower.
         why: why it has no automaton; empty if it has one.
         letters: what its propositions can be, as its formula tells them apart.
         horizon: ticks from the trigger within which an attempt is decided; `None` if unbounded.
@@ -154,6 +154,21 @@ class CompiledRequirement:
             and moves_in_runs(automaton)
         )
 
+    @cached_property
+    def follows_windows(self) -> bool:
+        """Whether generated windows, within windows, judge it though it has an automaton.
+
+        That steps each open attempt by itself; the windows are one step for all of them.
+        """
+        return (
+            self.is_fed
+            and self.obligation.trigger is not None
+            and self._chain is not None
+            and len(self._chain.windows) > 1
+            and self.automaton is not None
+            and not self.in_runs(self.automaton)
+        )
+
     @property
     def report(self) -> CompileReport:
         """How it is judged, and at what cost."""
@@ -165,7 +180,7 @@ class CompiledRequirement:
         live = automaton.locations[PASSED + 1 :]
         parts = sum(len(place.cuts[0]) + 1 if place.cuts else 1 for place in live)
         return CompileReport(
-            "automaton",
+            self.engine("auto"),
             "",
             letters,
             reach,
@@ -223,9 +238,13 @@ class CompiledRequirement:
         return plan_of(self.obligation.owed, self.gap)
 
     @cached_property
+    def _chain(self) -> Chain | None:
+        return None if self.is_beside else chain_of(self.network_plan, self.gap)
+
+    @cached_property
     def windows(self) -> type[Windows] | None:
         """What follows its network's windows; `None` if they are no chain."""
-        chain = None if self.is_beside else chain_of(self.network_plan, self.gap)
+        chain = self._chain
         return None if chain is None else windows_class(self.network_plan, chain, self.gap)
 
     @cached_property
@@ -289,7 +308,9 @@ class CompiledRequirement:
         """
         if name in ("network", "progression"):
             return name
-        return "network" if self.automaton is None else "automaton"
+        if self.automaton is None or (self.follows_windows and name != "automaton"):
+            return "network"
+        return "automaton"
 
     def machine(self, engine: str) -> Machine:
         """The machine that judges its attempts, if it is none of `network`.
