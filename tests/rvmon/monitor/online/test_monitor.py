@@ -229,7 +229,9 @@ def test_the_compile_report_says_what_became_of_a_requirement():
     ]
     assert report.engine == "network"
     assert "more than" in report.why
-    windows = rvmon.loads("signal p : bool\nevent e\nR: upon e then within 5 s for 3 s p")
+    windows = rvmon.loads(
+        "signal p : bool\nevent e\nrequirement R\n  upon e then within 5 s for 3 s p"
+    )
     [report] = map(compile_report, compile_spec(windows.checked).requirements.values())
     assert (report.engine, report.locations) == ("network", 0)
     assert report.why == "its automaton steps each open attempt"
