@@ -12,6 +12,7 @@ from benchmarks.contenders import OURS
 
 import rvmon
 from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled.costs import compile_report
 from rvmon.testing.peers.client import Peer, PeerError
 
 SPEC = """spec open
@@ -61,7 +62,7 @@ def measure_open(
         PeerError: it takes longer, and what was measured before has been given out; or the
             compiler does not promise that so many cost no more than one.
     """
-    report = compile_spec(rvmon.loads(SPEC).checked).requirements["R1"].report
+    report = compile_report(compile_spec(rvmon.loads(SPEC).checked).requirements["R1"])
     if not report.in_runs:
         raise PeerError("the compiler has not proved that open attempts can be kept in runs")
     for count in counts:

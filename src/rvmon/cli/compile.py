@@ -85,9 +85,10 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
     compiled = compile_spec(spec.checked)
     chosen = [one for name, one in compiled.requirements.items() if ids is None or name in ids]
     if form == "costs":
+        from rvmon.monitor.compiled.costs import compile_report
         from rvmon.report.costs_text import costs_text
 
-        return costs_text({one.requirement.id: one.report for one in chosen})
+        return costs_text({one.requirement.id: compile_report(one) for one in chosen})
     if form == "hoa":
         from rvmon.export.hoa import hoa
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rvmon.diagnostics.shown import shown_line
-from rvmon.monitor.compiled.requirement import CompileReport
+from rvmon.monitor.compiled.costs import CompileReport
 from rvmon.report.plain_table import plain_table
 from rvmon.spec.print.printer import format_duration
 
@@ -22,7 +22,7 @@ def _row(name: str, report: CompileReport) -> tuple[str, ...]:
     reach = "any time" if report.horizon is None else format_duration(report.horizon)
     letters = f"{report.letters:,}"
     if not report.locations:
-        return name, report.engine, "–", "–", letters, reach, f"one by one ({report.why})"
+        return name, report.engine, "–", "–", letters, reach, f"in one network: {report.why}"
     sizes = (f"{report.locations}", f"{report.clocks}", letters, reach)
     return name, report.engine, *sizes, _open(report)
 

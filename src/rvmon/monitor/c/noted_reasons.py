@@ -22,7 +22,7 @@ class NotedReasons(DeferredReasons):
 
     def __init__(self, compiled: CompiledRequirement, *further: Any) -> None:
         super().__init__(compiled, *further)
-        by_machine = compiled.automaton is not None
+        by_machine = compiled.engine("auto") == "automaton"
         self.details = self._of_machine if by_machine else self._of_network
 
     def _of_machine(self, attempt: Attempt, words: bytes) -> Mapping[str, Any]:

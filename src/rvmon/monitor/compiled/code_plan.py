@@ -17,7 +17,11 @@ from rvmon.spec.checked.selection import requirements_asked
 
 
 def plan_requirements(
-    compiled: CompiledSpec, requirements: Sequence[CompiledRequirement], *, measured: bool = False
+    compiled: CompiledSpec,
+    requirements: Sequence[CompiledRequirement],
+    *,
+    measured: bool = False,
+    stepped: bool = False,
 ) -> Plan:
     """The plan of some requirements of a specification, of which somebody will ask what is owed.
 
@@ -27,21 +31,29 @@ def plan_requirements(
         compiled: the specification.
         requirements: chosen from it.
         measured: whether somebody will ask for the values of all that robustness is made of.
+        stepped: whether automata judge where windows are followed else.
     """
-    key = "plan", tuple(one.requirement.id for one in requirements), measured
+    key = "plan", tuple(one.requirement.id for one in requirements), measured, stepped
     made = compiled.forms.get(key)
     if not isinstance(made, Plan):
-        rules = [_rule(one, explained=True, measured=measured) for one in requirements]
+        how = {"explained": True, "measured": measured, "stepped": stepped}
+        rules = [_rule(one, **how) for one in requirements]
         made = plan_of(compiled.checked, rules)
         compiled.forms[key] = made
     return made
 
 
 def _rule(
-    one: CompiledRequirement, *, explained: bool, hidden: bool = False, measured: bool = False
+    one: CompiledRequirement,
+    *,
+    explained: bool,
+    hidden: bool = False,
+    measured: bool = False,
+    stepped: bool = False,
 ) -> PlannedRule:
     # In this process what judges attempts in doubt is made when one comes up.
-    automaton = None if hidden and explained else _planned(one, explained)
+    is_judged = hidden or (one.follows_windows and not (measured or stepped))
+    automaton = None if is_judged and explained else _planned(one, explained)
     obligation = one.obligation
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)

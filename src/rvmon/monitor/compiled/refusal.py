@@ -81,6 +81,9 @@ _MANY = "remembers more than 60 stretches of time"
 _MODERATE = 1e50
 """Sums and a few products of numbers up to this magnitude are finite."""
 
+STEPS_EACH = "its automaton steps each open attempt"
+"""Why windows judge what `CompiledRequirement.follows_windows`."""
+
 _AUTO = "use the engine `auto`"
 _LEAVE_OUT = "leave it out (`only`, --only), or use the engine `auto`"
 
@@ -137,7 +140,15 @@ def _of_captured(one: CompiledRequirement) -> Refusal | None:
 
 def of_generated(one: CompiledRequirement) -> Refusal | None:
     """What generated Python cannot judge."""
+    if one.follows_windows:
+        mend = "use the engine `auto`, or `automaton` where few attempts are open at once"
+        return Refusal(f"is judged in windows ({STEPS_EACH})", mend, "network")
     return _of_captured(one) or of_tables(one)
+
+
+def _by_samples(one: CompiledRequirement) -> str:
+    """The engine of `auto` that takes its samples one by one."""
+    return "python" if of_generated(one) is None else one.engine("auto")
 
 
 def of_tables(one: CompiledRequirement) -> Refusal | None:
@@ -154,11 +165,11 @@ def of_c(one: CompiledRequirement) -> Refusal | None:
     """What generated code cannot judge without a monitor in this process."""
     if one.spec.max_delay is not None:
         fix = "leave out `max delay`, or use the engine `auto`"
-        return Refusal("has samples that come late (`max delay`)", fix, "python")
+        return Refusal("has samples that come late (`max delay`)", fix, _by_samples(one))
     # C has only the latest values, which may be newer than the last tick.
     if one.obligation.trigger is None and one.requirement.captures and one.gap not in (None, 1):
         reason = "captures values `upon end`, which may be newer than the last tick of its clock"
-        return Refusal(reason, "use the engine `auto`", "python")
+        return Refusal(reason, _AUTO, _by_samples(one))
     return None
 
 
@@ -171,15 +182,16 @@ def of_measured_c(one: CompiledRequirement) -> Refusal | None:
         reason = "has a clock of several ticks"
     elif one.measures_payloads:
         reason = "compares payloads"
-    own = Refusal(reason, _LEAVE_OUT, "python") if reason else None
+    own = Refusal(reason, _LEAVE_OUT, _by_samples(one)) if reason else None
     return of_c(one) or _of_captured(one) or own
 
 
 def of_prepared(one: CompiledRequirement) -> Refusal | None:
     """What `auto` does not have compiled C judge, be that prepared: Python does all of it."""
-    generated = _of_captured(one) if one.automaton is None else of_generated(one)
+    by_network = one.engine("auto") == "network"
+    generated = _of_captured(one) if by_network else of_generated(one)
     reason = _beyond_prepared(one) if generated is None else generated.reason
-    return Refusal(reason, _AUTO, "python") if reason else None
+    return Refusal(reason, _AUTO, _by_samples(one)) if reason else None
 
 
 def of_prepared_margins(one: CompiledRequirement) -> Refusal | None:
@@ -191,13 +203,13 @@ def of_prepared_margins(one: CompiledRequirement) -> Refusal | None:
         reason = "reads whole numbers"
     elif any(map(_keeps_many, one.shared_graph.nodes)):
         reason = _MANY
-    return refusal or (Refusal(reason, _AUTO, "python") if reason else None)
+    return refusal or (Refusal(reason, _AUTO, _by_samples(one)) if reason else None)
 
 
 def _beyond_prepared(one: CompiledRequirement) -> str:
     if one.automaton is None and one.reach is None:
         return f"has no automaton ({one.refusal}), nor bounds within what `always` demands"
-    if len(one.network_plan.leaves) > _MOST_BITS and one.automaton is None:
+    if len(one.network_plan.leaves) > _MOST_BITS and one.engine("auto") == "network":
         return f"distinguishes more than {_MOST_BITS} propositions"
     if one.spec.max_delay is not None:
         return "has samples that come late (`max delay`)"
@@ -298,11 +310,9 @@ def _remembers(state: State) -> bool:
 
 def of_columns(one: CompiledRequirement) -> Refusal | None:
     """What is not judged by arrays: it needs more than one clock, or more than present values."""
-    generated = of_generated(one)
-    if generated is not None:
-        return Refusal(generated.reason, _AUTO, generated.engine)
-    reason = _beyond_columns(one)
-    return Refusal(reason, _AUTO, "python") if reason else None
+    generated = _of_captured(one) or of_tables(one)
+    reason = _beyond_columns(one) if generated is None else generated.reason
+    return Refusal(reason, _AUTO, _by_samples(one)) if reason else None
 
 
 def _beyond_columns(one: CompiledRequirement) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,13 +10,12 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.bulk import moves_in_runs
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.forecast import Forecaster
-from rvmon.automaton.location import PASSED
 from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
 from rvmon.codegen.python_windows import windows_class
-from rvmon.dataflow.chain import Windows, chain_of, reach_of
+from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.dataflow.soonest_news import delay_of
@@ -26,7 +24,6 @@ from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.core import Literal
 from rvmon.formula.expand import expanded
 from rvmon.formula.factory import Factory
-from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.state import State
@@ -36,44 +33,11 @@ from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 
-RUN_BYTES = 20
-"""Of an attempt in a run: the instant of its trigger, its number, what was seen."""
-
 MOST_SEEN = 19
 """So many truth values, seen at the trigger, fit into a number of 32 bits."""
 
 _BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
 """What judges attempts in doubt has to be small: it is rarely asked for, and built beside each."""
-
-
-@dataclass(frozen=True, slots=True)
-class CompileReport:
-    """What became of a requirement.
-
-    Attributes:
-        engine: `automaton`, or `network` where that does not close.
-        why: why it has no automaton; empty if it has one.
-        letters: what its propositions can be, as its formula tells them apart.
-        horizon: ticks from the trigger within which an attempt is decided; `None` if unbounded.
-        locations: of the automaton, both verdicts included; 0 without one. So are the others.
-        clocks: the largest number that an attempt has.
-        classes: of letters that lead the same way everywhere.
-        in_runs: whether attempts are kept in runs, so that a sample costs the same however many of
-            them are open.
-        bytes_per_attempt: of memory, while it is open; `None` if it is an object of its own.
-        steps: looked at when something changes or a time is due: of all runs, or of each attempt.
-    """
-
-    engine: str
-    why: str
-    letters: int
-    horizon: int | None
-    locations: int = 0
-    clocks: int = 0
-    classes: int = 0
-    in_runs: bool = False
-    bytes_per_attempt: int | None = None
-    steps: int = 0
 
 
 class CompiledRequirement:
@@ -154,27 +118,19 @@ class CompiledRequirement:
             and moves_in_runs(automaton)
         )
 
-    @property
-    def report(self) -> CompileReport:
-        """How it is judged, and at what cost."""
-        reach, letters = horizon(self.obligation.owed), self.alphabet.size
-        automaton = self.automaton
-        if automaton is None:
-            return CompileReport("network", self.refusal, letters, reach)
-        in_runs = self.in_runs(automaton)
-        live = automaton.locations[PASSED + 1 :]
-        parts = sum(len(place.cuts[0]) + 1 if place.cuts else 1 for place in live)
-        return CompileReport(
-            "automaton",
-            "",
-            letters,
-            reach,
-            len(automaton.locations),
-            automaton.clocks,
-            automaton.classes,
-            in_runs,
-            RUN_BYTES if in_runs else None,
-            parts - 1 if in_runs else 1,
+    @cached_property
+    def follows_windows(self) -> bool:
+        """Whether generated windows, within windows, judge it though it has an automaton.
+
+        That steps each open attempt by itself; the windows are one step for all of them.
+        """
+        return (
+            self.is_fed
+            and self.obligation.trigger is not None
+            and self._chain is not None
+            and len(self._chain.windows) > 1
+            and self.automaton is not None
+            and not self.in_runs(self.automaton)
         )
 
     @cached_property
@@ -223,9 +179,13 @@ class CompiledRequirement:
         return plan_of(self.obligation.owed, self.gap)
 
     @cached_property
+    def _chain(self) -> Chain | None:
+        return None if self.is_beside else chain_of(self.network_plan, self.gap)
+
+    @cached_property
     def windows(self) -> type[Windows] | None:
         """What follows its network's windows; `None` if they are no chain."""
-        chain = None if self.is_beside else chain_of(self.network_plan, self.gap)
+        chain = self._chain
         return None if chain is None else windows_class(self.network_plan, chain, self.gap)
 
     @cached_property
@@ -289,7 +249,9 @@ class CompiledRequirement:
         """
         if name in ("network", "progression"):
             return name
-        return "network" if self.automaton is None else "automaton"
+        if self.automaton is None or (self.follows_windows and name != "automaton"):
+            return "network"
+        return "automaton"
 
     def machine(self, engine: str) -> Machine:
         """The machine that judges its attempts, if it is none of `network`.

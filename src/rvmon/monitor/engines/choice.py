@@ -66,6 +66,6 @@ def _online(one: CompiledRequirement, count: int) -> tuple[str, dict[str, Refusa
     if of_python is None:
         return "python", {}
     of_automaton = refusal.of_automaton(one)
-    if of_automaton is None:
+    if one.engine("auto") == "automaton":
         return "automaton", {"python": of_python}
-    return "network", {"python": of_python, "automaton": of_automaton}
+    return "network", {"python": of_python, "automaton": of_automaton or of_python}

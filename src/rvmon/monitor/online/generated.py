@@ -72,9 +72,9 @@ def forms_of(
         measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
     """
     fed = [one for one in requirements if one.is_fed]
-    plan = plan_requirements(compiled, fed, measured=measured)
+    plan = plan_requirements(compiled, fed, measured=measured, stepped=rule is not None)
     machines = [
-        None if rule.automaton is None else one.machine("auto")
+        None if rule.automaton is None else one.machine("automaton")
         for one, rule in zip(fed, plan.rules, strict=True)
     ]
     # What judges attempts in doubt is made when one comes up.

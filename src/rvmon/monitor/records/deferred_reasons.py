@@ -45,7 +45,7 @@ class DeferredReasons:
 
     @cached_property
     def _machine(self) -> Machine:
-        return self.compiled.machine("auto")
+        return self.compiled.machine("automaton")
 
     @cached_property
     def reasons(self) -> Reasons:

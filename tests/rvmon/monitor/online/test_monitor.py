@@ -7,6 +7,7 @@ import pytest
 import rvmon
 from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
 from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled.costs import compile_report
 from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.verdict.verdict import Verdict
@@ -212,7 +213,7 @@ def test_numpy_scalars_are_numbers(monitor):
 def test_the_compile_report_says_what_became_of_a_requirement():
     """Engine, size and horizon are known before a run; a refusal names what was too much."""
     reports = {
-        name: one.report
+        name: compile_report(one)
         for name, one in compile_spec(rvmon.loads(SPEC).checked).requirements.items()
     }
     assert (reports["R1"].engine, reports["R1"].locations, reports["R1"].clocks) == (
@@ -223,10 +224,17 @@ def test_the_compile_report_says_what_became_of_a_requirement():
     assert reports["R1"].horizon == 3 * 10**9
     assert reports["R3"].clocks == 0
     [report] = [
-        one.report for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
+        compile_report(one)
+        for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
     ]
     assert report.engine == "network"
     assert "more than" in report.why
+    windows = rvmon.loads(
+        "signal p : bool\nevent e\nrequirement R\n  upon e then within 5 s for 3 s p"
+    )
+    [report] = map(compile_report, compile_spec(windows.checked).requirements.values())
+    assert (report.engine, report.locations) == ("network", 0)
+    assert report.why == "its automaton steps each open attempt"
 
 
 @pytest.mark.parametrize(("count", "generated"), [(100, True), (101, False)])
