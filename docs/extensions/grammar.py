@@ -46,7 +46,7 @@ def productions(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _shown(name: str, names: list[str]) -> str:
-    """A name without the signs that tell Lark how to build its tree, where none else is so called."""
+    """A name without the signs that tell Lark how to build its tree, if no other is called so."""
     plain = name.strip("?!").removeprefix("_")
     return name if plain != name and plain in names else plain
 

@@ -64,7 +64,14 @@ def index_page(rules: Mapping[str, Rule]) -> str:
         f"| [{rule.code}]({rule.code}.md) | {rule.name} | {rule.severity} | {rule.what} |"
         for rule in rules.values()
     ]
-    head = ("# Diagnostic codes", "", _OF_WHAT, "", "| code | name | kind | what |", "|---|---|---|---|")
+    head = (
+        "# Diagnostic codes",
+        "",
+        _OF_WHAT,
+        "",
+        "| code | name | kind | what |",
+        "|---|---|---|---|",
+    )
     navigation = _fenced(":hidden:\n:glob:\n\n[RT]*", "{toctree}")
     return "\n".join((*head, *rows, "", *navigation, ""))
 
