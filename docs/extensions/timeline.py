@@ -40,7 +40,7 @@ def timeline(text: str) -> str:
     tracks = []
     for name in names:
         changes = [(t, values[name]) for t, values in samples if name in values]
-        draw = _events if f"event {name}" in " ".join(specification.split()) else _levels
+        draw = _events if name in spec.checked.events else _levels
         tracks.append((name, list(draw(changes, times, scale))))
     for name, verdict in report.verdicts.items():
         attempts = [one for one in report.attempts if one.requirement == name]
@@ -60,7 +60,10 @@ def _levels(
 ) -> Iterator[str]:
     """High where it is true, low where it is false, a question mark where it is not known."""
     born = changes[0][0] if changes else times[-1]
-    stretches = [(times[0], None), *changes] if born > times[0] else list(changes)
+    given = [(times[0], None), *changes] if born > times[0] else list(changes)
+    stretches = [
+        one for one, before in zip(given, [(0.0, ""), *given], strict=False) if one[1] != before[1]
+    ]
     ends = [t for t, _ in stretches[1:]] + [times[-1]]
     for (t, value), end in zip(stretches, ends, strict=True):
         left, right = scale(t), scale(end)
@@ -115,9 +118,12 @@ def _picture(
         label = _text(_LEFT - 8, 5, name, anchor="end")
         parts.append(f'<g transform="translate(0 {y})">{label}{"".join(shapes)}</g>')
     below = _ROW * len(tracks)
+    last = 0.0
     for t in times:
         parts.append(f'<path d="M{scale(t):.1f} 0V{below}" stroke="#8884"/>')
-        parts.append(_text(scale(t), below + 16, f"{t:g} s", anchor="middle"))
+        if scale(t) > last + 32:
+            last = scale(t)
+            parts.append(_text(last, below + 16, f"{t:g} s", anchor="middle"))
     said = ", ".join(name for name, _ in tracks)
     return (
         f'<svg class="timeline" role="img" aria-label="Timeline of {escape(said)}" '

@@ -41,7 +41,6 @@ OWN_TESTS = {
 }
 """Pages whose blocks stand in a form of their own, with the test that runs them."""
 
-DATA = frozenset(("csv", "jsonl", "json", "toml", "ini", "yaml"))
 NO_CODE = frozenset(("", "text"))
 _FENCE = re.compile(r"^```([^\n`{]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _MARK = re.compile(r'([\w-]+)(?:=("[^"]*"|\S+))?')
