@@ -46,7 +46,7 @@ def page_of(code: str) -> str:
         UnknownNameError: there is no such code; those most alike are named.
     """
     rules = every_rule()
-    named = {rule.name: rule for rule in reversed(rules.values())}
+    named = {rules[known].name: rules[known] for known in sorted(rules, reverse=True)}
     rule = rules.get(code.upper()) or named.get(code.lower())
     if rule is None:
         raise UnknownNameError(_unknown(code, rules))
