@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # What Python makes of files is kept, whatever is the custom here: else each program that tests start makes it anew.
 TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: help demo test quick check format bench fuzz clean
+.PHONY: help demo test quick check docs format bench fuzz clean
 
 help:  ## show this list
 	@awk -F':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -19,11 +19,17 @@ test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the second
 quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, half a minute on 2 cores
 	@$(TESTED) -m "not (browser or campaign or compiler or law or process or slow)" tests
 
-check: $(VENV)/.dev  ## lint, types, layers
+check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, the documentation without warnings
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
+	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
+
+docs: $(VENV)/.docs  ## make the documentation site, without warnings: out/docs/index.html
+	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
+	@$(BIN)/python -m tests.tools.pages
+	@echo "out/docs/index.html"
 
 format: $(VENV)/.dev  ## lay the code out and sort imports
 	@$(BIN)/ruff check --fix .
@@ -53,3 +59,7 @@ $(VENV)/.demo: pyproject.toml | $(BIN)/python
 $(VENV)/.dev: pyproject.toml | $(BIN)/python
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
 	@touch $@ $(VENV)/.demo
+
+$(VENV)/.docs: pyproject.toml | $(BIN)/python
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[docs]'
+	@touch $@

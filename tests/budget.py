@@ -10,6 +10,7 @@ BUDGETS = {
     "src/rvmon": 20,
     "tests": 10,
     "tests/benchmarks": 10,
+    "tests/docs": 30,
     "tests/examples": 15,
     "tests/handover": 4,
     "tests/handover/campaign": 62,

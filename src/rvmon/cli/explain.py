@@ -49,10 +49,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Explain, and return the exit code."""
     if not Path(arguments.subject).exists() and _CODE.fullmatch(arguments.subject):
         from rvmon.explain.codes import code_list, page_of
-        from rvmon.explain.model_codes import model_page
 
         code = arguments.subject
-        say(code_list() if code == "codes" else model_page(code) or page_of(code), end="")
+        say(code_list() if code == "codes" else page_of(code), end="")
         return 0
     from rvmon.loading import load
     from rvmon.monitor import compile_spec

@@ -1,4 +1,4 @@
-"""All diagnostic codes of specifications, those of the analysis among them, with their pages."""
+"""All diagnostic codes, of specifications, their analysis and models, with their pages."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from rvmon.analysis.rules import analysis_rules
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.errors import SpecError, UnknownNameError
-from rvmon.explain.model_codes import model_codes
+from rvmon.explain.model_codes import findings_in_model, model_rules
 from rvmon.spec.compile import compile_text
 from rvmon.spec.rules.pages import all_rules, rule_page
 from rvmon.spec.rules.rule import Rule
@@ -16,11 +16,13 @@ from rvmon.spec.rules.rule import Rule
 
 def every_rule() -> Mapping[str, Rule]:
     """Every rule by its code, in order of codes."""
-    return {**all_rules(), **analysis_rules()}
+    return {**all_rules(), **analysis_rules(), **model_rules()}
 
 
 def findings_about(rule: Rule, text: str) -> tuple[Diagnostic, ...]:
-    """What is found in a text by the pass that a rule belongs to: the check, or the analysis."""
+    """What is found in a text by the pass that a rule belongs to: check, analysis, or a model's."""
+    if rule.code in model_rules():
+        return findings_in_model(text)
     try:
         checked, found = compile_text(text, name="demo.rv")
     except SpecError as error:
@@ -37,13 +39,14 @@ def page_of(code: str) -> str:
     """The page of a code as Markdown.
 
     Args:
-        code: such as `RV012`; also the code in words, such as `unknown-signal`.
+        code: such as `RV012`; also the code in words, such as `unknown-signal`, of specifications
+            where models have the same.
 
     Raises:
         UnknownNameError: there is no such code; those most alike are named.
     """
     rules = every_rule()
-    named = {rule.name: rule for rule in rules.values()}
+    named = {rules[known].name: rules[known] for known in sorted(rules, reverse=True)}
     rule = rules.get(code.upper()) or named.get(code.lower())
     if rule is None:
         raise UnknownNameError(_unknown(code, rules))
@@ -51,16 +54,12 @@ def page_of(code: str) -> str:
 
 
 def code_list() -> str:
-    """All codes with their names, a line each; those of models follow."""
-    own = {rule.code: rule.name for rule in every_rule().values()}
-    return "".join(f"{code}  {name}\n" for code, name in {**own, **model_codes()}.items())
+    """All codes with their names, a line each."""
+    return "".join(f"{rule.code}  {rule.name}\n" for rule in every_rule().values())
 
 
 def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
-    if code.upper().startswith("TA"):
-        shown = [f"  {known}  {name}" for known, name in model_codes().items()]
-    else:
-        shown = [f"  {rule.code}  {rule.name}" for rule in _alike(code, rules)]
+    shown = [f"  {rule.code}  {rule.name}" for rule in _alike(code, rules)]
     return "\n".join(
         (f"error: no diagnostic `{code}`; alike are", *shown, "`rvmon explain codes` lists all")
     )
@@ -68,10 +67,11 @@ def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
 
 def _alike(code: str, rules: Mapping[str, Rule]) -> list[Rule]:
     """The three rules with the nearest numbers, or with names most alike."""
-    digits = code.upper().removeprefix("RV")
-    if digits.isdecimal():
+    family, digits = code[:2].upper(), code[2:]
+    if family in ("RV", "TA") and digits.isdecimal():
         number = int(digits[:9])
-        near = sorted(rules, key=lambda known: abs(int(known.removeprefix("RV")) - number))
+        family_rules = [known for known in rules if known.startswith(family)]
+        near = sorted(family_rules, key=lambda known: abs(int(known[2:]) - number))
         return [rules[known] for known in sorted(near[:3])]
     named = {rule.name: rule for rule in rules.values()}
     return [named[name] for name in difflib.get_close_matches(code.lower(), named, 3, 0.0)]

@@ -141,8 +141,8 @@ def _of_captured(one: CompiledRequirement) -> Refusal | None:
 def of_generated(one: CompiledRequirement) -> Refusal | None:
     """What generated Python cannot judge."""
     if one.follows_windows:
-        mend = "use the engine `auto`, or `automaton` where few attempts are open at once"
-        return Refusal(f"is judged in windows ({STEPS_EACH})", mend, "network")
+        fix = "use the engine `auto`, or `automaton` where few attempts are open at once"
+        return Refusal(f"is judged in windows ({STEPS_EACH})", fix, "network")
     return _of_captured(one) or of_tables(one)
 
 

@@ -24,12 +24,18 @@ from rvmon.spec.rules.rule import Rule
 WIDTH = 80
 """Columns of the text, which is read in terminals as well."""
 
+_OF_WHAT = (
+    "`RV` is found in specifications (`RV070` to `RV074` by `rvmon check --analyse`), `TA` in "
+    "[models](../timed-models.md) and their queries. `rvmon explain CODE` shows the same page."
+)
+
 MOST_FINDINGS = 5
 """Of more findings the first and the last are shown."""
 
 
 def rule_page(rule: Rule, found: Sequence[Diagnostic]) -> str:
     """A rule's page as Markdown: what, why, an example with its message, the same fixed."""
+    language = "rv" if rule.code.startswith("RV") else "ta"
     return "\n".join(
         (
             f"# {rule.code} {rule.name}",
@@ -40,13 +46,13 @@ def rule_page(rule: Rule, found: Sequence[Diagnostic]) -> str:
             "",
             "## Example",
             "",
-            *_fenced(_cut(rule.example), "rv"),
+            *_fenced(_cut(rule.example), language),
             "",
             *_fenced(message_about(found), "text"),
             "",
             "## Instead",
             "",
-            *_fenced(rule.instead, "rv"),
+            *_fenced(rule.instead, language),
             "",
         )
     )
@@ -58,8 +64,16 @@ def index_page(rules: Mapping[str, Rule]) -> str:
         f"| [{rule.code}]({rule.code}.md) | {rule.name} | {rule.severity} | {rule.what} |"
         for rule in rules.values()
     ]
-    head = ("# Diagnostic codes of specifications", "", "| code | name | kind | what |")
-    return "\n".join((*head, "|---|---|---|---|", *rows, ""))
+    head = (
+        "# Diagnostic codes",
+        "",
+        _OF_WHAT,
+        "",
+        "| code | name | kind | what |",
+        "|---|---|---|---|",
+    )
+    navigation = _fenced(":hidden:\n:glob:\n\n[RT]*", "{toctree}")
+    return "\n".join((*head, *rows, "", *navigation, ""))
 
 
 def message_about(found: Sequence[Diagnostic]) -> str:

@@ -1,22 +1,16 @@
-"""The example that sorts bags, and the page that shows how to judge one."""
+"""The example that sorts bags."""
 
-import re
 import runpy
-import shlex
-import shutil
 import sys
 from pathlib import Path
 
 import pytest
 from tests.tools.bags import drive, write_ros1, write_ros2
 
-from rvmon.cli import main
-
 pytest.importorskip("rosbags")
 pytest.importorskip("mcap")
 
 ROOT = Path(__file__).parents[4]
-PAGE = (ROOT / "docs" / "how-to" / "judge-a-ros-bag.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
@@ -39,30 +33,3 @@ def test_the_example_sorts_bags_by_what_needs_a_look(tmp_path, monkeypatch, caps
     ]
     assert "B2 #1 FAIL" in lines[0]
     assert ended.value.code == 1
-
-
-@pytest.mark.slow
-def test_the_commands_of_the_page_do_what_it_says(tmp_path, monkeypatch, capsys):
-    """Each prints what stands below it."""
-    monkeypatch.chdir(tmp_path)
-    for name in ("base.rv", "base.toml"):
-        shutil.copy(ROOT / "examples" / name, tmp_path)
-    write_ros2(tmp_path / "monday", drive(stops_in_s=0.4), "mcap")
-    (tmp_path / "runs").mkdir()
-    write_ros2(tmp_path / "runs" / "tuesday", drive(stops_in_s=0.6), "sqlite3")
-    for text in re.findall(r"```console\n\$ (.*?)```", PAGE, re.DOTALL):
-        command, _, output = text.partition("\n")
-        words, sign, file = command.partition(" > ")
-        main(shlex.split(words)[1:])
-        told = capsys.readouterr()
-        if sign:
-            Path(file).write_text(told.out, encoding="utf-8")
-            continue
-        lines = [line.rstrip() for line in (told.err + told.out).rstrip().splitlines()]
-        assert lines == output.rstrip().splitlines(), command
-
-
-def test_the_binding_of_the_page_is_the_example(tmp_path):
-    """As it is after it was looked over."""
-    [text] = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
-    assert text == (ROOT / "examples" / "base.toml").read_text(encoding="utf-8").partition("\n")[2]

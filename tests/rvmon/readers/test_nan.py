@@ -1,18 +1,6 @@
-"""The page on recordings says what happens."""
-
-import re
-from pathlib import Path
+"""What NaN says, by the command line."""
 
 from rvmon.cli import main
-
-PAGE = Path(__file__).parents[3] / "docs" / "reference" / "recordings.md"
-
-
-def test_the_program_of_the_page_prints_what_its_comments_say(capsys):
-    """Each `print` is followed by what it prints."""
-    [program] = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
-    exec(program, {})  # noqa: S102 - our own page
-    assert capsys.readouterr().out.split() == re.findall(r"print\(.*\)  # (.*)", program)
 
 
 def test_the_command_line_reads_nan_as_it_is_told(tmp_path, capsys):

@@ -1,0 +1,75 @@
+"""The commands as Markdown, from the parsers that read them."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+from collections.abc import Iterator
+
+from handover.cli import _parser as handover_parser
+from rvmon.cli import _parser as rvmon_parser
+
+
+def commands(program: str) -> str:
+    """Every subcommand of a program with its usage, arguments and example."""
+    os.environ["COLUMNS"] = "80"
+    parser = rvmon_parser([]) if program == "rvmon" else handover_parser()
+    return "\n".join(line for command in _subcommands(parser) for line in _section(command))
+
+
+def _subcommands(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """The parsers without subcommands of their own, each once."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for command in dict.fromkeys(action.choices.values()):
+                yield from _subcommands(command)
+            return
+    yield parser
+
+
+def _section(parser: argparse.ArgumentParser) -> Iterator[str]:
+    yield f"## {parser.prog}\n"
+    yield f"{_escaped(parser.description or '')}\n"
+    heading = "usage: "
+    usage = parser.format_usage().removeprefix(heading).replace("\n" + " " * len(heading), "\n")
+    yield f"```text\n{usage.rstrip()}\n```\n"
+    for action in parser._actions:
+        if action.help not in (None, argparse.SUPPRESS) and action.dest != "help":
+            yield f"`{_named(action)}`\n: {_escaped(_help(parser, action))}\n"
+    if parser.epilog:
+        yield _examples(parser.epilog)
+
+
+def _named(action: argparse.Action) -> str:
+    """How an option or argument is written."""
+    value = action.metavar or ("" if action.nargs == 0 else action.dest.upper())
+    if action.choices is not None and action.metavar is None:
+        value = "{" + ",".join(map(str, action.choices)) + "}"
+    value = " ".join(value) if isinstance(value, tuple) else str(value)
+    if not action.option_strings:
+        return f"{value}…" if action.nargs in ("+", "*") else value
+    between = "" if value.startswith("[") else " "
+    return ", ".join(f"{option}{between}{value}".rstrip() for option in action.option_strings)
+
+
+def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
+    return parser._get_formatter()._expand_help(action)
+
+
+def _examples(epilog: str) -> str:
+    """What stands below the help: commands behind the word `example`, else words."""
+    shown = re.fullmatch(r"examples?:\s+(.*)", epilog, re.DOTALL)
+    if shown is None:
+        return f"{_escaped(epilog)}\n"
+    commands = re.split(r";\s+|\n\s*", shown[1])
+    return "\n".join(("```console", *(f"$ {command}" for command in commands), "```\n"))
+
+
+def _escaped(text: str) -> str:
+    """Text that Markdown shows as it stands, but for what is between backticks."""
+    parts = text.split("`")
+    for index in range(0, len(parts), 2):
+        for sign in "\\*_<[":
+            parts[index] = parts[index].replace(sign, f"\\{sign}")
+    return "`".join(parts)

@@ -1,0 +1,69 @@
+"""The pages of the documentation show what is: their specifications, programs and commands run."""
+
+import csv
+import re
+from pathlib import Path
+
+import pytest
+from tests.tools.pages import OWN_TESTS, PAGES, ROOT, Runner, blocks, own_test
+
+import rvmon
+
+RUN = [page for page in PAGES if not own_test(page) and list(blocks(page))]
+
+
+def names_for(page, folder):
+    """What a page takes for granted: files in its folder, and names that its programs know."""
+    match page:
+        case "README.md":
+            return {"stream": stream_of(ROOT / "examples" / "base.csv")}
+        case "docs/how-to/judge-a-ros-bag.md":
+            pytest.importorskip("rosbags")
+            from tests.tools.bags import drive, write_ros2
+
+            write_ros2(folder / "monday", drive(stops_in_s=0.4), "mcap")
+            (folder / "runs").mkdir()
+            write_ros2(folder / "runs" / "tuesday", drive(stops_in_s=0.6), "sqlite3")
+        case "docs/how-to/watch-a-running-robot.md":
+            pytest.importorskip("gymnasium")
+            text = "signal angle : real\nrequirement P1\n  always abs(angle) < 0.2\n"
+            (folder / "pole.rv").write_text(text)
+            return {"spec": rvmon.load(ROOT / "specs" / "handover.rv")}
+        case "docs/reference/coverage.md":
+            points = "coverpoint gaze = g {yes: true}\ncoverpoint near = d {touch: true}\n"
+            (folder / "robot.rv").write_text(f"signal g, d : bool\n{points}")
+            for name in ("monday", "tuesday", "grasp-17"):
+                (folder / f"{name}.csv").write_text("t,g,d\n0,true,false\n")
+    return {}
+
+
+def stream_of(path):
+    """A recording as a robot would give it: instants in seconds, and what changed."""
+    with path.open(newline="") as file:
+        for row in csv.DictReader(file):
+            t, stop = float(row.pop("t")), row.pop("stop_request")
+            values = {name: float(value) for name, value in row.items() if value}
+            yield t, values | ({"stop_request": True} if stop else {})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", RUN)
+def test_the_page_is_true(page, tmp_path, monkeypatch, capsys):
+    """Files are written, commands and programs run in the page's order, and print what it says."""
+    monkeypatch.chdir(tmp_path)
+    runner = Runner(tmp_path, capsys.readouterr, names_for(page, tmp_path))
+    for block in blocks(page):
+        runner.run(block)
+
+
+def test_pages_with_a_test_of_their_own_have_it():
+    """Who moves such a test moves its page along."""
+    assert all((ROOT / test).exists() for test in OWN_TESTS.values())
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page):
+    """Every file that a page links to exists."""
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", (ROOT / page).read_text("utf-8"), flags=re.DOTALL)
+    for address in re.findall(r"\]\(([^)#]+)", text):
+        assert re.match("https?:", address) or (ROOT / Path(page).parent / address).exists()
