@@ -133,7 +133,9 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
     for robot, own in groupby(matrix, key=lambda one: one.robot):
         head = e("tr", None, *(e("th", {"scope": "col"}, word) for word in words))
         rows = [_row(list(several)) for _, several in groupby(own, key=lambda one: one.requirement)]
-        table = e("table", {"class": "verdicts"}, e("thead", None, head), e("tbody", None, *rows))
+        table = e(
+            "table", {"class": "verdicts folds"}, e("thead", None, head), e("tbody", None, *rows)
+        )
         sections.append(e("section", None, e("h2", None, robot) if robot else None, scroll(table)))
     header = e("header", None, e("h1", None, title), e("dl", {"class": "facts"}, *told))
     footer = e("footer", None, legend("Recordings, or tests, without a planted fault"))

@@ -13,7 +13,7 @@ from rvmon.report.run_page import RunPage
 from rvmon.report.style import MARKS
 from rvmon.report.timeline import axis_row
 from rvmon.report.track_rows import place_of
-from rvmon.report.view import View, whole_run
+from rvmon.report.view import View
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
@@ -50,7 +50,8 @@ def overview(content: RunPage, panels: Sequence[Panel], view: View) -> ET.Elemen
     ]
     said = f"Of {', '.join(cut)} the first {MOST_DRAWN:,} attempts of each verdict are drawn."
     note = e("p", {"class": "soft"}, said) if cut else None
-    return e("nav", {"aria-label": "requirements"}, back, e("div", {"class": "all"}, timeline), note)
+    box = e("div", {"class": "all"}, timeline)
+    return e("nav", {"aria-label": "requirements"}, back, box, note)
 
 
 def _row(report: Report, name: str, address: str, view: View) -> ET.Element:

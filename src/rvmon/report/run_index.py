@@ -84,25 +84,24 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
 def _totals(spec: CheckedSpec, recordings: Sequence[Listed], ids: Sequence[str]) -> ET.Element:
     """Of each requirement, how many recordings have which verdict."""
     reports = [one.report for one in recordings if one.report is not None]
-    words = ["requirement", *(verdict.value for verdict in Verdict)]
-    has_severity = any(spec.requirements[name].severity for name in ids)
-    words += [*(["severity"] if has_severity else []), "in words"]
+    words = ("requirement", *(verdict.value for verdict in Verdict), "in words")
     rows = []
     for name in ids:
         requirement = spec.requirements[name]
         counts = Counter(report.verdicts[name] for report in reports)
         cells = (count_cell(verdict, counts[verdict]) for verdict in Verdict)
-        severity = e("td", {"class": "text"}, requirement.severity) if has_severity else None
-        text = e("td", {"class": "text"}, requirement.text)
-        heading = e("th", {"scope": "row"}, name)
-        rows.append(e("tr", None, heading, *cells, severity, text))
+        about = {"severity": requirement.severity, "tags": ", ".join(requirement.tags)}
+        more = "; ".join(f"{word}: {value}" for word, value in about.items() if value)
+        text = e("td", {"class": "text"}, requirement.text, e("div", {"class": "soft"}, more))
+        rows.append(e("tr", None, e("th", {"scope": "row"}, name), *cells, text))
     head = e("tr", None, *(e("th", {"scope": "col"}, word) for word in words))
-    return scroll(e("table", {"class": "verdicts"}, e("thead", None, head), e("tbody", None, *rows)))
+    body = e("tbody", None, *rows)
+    return scroll(e("table", {"class": "verdicts folds"}, e("thead", None, head), body))
 
 
 def _folder(names: Sequence[str]) -> str:
     """What stands before all names, up to its last slash."""
-    shared = os.path.commonprefix(list(names))
+    shared = os.path.commonprefix(list(names))  # noqa: RUF071 - it is cut at a slash
     return shared[: shared.rfind("/") + 1]
 
 

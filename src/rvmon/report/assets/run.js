@@ -28,7 +28,10 @@
     for (const row of rows) {
       const mine = sections.find((one) => "#" + one.id === row.getAttribute("href"));
       const current = requirement(mine) === requirement(section);
-      if (current) row.setAttribute("aria-current", "true");
+      if (current) {
+        row.setAttribute("aria-current", "true");
+        row.closest(".all").scrollTop = row.offsetTop - row.offsetHeight;
+      }
       else row.removeAttribute("aria-current");
     }
     const panel = run.panels[section.id];
