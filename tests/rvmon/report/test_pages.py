@@ -34,6 +34,7 @@ def test_pages_are_fit_for_everybody(chromium, tmp_path):
         covered = coverage_page(Summary("door.cov", database.coverage(), None, "old.cov"))
     pages = {
         "run": run_page(content((spec, run), scene=scene(), others=[door(answer=1.0)[1]])),
+        "passed": run_page(content(door(answer=1.0))),
         "index": run_index(replace(spec.checked, requirements=severe), listed, NONE_KNOWN),
         "matrix": matrix_page("door", {"judged by": "rvmon"}, shown).decode(),
         "coverage": covered,
