@@ -38,9 +38,9 @@ def test_pages_are_fit_for_everybody(chromium, tmp_path):
         "index": run_index(replace(spec.checked, requirements=severe), listed, NONE_KNOWN),
         "matrix": matrix_page("door", {"judged by": "rvmon"}, shown).decode(),
         "coverage": covered,
+        "bad": '<p style="color:#999;width:500px">pale <input> <i tabindex=-1></i></p>',
     }
-    assert faults(chromium, tmp_path, pages) == []
-    pages = {"bad": '<p style="color:#999;width:500px">pale <input> <i tabindex=-1></i></p>'}
-    found = "\n".join(faults(chromium, tmp_path, pages))
+    found = faults(chromium, tmp_path, pages)
+    assert [fault for fault in found if not fault.startswith("bad")] == []
     for fault in ("contrast", "wider", "no language", "no title", "without a name", "no viewport"):
-        assert fault in found
+        assert fault in "\n".join(found)
