@@ -335,3 +335,20 @@ def test_what_came_late_is_marked():
     far = run_page(content(door(answer=12.0)))
     assert "10 s after the deadline" in far.replace("\xa0", " ")
     assert re.search(r'class="label late[^>]*>came 10 s late <[^>]*>17 s</span> →', far)
+
+
+def test_all_requirements_stand_over_the_whole_recording():
+    """The worst first; a bar from each trigger to its decision, in the colour of its verdict."""
+    samples = [
+        (0.0, {"closed": False, "gap": 1.0}),
+        (5.0, {"knock": True}),
+        (10.0, {"closed": True, "gap": 0.01}),
+        (15.0, {"knock": True}),
+    ]
+    nav = re.search(r"<nav.*?</nav>", run_page(content(judged("t", samples))), re.DOTALL)[0]
+    rows = re.findall(r'<a class="row" href="#([^"]*)".*?</a>', nav)
+    assert rows == ["D1-2", "D2-1", "D3-1"]
+    row = nav.partition('href="#D1-2"')[2].partition("</a>")[0]
+    bars = re.findall(r'data-verdict="(.)" style="left:([\d.]+)%;width:([\d.]+)%', row)
+    assert [(verdict, float(left)) for verdict, left, _ in bars] == [("P", 25.0), ("F", 75.0)]
+    assert float(bars[1][2]) == pytest.approx(10, abs=0.5)  # two of twenty seconds
