@@ -11,7 +11,7 @@ from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
 from rvmon.cdv.tables import INTERVALS, RobotTables
 from rvmon.report.coverage_summary import counted, share_text
-from rvmon.report.markup import Child, e, page
+from rvmon.report.markup import Child, e, page, scroll
 from rvmon.report.percent import percent_text
 from rvmon.report.style import MARKS
 from rvmon.report.table_html import legend, table_html
@@ -185,7 +185,7 @@ def _share_of_statements(total: BlockCoverage) -> str:
 def _known(robot: str, figures: RobotSummary, tests: Mapping[tuple[str, str], str]) -> ET.Element:
     ids = list(figures.requirements)
     faults = any(one.mutation for one in figures.known)
-    titles = ["test", *ids, "purpose", *(["planted fault"] if faults else [])]
+    titles = ["test", "purpose", *(["planted fault"] if faults else []), *ids]
     head = e("tr", None, *(e("th", None, title) for title in titles))
     rows = [_known_row(robot, one, ids, tests, faults=faults) for one in figures.known]
     right = sum(one.as_expected for one in figures.known)
@@ -195,7 +195,7 @@ def _known(robot: str, figures: RobotSummary, tests: Mapping[tuple[str, str], st
         None,
         e("h2", None, f"{figures.title}: directed tests"),
         e("p", {"class": "soft"}, f"{right} of {len(figures.known)} ended as they should."),
-        e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid),
+        scroll(grid),
     )
 
 
@@ -209,16 +209,17 @@ def _known_row(
 ) -> ET.Element:
     address = tests.get((robot, one.test))
     name: Child = one.test if address is None else e("a", {"href": address}, one.test)
-    cells = [_verdict_cell(one, requirement) for requirement in ids]
+    cells = [_verdict_cell(one, requirement, address) for requirement in ids]
     purpose = e("td", {"class": "text purpose"}, one.text)
     fault = e("td", {"class": "text"}, one.mutation or "") if faults else None
-    return e("tr", None, e("th", {"scope": "row"}, name), *cells, purpose, fault)
+    return e("tr", None, e("th", {"scope": "row"}, name), purpose, fault, *cells)
 
 
-def _verdict_cell(one: KnownAnswer, requirement: str) -> ET.Element:
+def _verdict_cell(one: KnownAnswer, requirement: str, address: str | None) -> ET.Element:
     verdict = one.verdicts[requirement]
     expected = one.expected.get(requirement)
     text = f"{verdict.value} {MARKS[verdict].sign}"
     if expected is not None and expected != verdict:
         text += f" ≠ {expected}"
-    return e("td", {"data-verdict": verdict.value}, text)
+    shown: Child = text if address is None else e("a", {"href": f"{address}#{requirement}"}, text)
+    return e("td", {"data-verdict": verdict.value}, shown)

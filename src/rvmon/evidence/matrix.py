@@ -12,7 +12,7 @@ from typing import NamedTuple
 from rvmon.report.markup import Child, e, page, scroll, with_code
 from rvmon.report.style import MARKS
 from rvmon.report.table_csv import plain
-from rvmon.report.table_html import legend
+from rvmon.report.table_html import count_cell, legend
 from rvmon.report.wrapped import in_short
 from rvmon.results.write import csv_table
 from rvmon.spec.checked.specification import CheckedSpec
@@ -129,11 +129,13 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
     for name, fact in facts.items():
         told += [e("dt", None, name), e("dd", None, fact)] if fact else []
     sections: list[Child] = []
-    words = ("requirement", "source", *(verdict.value for verdict in Verdict), "shown by")
+    words = ("requirement", *(verdict.value for verdict in Verdict), "shown by")
     for robot, own in groupby(matrix, key=lambda one: one.robot):
         head = e("tr", None, *(e("th", {"scope": "col"}, word) for word in words))
         rows = [_row(list(several)) for _, several in groupby(own, key=lambda one: one.requirement)]
-        table = e("table", {"class": "verdicts"}, e("thead", None, head), e("tbody", None, *rows))
+        table = e(
+            "table", {"class": "verdicts folds"}, e("thead", None, head), e("tbody", None, *rows)
+        )
         sections.append(e("section", None, e("h2", None, robot) if robot else None, scroll(table)))
     header = e("header", None, e("h1", None, title), e("dl", {"class": "facts"}, *told))
     footer = e("footer", None, legend("Recordings, or tests, without a planted fault"))
@@ -143,12 +145,14 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
 
 def _row(rows: Sequence[Traced]) -> ET.Element:
     """A requirement, and all that speaks of it; failures are unfolded."""
-    cells: list[Child] = [e("td", {"class": "text"}, rows[0].source or "–")]
+    source = rows[0].source
+    cells: list[Child] = []
     lists: list[Child] = [e("div", None, rows[0].text)]
+    lists += [e("div", {"class": "soft"}, f"source: {source}")] if source else []
     own = [one for one in rows if one.by and not one.planted_fault]
     for verdict, mark in MARKS.items():
         found = [one for one in own if one.verdict == verdict]
-        cells.append(e("td", {"data-verdict": verdict if found else None}, f"{len(found):,}"))
+        cells.append(count_cell(verdict, len(found)))
         lists += _list(f"{mark.sign} {mark.word}", found, is_open=verdict is Verdict.FAIL)
     lists += _list("not evaluated", [one for one in own if not one.verdict], is_open=True)
     lists += _list("with a planted fault", [one for one in rows if one.planted_fault])

@@ -50,9 +50,17 @@ def with_afterword(attempt: Attempt, came: int | None) -> str:
     """
     if came is None or attempt.blame is None or attempt.blame.window[1] is None:
         return attempt.reason
-    late = came - attempt.blame.window[1]
-    span = format_duration(late) if late < TICKS_PER_SECOND else format_ticks(late)
+    span = duration_text(came - attempt.blame.window[1])
     return f"{attempt.reason}; it came at {format_ticks(came)}, {span} after the deadline"
+
+
+def duration_text(ticks: int) -> str:
+    """A duration for people, in a unit of its size.
+
+    >>> duration_text(20_000_000), duration_text(2_500_000_000)
+    ('20 ms', '2.5 s')
+    """
+    return format_duration(ticks) if ticks < TICKS_PER_SECOND else format_ticks(ticks)
 
 
 def forecast_sentence(forecast: Verdict) -> str:

@@ -95,17 +95,17 @@ def _fault(summary: Summary, fault: str, places: Sequence[int]) -> ET.Element:
 
 
 def _overview(summary: Summary) -> ET.Element:
-    rows = [
-        e(
-            "tr",
-            {"class": "total"},
-            e("th", {"scope": "row"}, "total"),
-            e("td", {"class": "text"}),
-            e("td", None, _bar(summary.share)),
-            e("td"),
-            e("td", None, share_text(summary.share)),
-        )
-    ]
+    total = e(
+        "tr",
+        {"class": "total"},
+        e("th", {"scope": "row"}, "total"),
+        e("td", {"class": "text"}),
+        e("td", None, _bar(summary.share)),
+        e("td"),
+        e("td", None, share_text(summary.share)),
+    )
+    rows: list[ET.Element] = []
+    whole: list[ET.Element] = []
     for place, group in enumerate(summary.coverage.model.groups.values()):
         score = summary.scores[group.name]
         share = score.covered / score.items if score.items else 1.0
@@ -113,23 +113,28 @@ def _overview(summary: Summary) -> ET.Element:
         about += "" if group.weight == 1 else f", weight {group.weight}" if group.weight else ""
         about += "" if group.weight else ", not in the total"
         link = e("a", {"href": f"#g{place}"}, *with_code(group.name))
-        rows.append(
-            e(
-                "tr",
-                None,
-                e("th", {"scope": "row"}, link),
-                e("td", {"class": "text soft"}, about),
-                e("td", None, _bar(share)),
-                e("td", None, f"{score.covered:,} of {score.items:,}"),
-                e("td", None, percent_text(score.covered, score.items)),
-            )
+        row = e(
+            "tr",
+            None,
+            e("th", {"scope": "row"}, link),
+            e("td", {"class": "text soft"}, about),
+            e("td", None, _bar(share)),
+            e("td", None, f"{score.covered:,} of {score.items:,}"),
+            e("td", None, percent_text(score.covered, score.items)),
         )
-    return e(
-        "section",
-        None,
-        e("h2", None, "Covered"),
-        scroll(e("table", {"class": "groups"}, e("tbody", None, *rows))),
-    )
+        (whole if share == 1 else rows).append(row)
+    parts: list[Child] = [e("h2", None, "Covered")]
+    if len(rows) + len(whole) <= OPEN:
+        rows += whole
+    elif whole:
+        said = e("summary", None, f"{counted(len(whole), 'group')} covered")
+        parts.append(e("details", None, said, _groups(whole)))
+    parts.insert(1, _groups([total, *rows]))
+    return e("section", None, *parts)
+
+
+def _groups(rows: Sequence[ET.Element]) -> ET.Element:
+    return scroll(e("table", {"class": "groups"}, e("tbody", None, *rows)))
 
 
 def _comparison(summary: Summary) -> ET.Element | None:

@@ -7,17 +7,16 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
 from rvmon.report.markup import Child, data, e, page
+from rvmon.report.overview import overview
 from rvmon.report.panel import Panel
 from rvmon.report.panel_html import headline, panel_section
 from rvmon.report.panels_of import opening, panel_id, panels_of
 from rvmon.report.run_page import RunPage
 from rvmon.report.scene_html import scene_data, scene_svg
-from rvmon.report.style import MARKS
 from rvmon.report.tracks import Track, TrackKind
-from rvmon.report.view import View
+from rvmon.report.view import View, whole_run
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND
-from rvmon.verdict.verdict import Verdict
 
 
 def run_page(content: RunPage) -> str:
@@ -30,33 +29,15 @@ def run_page(content: RunPage) -> str:
     requirement, attempt = opening(content.run.report)
     first = next(panel for panel in panels if panel.id == panel_id(requirement, attempt))
     sections = [panel_section(panel, panels, content) for panel in panels]
+    samples = content.run.samples
+    view = whole_run(content.run.report, samples[0].t if samples else content.run.report.origin)
     sentence = headline(content.run.name, first, content.run.report.origin)
     body = (
-        _navigation(content, panels),
+        overview(content, panels, view),
         e("main", {"data-open": first.id}, *sections, _aside(content, first)),
-        data("run", script_data(content, panels)),
+        data("run", script_data(content, panels, view)),
     )
     return page(sentence.replace("`", ""), body, styles=["base.css", "run.css"], scripts=["run.js"])
-
-
-def _navigation(content: RunPage, panels: Sequence[Panel]) -> ET.Element:
-    """A letter and a sign per requirement, each leading to its worst attempt."""
-    links: list[Child] = []
-    if content.back:
-        links.append(e("a", {"class": "back", "href": content.back}, "← all tests"))
-    order = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)
-    for name, verdict in content.run.report.verdicts.items():
-        own = [panel for panel in panels if panel.requirement == name]
-        worst = min(own, key=lambda panel: order.index(panel.verdict) if panel.attempt else 0)
-        links.append(
-            e(
-                "a",
-                {"class": "chip", "href": f"#{worst.id}", "data-verdict": verdict.value},
-                e("b", None, name),
-                f" {verdict.value} {MARKS[verdict].sign}",
-            )
-        )
-    return e("nav", {"aria-label": "requirements"}, *links)
 
 
 def _aside(content: RunPage, first: Panel) -> ET.Element:
@@ -107,11 +88,13 @@ READ_OUT = 2_000
 """Values of a track that the cursor can read out, at most."""
 
 
-def script_data(content: RunPage, panels: Sequence[Panel]) -> dict[str, object]:
+def script_data(content: RunPage, panels: Sequence[Panel], view: View) -> dict[str, object]:
     """All of it, as JSON can hold it; times are seconds since the origin."""
     origin = content.run.report.origin
     document: dict[str, object] = {
-        "panels": {panel.id: _panel_data(panel, origin) for panel in panels}
+        "start": _seconds(view.start, origin),
+        "end": _seconds(view.end, origin),
+        "panels": {panel.id: _panel_data(panel, origin) for panel in panels},
     }
     if content.scene is not None:
         document["scene"] = scene_data(content.scene, origin)

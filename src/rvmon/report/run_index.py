@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import os.path
 import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.report.markup import Child, e, page, scroll
+from rvmon.report.markup import Child, e, page, scroll, with_code
 from rvmon.report.style import MARKS
-from rvmon.report.table_html import legend
+from rvmon.report.table_html import count_cell, legend
 from rvmon.report.wrapped import in_short
 from rvmon.results.known import KnownFailures
 from rvmon.spec.checked.specification import CheckedSpec
@@ -18,6 +19,9 @@ from rvmon.verdict.verdict import Verdict
 
 _BROKEN = "cannot be evaluated"
 _KNOWN = "fail as is known"
+ASKED = "name, failed requirement, severity"
+"""What a person may type a part of."""
+
 _GROUPS = {
     _BROKEN: _BROKEN,
     "F": "fail",
@@ -50,38 +54,60 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
     """Write the list; without scripts it is whole, but cannot be filtered."""
     places = list(_GROUPS)
     rows = [(_group(one, known), one) for one in recordings]
-    rows.sort(key=lambda row: places.index(row[0]))
+    rows.sort(key=lambda row: (places.index(row[0]), -len(_failed(row[1]))))
     counts = Counter(group for group, _ in rows)
     told = [f"{counts[group]:,} {words}" for group, words in _GROUPS.items() if counts[group]]
     ids = next((list(one.report.verdicts) for one in recordings if one.report is not None), [])
-    head = e("tr", None, e("th", None, "recording"), *(e("th", None, name) for name in ids))
-    body = e("tbody", None, *(_row(group, one, ids, known) for group, one in rows))
+    folder = _folder([one.name for one in recordings])
+    titles = (
+        e("th", {"scope": "col", "title": spec.requirements[name].text}, name) for name in ids
+    )
+    head = e("tr", None, e("th", {"scope": "col"}, "recording"), *titles)
+    body = e("tbody", None, *(_row(group, one, ids, spec, known, folder) for group, one in rows))
     table = e("table", {"class": "verdicts"}, e("thead", None, head), body)
-    requirements: list[Child] = []
-    for name in [name for name in ids if spec.requirements[name].text]:
-        requirements += [e("dt", None, name), e("dd", None, spec.requirements[name].text)]
     title = f"{len(recordings):,} recordings, checked against {spec.name}"
+    where = e("p", {"class": "soft"}, "in ", e("code", None, folder)) if folder else None
+    header = e("header", None, e("h1", None, title), e("p", None, ", ".join(told)), where)
     return page(
         title,
         [
-            e(
-                "header",
-                None,
-                e("h1", None, title),
-                e("p", None, ", ".join(told)),
-                e("dl", {"class": "facts"}, *requirements),
-            ),
-            e(
-                "section",
-                None,
-                _filters(counts),
-                scroll(table),
-            ),
+            header,
+            e("section", None, e("h2", None, "Requirements"), _totals(spec, recordings, ids)),
+            e("section", None, e("h2", None, "Recordings"), _filters(counts), scroll(table)),
             e("footer", None, legend("Verdicts")),
         ],
         styles=["base.css", "report.css"],
         scripts=["index.js"],
     )
+
+
+def _totals(spec: CheckedSpec, recordings: Sequence[Listed], ids: Sequence[str]) -> ET.Element:
+    """Of each requirement, how many recordings have which verdict."""
+    reports = [one.report for one in recordings if one.report is not None]
+    words = ("requirement", *(verdict.value for verdict in Verdict), "in words")
+    rows = []
+    for name in ids:
+        requirement = spec.requirements[name]
+        counts = Counter(report.verdicts[name] for report in reports)
+        cells = (count_cell(verdict, counts[verdict]) for verdict in Verdict)
+        about = {"severity": requirement.severity, "tags": ", ".join(requirement.tags)}
+        more = "; ".join(f"{word}: {value}" for word, value in about.items() if value)
+        text = e("td", {"class": "text"}, requirement.text, e("div", {"class": "soft"}, more))
+        rows.append(e("tr", None, e("th", {"scope": "row"}, name), *cells, text))
+    head = e("tr", None, *(e("th", {"scope": "col"}, word) for word in words))
+    body = e("tbody", None, *rows)
+    return scroll(e("table", {"class": "verdicts folds"}, e("thead", None, head), body))
+
+
+def _folder(names: Sequence[str]) -> str:
+    """What stands before all names, up to its last slash."""
+    shared = os.path.commonprefix(list(names))  # noqa: RUF071 - it is cut at a slash
+    return shared[: shared.rfind("/") + 1]
+
+
+def _failed(one: Listed) -> list[str]:
+    verdicts = {} if one.report is None else one.report.verdicts
+    return [name for name, verdict in verdicts.items() if verdict is Verdict.FAIL]
 
 
 def _group(one: Listed, known: KnownFailures) -> str:
@@ -109,20 +135,30 @@ def _filters(counts: Counter[str]) -> ET.Element:
         for group, words in _GROUPS.items()
         if counts[group]
     ]
-    search = e("input", {"type": "search", "placeholder": "part of a name", "aria-label": "name"})
+    search = e("input", {"type": "search", "placeholder": ASKED, "aria-label": ASKED})
     count = e("output", {"aria-live": "polite"})
     return e("form", {"class": "filters", "hidden": "hidden"}, search, *boxes, count)
 
 
-def _row(group: str, one: Listed, ids: Sequence[str], known: KnownFailures) -> ET.Element:
-    name: Child = e("a", {"href": one.page}, one.name) if one.page else one.name
-    attributes = {"data-group": group, "data-name": one.name.lower()}
+def _row(
+    group: str,
+    one: Listed,
+    ids: Sequence[str],
+    spec: CheckedSpec,
+    known: KnownFailures,
+    folder: str,
+) -> ET.Element:
+    shown = one.name.removeprefix(folder)
+    name: Child = e("a", {"href": one.page}, shown) if one.page else shown
+    failed = _failed(one)
+    asked = [one.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
+    attributes = {"data-group": group, "data-name": " ".join(asked).lower()}
     first = e("th", {"scope": "row"}, name)
     if one.report is None:
         width = str(max(1, len(ids)))
         told = in_short(one.error.removeprefix(f"{one.name}: "))
         place = {"class": "text", "colspan": width, "title": one.error}
-        why = e("td", place, f"{_BROKEN}: {told}")
+        why = e("td", place, *with_code(f"{_BROKEN}: {told}"))
         return e("tr", attributes, first, why)
     failures = known.failures(one.report)
     expected = known.expected(one.report)
@@ -137,8 +173,6 @@ def _cell(one: Listed, requirement: str, known: str) -> ET.Element:
     verdict = one.report.verdicts[requirement]
     text = f"{verdict.value} {MARKS[verdict].sign}"
     attributes = {"data-verdict": verdict.value}
-    if verdict is not Verdict.FAIL:
-        return e("td", attributes, text)
     first = next(one.report.of(requirement, verdict), None)
     reason = (known and f"known: {known}") or (first.reason if first is not None else "")
     link = e("a", {"href": f"{one.page}#{requirement}", "title": reason}, text)

@@ -43,7 +43,7 @@ def verdict_colours() -> str:
     """The colours as CSS variables named by the verdicts' letters, for light and dark pages."""
     light = "".join(f"--{verdict.value}:{mark.light};" for verdict, mark in MARKS.items())
     dark = "".join(f"--{verdict.value}:{mark.dark};" for verdict, mark in MARKS.items())
-    return f":root{{{light}}}@media(prefers-color-scheme:dark){{:root{{{dark}}}}}"
+    return f":root{{{light}}}@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}"
 
 
 def verdict_text(verdict: Verdict) -> Text:

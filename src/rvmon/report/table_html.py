@@ -61,6 +61,12 @@ def legend(of: str = "Number of tests") -> ET.Element:
     return e("p", {"class": "soft"}, f"{of}: ", *parts)
 
 
+def count_cell(verdict: Verdict, count: int) -> ET.Element:
+    """How many have a verdict; none is no reason for colour."""
+    attributes = {"data-verdict": verdict.value, "class": None if count else "zero"}
+    return e("td", attributes, f"{count:,}")
+
+
 def _head(table: VerdictTable, *, has_checked: bool) -> ET.Element:
     letters = len(Verdict)
     top: list[Child] = [e("th")]

@@ -6,11 +6,12 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rvmon.report.afterword import duration_text
 from rvmon.report.markup import Child, e
 from rvmon.report.style import MARKS
 from rvmon.report.track_rows import place_of, track_row
 from rvmon.report.tracks import Track
-from rvmon.report.view import View, moment, round_instants
+from rvmon.report.view import View, moment, round_instants, with_moments
 from rvmon.verdict.attempt import Attempt
 
 LABEL = 0.44
@@ -117,8 +118,10 @@ def _labels(
         wanted.append((attempt.decided, "decision", mark.sign, mark.word))
     else:
         wanted.append((end, "end", "■", "end of the run"))
-    if late is not None and late <= view.end:
-        wanted.append((late, "late", "◆", "came late"))
+    if late is not None and deadline is not None:
+        sign = "◆" if late <= view.end else "→"
+        word = with_moments(f"came {duration_text(late - deadline)} late", view)
+        wanted.append((late, "late", sign, word))
     taken: list[list[tuple[float, float]]] = []
     labels = []
     for instant, kind, sign, word in wanted:

@@ -20,6 +20,12 @@ SIGNS = {"<=": "≤", ">=": "≥", "==": "=", "!=": "≠"}
 EDGE = 0.12
 """Of a number's range, left free above and below."""
 
+LABELLED = 0.25
+"""Share of the width, at the right, beside the label of a threshold."""
+
+LOWEST_UNDER = 0.75
+"""From the top of a track: a label has room under a threshold that is not lower."""
+
 
 def track_row(
     track: Track,
@@ -53,7 +59,8 @@ def track_row(
                 plot.append(_offending(view.fraction(instant)))
         if ghost is not None:
             _add_stretches(plot, stretches(ghost, view, ghost_end), " ghost")
-    name = e("div", {"class": "name"}, e("code", None, track.name))
+    unit = e("small", None, f" [{track.unit}]") if track.unit else None
+    name = e("div", {"class": "name"}, e("span", None, e("code", None, track.name), unit))
     if track.kind is not TrackKind.EVENT:
         name.append(e("output", {"data-track": track.name}))
     return e("div", {"class": "row"}, name, plot)
@@ -134,13 +141,20 @@ def _add_number(
     for threshold in track.thresholds:
         top = (highest - threshold.value) / (highest - lowest)
         text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g}{_unit(track)}"
-        line = {"class": "threshold", "style": f"top:{top:.2%}"}
+        side = " under" if top < LOWEST_UNDER and _is_above(pieces, threshold.value) else ""
+        line = {"class": f"threshold{side}", "style": f"top:{top:.2%}"}
         plot.append(e("div", line, e("span", None, text)))
     for instant in blamed:
         at = track.value_at(instant)
         if isinstance(at, int | float) and view.start <= instant <= view.end:
             x, y = view.fraction(instant), (highest - at) / (highest - lowest)
             plot.append(e("span", {"class": "sample", "style": f"left:{x:.2%};top:{y:.2%}"}, "✗"))
+
+
+def _is_above(pieces: Sequence[Stretch], value: float) -> bool:
+    """Whether a number is above a value where the value's label stands."""
+    there = [one.value for one in pieces if one.right > 1 - LABELLED]
+    return any(isinstance(one, int | float) and one > value for one in there)
 
 
 def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:

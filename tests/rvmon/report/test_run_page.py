@@ -271,7 +271,7 @@ def test_several_recordings_get_a_list(tmp_path):
     index = (tmp_path / "index.html").read_text()
     links = [a["href"] for tag, a in Reader(index).tags if tag == "a"]
     assert all((tmp_path / link.partition("#")[0]).exists() for link in links)
-    assert len(links) == 4  # one to what failed
+    assert len(links) == 3 * (1 + len(spec.requirements))  # one to each verdict
     assert "F ✗" in index
 
 
@@ -331,7 +331,24 @@ def test_what_came_late_is_marked():
     """The page says how long after the deadline it came, and marks where."""
     page = run_page(content(door(answer=2.02)))
     assert "it came at 7.02 s, 20 ms after the deadline" in page.replace("\xa0", " ")
-    assert re.search(r'class="label late[^>]*>(?:◆ )?came late', page)
+    assert re.search(r'class="label late[^>]*>(?:◆ )?came 20 ms late', page)
     far = run_page(content(door(answer=12.0)))
     assert "10 s after the deadline" in far.replace("\xa0", " ")
-    assert 'class="label late' not in far
+    assert re.search(r'class="label late[^>]*>came 10 s late <[^>]*>17 s</span> →', far)
+
+
+def test_all_requirements_stand_over_the_whole_recording():
+    """The worst first; a bar from each trigger to its decision, in the colour of its verdict."""
+    samples = [
+        (0.0, {"closed": False, "gap": 1.0}),
+        (5.0, {"knock": True}),
+        (10.0, {"closed": True, "gap": 0.01}),
+        (15.0, {"knock": True}),
+    ]
+    nav = re.search(r"<nav.*?</nav>", run_page(content(judged("t", samples))), re.DOTALL)[0]
+    rows = re.findall(r'<a class="row" href="#([^"]*)".*?</a>', nav)
+    assert rows == ["D1-2", "D2-1", "D3-1"]
+    row = nav.partition('href="#D1-2"')[2].partition("</a>")[0]
+    bars = re.findall(r'data-verdict="(.)" style="left:([\d.]+)%;width:([\d.]+)%', row)
+    assert [(verdict, float(left)) for verdict, left, _ in bars] == [("P", 25.0), ("F", 75.0)]
+    assert float(bars[1][2]) == pytest.approx(10, abs=0.5)  # two of twenty seconds

@@ -12,7 +12,7 @@ from rvmon.cdv.mutation.report import MutationReport, killer
 from rvmon.cdv.mutation.text import HEAD, SPEC_HEAD, SPEC_TITLE, score_rows, spec_score_rows
 from rvmon.cdv.mutation.tried import How, Tried
 from rvmon.report.coverage_summary import counted
-from rvmon.report.markup import Child, e, page, with_code
+from rvmon.report.markup import Child, e, page, scroll, with_code
 
 ABOUT = (
     "A mutant is one small wrong change. It is killed if a test that is fine without it is not "
@@ -130,7 +130,7 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]], *, texts: int) ->
     titles = e("tr", None, *_cells(head, texts, tag="th"))
     lines = [e("tr", None, *_cells(row, texts)) for row in rows]
     grid = e("table", None, e("thead", None, titles), e("tbody", None, *lines))
-    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, grid)
+    return scroll(grid)
 
 
 def _cells(row: Sequence[str], texts: int, *, tag: str = "td") -> Iterator[ET.Element]:

@@ -1,7 +1,7 @@
 "use strict";
 (() => {
   const form = document.querySelector(".filters");
-  const rows = [...document.querySelectorAll("tbody tr")];
+  const rows = [...document.querySelectorAll("tr[data-name]")];
   const search = form.querySelector("input[type=search]");
   const boxes = [...form.querySelectorAll("input[type=checkbox]")];
   const count = form.querySelector("output");

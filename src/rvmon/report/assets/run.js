@@ -2,6 +2,9 @@
 (() => {
   const run = JSON.parse(document.getElementById("run").textContent);
   const main = document.querySelector("main");
+  const rows = [...document.querySelectorAll("nav .row[href]")];
+  const here = document.querySelector("nav .here");
+  const runCursor = document.querySelector("nav .cursor");
   const sections = [...main.querySelectorAll("section")];
   const scene = run.scene && readScene(run.scene);
   const bodies = [...document.querySelectorAll(".scene [data-body]")];
@@ -22,14 +25,25 @@
     stop();
     open = section;
     for (const one of sections) one.classList.toggle("open", one === section);
-    for (const chip of document.querySelectorAll("nav .chip")) {
-      const mine = sections.find((one) => "#" + one.id === chip.getAttribute("href"));
-      const current = mine && requirement(mine) === requirement(section);
-      if (current) chip.setAttribute("aria-current", "true");
-      else chip.removeAttribute("aria-current");
+    for (const row of rows) {
+      const mine = sections.find((one) => "#" + one.id === row.getAttribute("href"));
+      const current = requirement(mine) === requirement(section);
+      if (current) {
+        row.setAttribute("aria-current", "true");
+        row.closest(".all").scrollTop = row.offsetTop - row.offsetHeight;
+      }
+      else row.removeAttribute("aria-current");
     }
+    const panel = run.panels[section.id];
+    here.style.left = 100 * Math.max(share(panel.start), 0) + "%";
+    here.style.right = 100 * Math.max(1 - share(panel.end), 0) + "%";
     document.title = section.querySelector("h1").textContent;
     setInstant(run.panels[section.id].instant);
+  }
+
+  /** Where an instant lies in the whole run, 0 to 1. */
+  function share(t) {
+    return (t - run.start) / (run.end - run.start);
   }
 
   function requirement(section) {
@@ -52,6 +66,7 @@
     const fraction = (t - panel.start) / (panel.end - panel.start);
     instant = t;
     for (const cursor of open.querySelectorAll(".cursor")) cursor.style.left = 100 * fraction + "%";
+    runCursor.style.left = 100 * Math.min(Math.max(share(t), 0), 1) + "%";
     open.querySelector("input").value = Math.round(1000 * fraction);
     open.querySelector(".instant").textContent = reading(instant, panel.trigger);
     for (const output of open.querySelectorAll("output[data-track]")) {
@@ -173,13 +188,28 @@
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|BUTTON|SUMMARY|A)$/.test(event.target.tagName)) return;
     const panel = run.panels[open.id];
-    const share = (instant - panel.start) / (panel.end - panel.start);
+    const at = (instant - panel.start) / (panel.end - panel.start);
     if (event.key === " ") toggle();
-    else if (event.key === "ArrowLeft") setFraction(share - 0.005);
-    else if (event.key === "ArrowRight") setFraction(share + 0.005);
+    else if (event.key === "ArrowLeft") setFraction(at - 0.005);
+    else if (event.key === "ArrowRight") setFraction(at + 0.005);
     else return;
     event.preventDefault();
   });
+  for (const row of rows) {
+    row.addEventListener("click", (event) => {
+      const plot = row.querySelector(".plot").getBoundingClientRect();
+      if (event.detail === 0 || event.clientX < plot.left) return;
+      const t = run.start + ((event.clientX - plot.left) / plot.width) * (run.end - run.start);
+      const name = requirement(sections.find((one) => "#" + one.id === row.getAttribute("href")));
+      const far = (section) => {
+        const panel = run.panels[section.id];
+        return Math.max(panel.trigger - t, t - panel.instant, 0);
+      };
+      const own = sections.filter((one) => requirement(one) === name).sort((a, b) => far(a) - far(b));
+      event.preventDefault();
+      location.hash = own[0].id;
+    });
+  }
   const copy = document.querySelector(".copy");
   copy.addEventListener("click", () => {
     const range = document.createRange();

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 
 import pytest
+from tests.tools.looked_at import faults
 
 from rvmon.cdv.files import save
 from rvmon.cdv.mutation.find import code_mutants
@@ -45,6 +46,17 @@ def test_a_suite_is_scored(campaign, tmp_path, capsys):
     assert "3 tests run it, and nothing that is recorded differs" in told
     assert (out / "mutation.txt").read_text() in told
     assert "nothing that is recorded differs" in (out / "mutation.html").read_text()
+
+
+def test_pages_are_fit_for_everybody(campaign, chromium, tmp_path, monkeypatch):
+    """Those of mutants, of the campaign, and of its coverage."""
+    monkeypatch.chdir(tmp_path)
+    command = ["mutate", "--only", "Lift.note", "--jobs", "1", "--held-out", "--out", "out"]
+    assert main(campaign, command) == 0
+    assert main(campaign, ["run", "--tests", "2", "--jobs", "1", "--out", "out"]) == 0
+    pages = {path.name: path.read_text() for path in tmp_path.glob("out/**/*[a-z].html")}
+    assert {"mutation.html", "report.html", "coverage.html"} <= pages.keys()
+    assert faults(chromium, tmp_path, pages) == []
 
 
 def test_a_folder_of_tests_is_a_suite(campaign, tmp_path, capsys):
