@@ -20,7 +20,7 @@ from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
 from rvmon.cli.reproduced import relax
 from rvmon.cli.say import warn
-from rvmon.errors import RvmonError
+from rvmon.errors import EXTRAS, RvmonError, not_installed
 from rvmon.execute.interrupt import interrupted_by_sigterm
 
 if TYPE_CHECKING:
@@ -108,6 +108,10 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
         _drop_output()
         return 0
     except Exception as error:
+        package = str(getattr(error, "name", "")).partition(".")[0]
+        if isinstance(error, ModuleNotFoundError) and package in EXTRAS:
+            warn(f"error: {not_installed('this', package)}")
+            return 2
         if isinstance(error, OSError) and error.errno == errno.ENOSPC:
             warn(f"error: the output cannot be written: {error.strerror}")
             _drop_output()
