@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     measured = arguments.robustness
-    plan = spec.plan(only=ids_of(arguments.only, spec), robustness=measured)
+    plan = spec.plan(only=asked_ids(arguments, spec), robustness=measured)
     path = built(program_build(plan, measured=measured))
     try:
         write_whole(arguments.output, path.read_bytes())

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.say import say
 from rvmon.diagnostics.shown import shown_json
 from rvmon.errors import RvmonError
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids = ids_of(arguments.only, spec)
+    ids = asked_ids(arguments, spec)
     if arguments.to in _AUTOMATA:
         if not spec.requirements:
             raise RvmonError(f"error: {arguments.spec} has no requirement: it has no automaton")

@@ -10,7 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_format, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_format, add_only, asked_ids, constants_of
 from rvmon.cli.reading import add_reading, opened, reading_spec
 from rvmon.cli.say import say, say_json
 from rvmon.errors import RvmonError
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     checked = spec.checked
     if not checked.requirements:
         raise RvmonError(f"error: {arguments.spec} has no requirement: there is nothing to compare")
-    if (ids := ids_of(arguments.only, spec)) is not None:
+    if (ids := asked_ids(arguments, spec)) is not None:
         chosen = {name: checked.requirements[name] for name in ids}
         checked = replace(checked, requirements=chosen)
     recording = opened(spec, arguments.trace)

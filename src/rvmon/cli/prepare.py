@@ -6,7 +6,7 @@ import argparse
 from dataclasses import asdict
 from itertools import count
 
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say, say_json
 
@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.report.plain_table import plain_table
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids, done = ids_of(arguments.only, spec), count(1)
+    ids, done = asked_ids(arguments, spec), count(1)
     with bar("compiling", len(USES) - (not arguments.robustness)) as tell:
         found = spec.prepare(
             only=ids, ready=lambda _: tell(next(done)), robustness=arguments.robustness

@@ -328,7 +328,7 @@ def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -
             warn(f"warning: {message}")
     if arguments.format == "json":
         _show_doubts(judged)
-        texts = [_json(one) for one in judged]
+        texts = [_json(one, spec) for one in judged]
         say_json(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
@@ -354,9 +354,9 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
                 warn(f"warning: {one.trace}: `{health.name}`: {health.remark}")
 
 
-def _json(one: Judged) -> str:
+def _json(one: Judged, spec: Spec) -> str:
     if one.report is not None:
-        return one.report.to_json()
+        return one.report.to_json(spec.requirements)
     from rvmon.verdict.report_json import encode_broken
 
     return encode_broken(one.trace, one.error, one.before)

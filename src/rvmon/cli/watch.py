@@ -13,7 +13,7 @@ from io import FileIO
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive, span
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
 from rvmon.cli.say import warn
 from rvmon.errors import RvmonError, SpecError
@@ -139,7 +139,7 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
         is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
-        only = ids_of(arguments.only, spec)
+        only = asked_ids(arguments, spec)
         return watch_kept(arguments, spec, only, lines, is_file=is_file)
 
 
@@ -302,7 +302,7 @@ def _live(
     return Live(
         spec,
         clock=clock,
-        only=ids_of(arguments.only, spec),
+        only=asked_ids(arguments, spec),
         lag_ns=arguments.realtime,
         room=arguments.room,
         on_judged=judged,

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import polars
     import pyarrow
 
+    from rvmon.spec.checked.specification import Requirement
     from rvmon.verdict.rows import VerdictRow
 
 _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
@@ -149,13 +150,16 @@ class Report:
 
         return polars_frame(self.to_arrow())
 
-    def to_json(self) -> str:
+    def to_json(self, requirements: Mapping[str, Requirement] | None = None) -> str:
         """The report as JSON text, in the shape that `rvmon run --format json` prints.
 
         JSON knows no infinities: such captured values and robustnesses become null.
+
+        Args:
+            requirements: `Spec.requirements`, of which severity and tags are to stand there.
         """
         from rvmon.verdict.attempt_json import attempt_text
-        from rvmon.verdict.report_json import encode
+        from rvmon.verdict.report_json import encode, labels
 
         if isinstance(self.attempts, LazyAttempts):
             texts = self.attempts.texts(self.origin)
@@ -163,7 +167,10 @@ class Report:
             texts = ((one.requirement, attempt_text(one, self.origin)) for one in self.attempts)
         return encode(
             {"law": self.law, "trace": self.trace, "origin": self.origin, "end": self.end},
-            {name: (verdict, self._rest_of(name)) for name, verdict in self.verdicts.items()},
+            {
+                name: (verdict, self._rest_of(name) | labels((requirements or {}).get(name)))
+                for name, verdict in self.verdicts.items()
+            },
             texts,
             {
                 "health": self.health,
