@@ -147,7 +147,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     parser = Parser(
         prog="rvmon",
         description="Temporal requirements in, verdicts about robots out.",
-        epilog="example: rvmon run specs/handover.rv recording.csv",
+        epilog="example: rvmon run examples/base.rv examples/base.csv",
     )
     parser.add_argument("--version", action="version", version=f"rvmon {__version__}, law {LAW}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)

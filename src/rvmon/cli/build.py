@@ -18,7 +18,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Compile a specification to a program (by a C compiler: $CC, cc, gcc or "
         "clang). It reads a recording (.csv, .jsonl, .bin, or - for JSON lines on standard input) "
         "and prints the verdicts as `rvmon run --format json` does, without reasons.",
-        epilog="example: rvmon build specs/door.rv -o door && ./door monday.csv",
+        epilog="example: rvmon build examples/base.rv -o judge && ./judge examples/base.csv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("-o", "--output", metavar="BINARY", required=True, help="the program")

@@ -27,7 +27,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "check",
         help="find what is wrong in specifications",
         description="Find what is wrong in specifications: all errors and warnings of each file.",
-        epilog="examples: rvmon check specs/*.rv --format concise; rvmon check door.rv --engines",
+        epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format "
+        "concise; rvmon check examples/base.rv --engines",
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
     add_const(parser)

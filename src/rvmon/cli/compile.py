@@ -29,8 +29,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "header, a source, a header for C++) that allocates nothing. Or the automata: dot for "
         "Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time). "
         "Or costs: a line per requirement with what judges it and what open attempts cost.",
-        epilog="examples: rvmon compile specs/handover.rv --to c -o monitor/; "
-        "rvmon compile specs/handover.rv --to dot --only R1 | dot -Tsvg -o r1.svg",
+        epilog="examples: rvmon compile examples/base.rv --to c -o monitor/; rvmon compile "
+        "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument(

@@ -35,7 +35,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "enough, by compiled C where there is a compiler, and by the other monitors that are "
         "installed (rtamt, reelay, mstlo, sentil) where they have such a formula. Prints who "
         "agrees; a disagreement is shown with attempt and instant, and exits with 1.",
-        epilog="example: rvmon cross specs/door.rv monday.csv",
+        epilog="example: rvmon cross examples/base.rv examples/base.csv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")

@@ -20,7 +20,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "Streams are then judged several times faster by the engine auto, with all that it tells, "
         "and the engine c starts at once; on the same machine without a compiler as well. The "
         "files are kept in the cache. rvmon check --engines says what auto does not take.",
-        epilog="example: rvmon prepare specs/door.rv && rvmon run specs/door.rv *.csv --engine c",
+        epilog="examples: rvmon prepare examples/base.rv; rvmon run examples/base.rv "
+        "examples/base.csv --engine c",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument(

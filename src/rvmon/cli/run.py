@@ -51,7 +51,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Judge recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
         "lines on standard input) by a specification: P passed, F failed, NT not triggered, "
         "I inconclusive.",
-        epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
+        epilog="examples: rvmon run examples/base.rv examples/base.csv; rvmon run "
+        "examples/base.rv examples/base.csv --only B2 --report pages --junit "
+        "verdicts.xml",
     )
     parser.add_argument(
         "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"

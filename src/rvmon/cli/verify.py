@@ -28,7 +28,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Decide queries on a network of timed automata (.ta, or UPPAAL's .xml), each "
         "with a timed run that shows why. Exit code 0: all hold; 1: some do not, or the budget "
         "ended first.",
-        epilog="example: rvmon verify model.ta --query 'A[] not deadlock' --trace fastest",
+        epilog="example: rvmon verify examples/models/train_gate.ta --query 'A[] not "
+        "deadlock' --trace fastest",
     )
     parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
     parser.add_argument(

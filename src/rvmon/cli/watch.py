@@ -46,7 +46,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Judge JSON lines as they arrive, and say each verdict as soon as it is sure: "
         "a deadline that is missed is told when it is over. A change of the specification is taken "
         "up at once. Ends with the stream, or with Ctrl-C.",
-        epilog="example: my_robot --telemetry | rvmon watch specs/base.rv",
+        epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
+        "rvmon watch examples/base.rv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument(
