@@ -13,7 +13,7 @@ from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, constants_of
 from rvmon.cli.reading import add_binding
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.say import rendered, say, say_json, warn
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
 if TYPE_CHECKING:
@@ -150,7 +150,6 @@ def _show(
     from rvmon.diagnostics.render import (
         coloured,
         render_concise,
-        render_full,
         render_json,
         wants_colour,
     )
@@ -164,7 +163,7 @@ def _show(
         case "concise" if findings:
             warn(render_concise(findings))
         case "text" if findings:
-            text = render_full(findings)
+            text = rendered(findings)
             # Nothing of others is left in it that could steer a terminal.
             sys.stderr.write(f"{coloured(text) if wants_colour(sys.stderr) else text}\n")
 

@@ -25,7 +25,7 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_files import write_files, write_results
-from rvmon.cli.say import say_json, warn
+from rvmon.cli.say import rendered, say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.monitor.engines.registry import ENGINES
 from rvmon.report.folder import refuse_no_file
@@ -310,9 +310,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
 
 def _show_warnings(spec: Spec) -> None:
     if spec.warnings:
-        from rvmon.diagnostics.render import render_full
-
-        warn(render_full(spec.warnings))
+        warn(rendered(spec.warnings))
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
         warn(f"{spec.checked.name} has no requirement: nothing is judged")

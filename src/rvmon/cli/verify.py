@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_budget, add_format, budget_of
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.say import rendered, say, say_json, warn
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -159,9 +159,7 @@ def _constant(text: str) -> tuple[str, int]:
 
 def _show_warnings(network: Network) -> None:
     if network.warnings:
-        from rvmon.diagnostics.render import render_full
-
-        warn(render_full(network.warnings))
+        warn(rendered(network.warnings))
 
 
 def _print_outcome(network: Network, outcome: Outcome) -> None:

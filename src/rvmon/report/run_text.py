@@ -154,7 +154,7 @@ def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, wi
     span = requirement.span
     if attempt.blame is not None and span is not None:
         span = type(span)(span.source, attempt.blame.start, attempt.blame.end)
-        text.append(snippet(span))
+        text.append(snippet(span, width=width))
     return text
 
 
