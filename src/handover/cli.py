@@ -45,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = Parser(
+    parser: argparse.ArgumentParser = Parser(
         prog="handover",
         description="Simulated robot-to-human handovers, judged by requirements.",
         epilog="example: handover run --strategy constrained --tests 50 --out out/mine",

@@ -42,9 +42,7 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser(campaign: Campaign) -> argparse.ArgumentParser:
-    parser: argparse.ArgumentParser = Parser(
-        description=f"{campaign.name}: tests judged by requirements."
-    )
+    parser: argparse.ArgumentParser = Parser(description=f"{campaign.name}: judged tests.")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     run = commands.add_parser(
         "run",

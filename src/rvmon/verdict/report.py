@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon.trace.health import Health
@@ -68,6 +69,9 @@ class Report:
     _kinds: dict[tuple[str, Verdict], list[Attempt]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+
+    def _repr_html_(self) -> str:
+        return str(import_module("rvmon.report.notebook").report_html(self))  # lies above
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.
