@@ -6,6 +6,7 @@ import argparse
 import os
 
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
+from rvmon.cli.progress import busy
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
@@ -40,7 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
     spec = load(arguments.spec, const=constants_of(arguments.const))
     measured = arguments.robustness
     plan = spec.plan(only=asked_ids(arguments, spec), robustness=measured)
-    path = built(program_build(plan, measured=measured))
+    with busy("compiling"):
+        path = built(program_build(plan, measured=measured))
     try:
         write_whole(arguments.output, path.read_bytes())
         if os.path.isfile(arguments.output):  # whoever may read it may run it

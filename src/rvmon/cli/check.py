@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_binding
 from rvmon.cli.say import rendered, say, say_json, warn
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
@@ -82,7 +83,8 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.binding is not None and checked is not None:
             remarks += _bound(arguments.binding, checked)
         if arguments.analyse and checked is not None:
-            more, remark = _analysed(checked, arguments.seconds)
+            with busy(f"analysing {name}"):
+                more, remark = _analysed(checked, arguments.seconds)
             findings += more
             remarks += remark
     findings = list(dict.fromkeys(findings))  # a file may be imported by several

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_const, add_format, add_only, asked_ids, constants_of
+from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_reading, opened, reading_spec
 from rvmon.cli.say import say, say_json
 from rvmon.errors import RvmonError
@@ -76,7 +77,8 @@ def run(arguments: argparse.Namespace) -> int:
     case = Case(checked, tuple(samples), recording.end, recording.names)
     with ExitStack() as stack:
         peers = {name: stack.enter_context(peer) for name, peer in _peers(arguments.peers)}
-        found = list(crossings(case, peers))
+        with busy("judging in every way there is"):
+            found = list(crossings(case, peers))
     if arguments.format == "json":
         say_json(_json(arguments, found, 0 if late is None else late[0], recording.health()))
     else:

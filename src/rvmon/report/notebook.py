@@ -98,7 +98,7 @@ def _attempt(attempt: Attempt, report: Report) -> Iterator[Child]:
     yield e("h1", None, sign, e("span", None, f"{attempt.name}: ", *with_code(why)))
     end = attempt.triggered if report.end is None else report.end
     yield timeline(attempt, (), view_of(attempt, report), origin=report.origin, end=end)
-    values = [f"`{text}` {value}" for text, value in attempt.at_decision.items()]
+    values = [f"`{text}` {str(value).lower()}" for text, value in attempt.at_decision.items()]
     if values:
         when = e("span", None, "at the decision: ", *with_code(", ".join(values)))
         yield e("p", {"class": "legend"}, when)
