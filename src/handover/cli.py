@@ -29,6 +29,7 @@ from rvmon.cli.campaign import (
     names_of,
 )
 from rvmon.cli.numbers import positive
+from rvmon.cli.parser import Parser
 
 if TYPE_CHECKING:
     from rvmon.cdv import Campaign
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser: argparse.ArgumentParser = Parser(
         prog="handover",
         description="Simulated robot-to-human handovers, checked against requirements.",
         epilog="example: handover run --strategy constrained --tests 50 --out out/mine",
@@ -144,7 +145,6 @@ def _add_shrink(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser = commands.add_parser(
         "shrink",
         help="find the smallest test that fails like one",
-        epilog="example: handover shrink out/demo/tests/mutant-releases-late.json --out out/small",
     )
     add_shrink_options(parser)
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")

@@ -24,12 +24,17 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.errors import (
+        CoverageError,
         MissingNameError,
         ModelError,
+        OverlapError,
         RvmonError,
+        SnapshotError,
         SpecError,
         TimeOrderError,
         TraceError,
+        UnknownNameError,
+        WorkerLostError,
     )
     from rvmon.loading import load, loads
     from rvmon.monitor import Monitor
@@ -44,19 +49,24 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Attempt",
+    "CoverageError",
     "Diagnostic",
     "MissingNameError",
     "ModelError",
     "Monitor",
+    "OverlapError",
     "Report",
     "Requirement",
     "RvmonError",
     "Sample",
+    "SnapshotError",
     "Spec",
     "SpecError",
     "TimeOrderError",
     "TraceError",
+    "UnknownNameError",
     "Verdict",
+    "WorkerLostError",
     "__version__",
     "load",
     "loads",
@@ -66,20 +76,15 @@ __all__ = [
 _HOMES = {
     "Attempt": "rvmon.verdict.attempt",
     "Diagnostic": "rvmon.diagnostics.diagnostic",
-    "MissingNameError": "rvmon.errors",
-    "ModelError": "rvmon.errors",
     "Monitor": "rvmon.monitor",
     "Report": "rvmon.verdict.report",
     "Requirement": "rvmon.spec.checked.specification",
-    "RvmonError": "rvmon.errors",
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",
-    "SpecError": "rvmon.errors",
-    "TimeOrderError": "rvmon.errors",
-    "TraceError": "rvmon.errors",
     "Verdict": "rvmon.verdict.verdict",
     "load": "rvmon.loading",
     "loads": "rvmon.loading",
+    **{name: "rvmon.errors" for name in __all__ if name.endswith("Error")},
 }
 
 
@@ -89,3 +94,7 @@ def __getattr__(name: str) -> Any:
     value = getattr(import_module(_HOMES[name]), name)
     globals()[name] = value
     return value
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -90,3 +90,34 @@ class WorkerLostError(RvmonError):
 
 class OverlapError(RvmonError, RuntimeError):
     """A monitor was called while another call of it was under way; this one changed nothing."""
+
+
+EXTRAS = {
+    "backports.zstd": "zstd",
+    "coverage": "cdv",
+    "cyclonedds": "dds",
+    "distributed": "dask",
+    "fsspec": "remote",
+    "gymnasium": "gym",
+    "mcap": "mcap",
+    "mcap-protobuf-support": "mcap",
+    "paho-mqtt": "mqtt",
+    "pyarrow": "arrow",
+    "pymunk": "handover",
+    "rosbags": "ros",
+}
+"""The extra of rvmon that brings a package."""
+
+
+def not_installed(what: str, package: str) -> RvmonError:
+    """The error that a package is not there, with the line that installs it.
+
+    Args:
+        what: needs it.
+        package: of an extra of rvmon, or one that rvmon only makes use of.
+
+    >>> print(not_installed("Parquet", "pyarrow"))
+    Parquet needs pyarrow, which is not installed: pip install 'rvmon[arrow]'
+    """
+    extra = f"'rvmon[{EXTRAS[package]}]'" if package in EXTRAS else package
+    return RvmonError(f"{what} needs {package}, which is not installed: pip install {extra}")

@@ -47,6 +47,11 @@ class Spec:
     def __repr__(self) -> str:
         return f"<Spec {self.checked.name}: {', '.join(self.checked.requirements)}>"
 
+    def _repr_html_(self) -> str:
+        from rvmon.report.notebook import spec_html
+
+        return spec_html(self.checked)
+
     @property
     def requirements(self) -> Mapping[str, Requirement]:
         """The requirements by id, in order of the file."""
@@ -232,14 +237,9 @@ class Spec:
         """
         from rvmon.monitor.evaluate import evaluate_trace
 
-        return evaluate_trace(
-            self._compiled,
-            trace,
-            self._reading(**reading),
-            only=requirements_asked(self.checked, only),
-            engine=engine,
-            until=None if until is None else ticks_of_seconds(until),
-        )
+        given, asked = self._reading(**reading), requirements_asked(self.checked, only)
+        end = None if until is None else ticks_of_seconds(until)
+        return evaluate_trace(self._compiled, trace, given, only=asked, engine=engine, until=end)
 
     def judge(
         self,
@@ -313,13 +313,9 @@ class Spec:
         from rvmon.execute.parallel import execute
         from rvmon.monitor.evaluate import evaluate_trace
 
+        given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         begin = partial(
-            partial,
-            evaluate_trace,
-            self._compiled,
-            reading=self._reading(**reading),
-            only=requirements_asked(self.checked, only),
-            engine=engine,
+            partial, evaluate_trace, self._compiled, reading=given, only=asked, engine=engine
         )
         return execute(traces, begin, jobs=jobs, what="trace")
 

@@ -24,23 +24,29 @@ def test_exported_names_are_pinned():
     """Others rely on these names; adding one is a decision, losing one a break."""
     assert rvmon.__all__ == [
         "Attempt",
+        "CoverageError",
         "Diagnostic",
         "MissingNameError",
         "ModelError",
         "Monitor",
+        "OverlapError",
         "Report",
         "Requirement",
         "RvmonError",
         "Sample",
+        "SnapshotError",
         "Spec",
         "SpecError",
         "TimeOrderError",
         "TraceError",
+        "UnknownNameError",
         "Verdict",
+        "WorkerLostError",
         "__version__",
         "load",
         "loads",
     ]
+    assert dir(rvmon) == rvmon.__all__  # what completion offers
     for name in rvmon.__all__:
         assert getattr(rvmon, name) is not None
 

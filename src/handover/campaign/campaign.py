@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 
 import handover
@@ -25,6 +26,7 @@ from rvmon.cdv import Campaign, Control, Robot
 from rvmon.cdv.campaign_files import TEMPLATES
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
+from rvmon.errors import not_installed
 
 ROBOTS = {
     "correct": "Correct robot",
@@ -43,7 +45,12 @@ def handover_campaign(
         monitors: `False` judges nothing, to measure what judging costs.
         conforming: so many runs of each strategy are held against the model for the page, a second
             each; 0: nothing is shown of the model there.
+
+    Raises:
+        RvmonError: there is no pymunk to play with.
     """
+    if find_spec("pymunk") is None:
+        raise not_installed("the simulation", "pymunk")
     return Campaign(
         name="handover",
         test=AbstractTest,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from rvmon.adapters.messages import CLOCK, MessageFeed
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, not_installed
 from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import ros_topic, ros_types
 
@@ -58,9 +58,7 @@ class DdsSource:
         try:
             from cyclonedds.core import Listener
         except ImportError:
-            raise RvmonError(
-                "DDS needs cyclonedds, which is not installed: pip install 'rvmon[dds]'"
-            ) from None
+            raise not_installed("DDS", "cyclonedds") from None
         self._feed = feed
         self._domain = domain
         self._definitions = tuple(sorted((definitions or {}).items()))

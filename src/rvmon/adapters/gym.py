@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, SupportsFloat, TypeVar
 
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, not_installed
 
 try:
     import gymnasium
 except ImportError:
-    raise RvmonError(
-        "environments need gymnasium, which is not installed: pip install 'rvmon[gym]'"
-    ) from None
+    raise not_installed("an environment", "gymnasium") from None
 
 if TYPE_CHECKING:
     from rvmon.monitor.robustness.values import Measured

@@ -12,7 +12,7 @@ from urllib.parse import unquote, urlsplit
 import msgspec
 
 from rvmon.adapters.json_objects import JsonObjects, decoded_object
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.live.robot import Judgement
 
 _log = logging.getLogger("rvmon.live.input")
@@ -107,9 +107,7 @@ class MqttSource:
             from paho.mqtt.client import Client
             from paho.mqtt.enums import CallbackAPIVersion
         except ImportError:
-            raise RvmonError(
-                "MQTT needs paho-mqtt, which is not installed: pip install 'rvmon[mqtt]'"
-            ) from None
+            raise not_installed("MQTT", "paho-mqtt") from None
         self._objects = objects
         self._address = address
         self._verdicts = verdicts

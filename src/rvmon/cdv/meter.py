@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rvmon.cdv.code import Code
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, not_installed
 
 if TYPE_CHECKING:
     from coverage import Coverage
@@ -153,9 +153,7 @@ def _coverage(code: Code) -> Coverage:
     try:
         from coverage import Coverage
     except ImportError:
-        raise RvmonError(
-            "code coverage needs coverage.py: pip install 'rvmon[cdv]', or measure no code"
-        ) from None
+        raise not_installed("a campaign that measures code", "coverage") from None
     paths = _paths(code)
     meter = Coverage(data_file=None, config_file=False, include=paths, branch=code.branches)
     meter.set_option("run:core", "ctrace")  # the newer core knows no contexts

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import errno
 import gc
-import io
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -19,8 +18,8 @@ from rvmon import __version__
 from rvmon.cli.memory import at_most
 from rvmon.cli.reading import with_values
 from rvmon.cli.reproduced import relax
-from rvmon.cli.say import warn
-from rvmon.errors import RvmonError
+from rvmon.cli.say import rendered, spell, warn
+from rvmon.errors import EXTRAS, DiagnosedError, RvmonError, not_installed
 from rvmon.execute.interrupt import interrupted_by_sigterm
 
 if TYPE_CHECKING:
@@ -77,8 +76,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if arguments is None else list(arguments)
     if sys.stdout is None:  # closed by who called
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - as long as the process
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")  # a narrow encoding costs signs, not the answer
     return guarded(lambda: _parser(words).parse_args(with_values(words)))
 
 
@@ -88,6 +85,7 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
     Args:
         parsed: gives the words of the command line.
     """
+    spell()  # a narrow encoding costs signs, not the answer
     try:
         with interrupted_by_sigterm():
             try:
@@ -98,9 +96,10 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
                 code = namespace.run(namespace)
                 sys.stdout.flush()
     except RvmonError as error:
-        text = str(error)
-        rendered = text.startswith(("error", "warning"))  # diagnostics bring their own heading
-        warn(text if rendered else f"error: {text}")
+        found = error.diagnostics if isinstance(error, DiagnosedError) else ()
+        text = rendered(found) if found else str(error)
+        headed = text.startswith(("error", "warning"))  # diagnostics bring their own heading
+        warn(text if headed else f"error: {text}")
         return 2
     except KeyboardInterrupt:
         return _interrupted()
@@ -109,6 +108,10 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
         _drop_output()
         return 0
     except Exception as error:
+        package = str(getattr(error, "name", "")).partition(".")[0]
+        if isinstance(error, ModuleNotFoundError) and package in EXTRAS:
+            warn(f"error: {not_installed('this', package)}")
+            return 2
         if isinstance(error, OSError) and error.errno == errno.ENOSPC:
             warn(f"error: the output cannot be written: {error.strerror}")
             _drop_output()
@@ -144,7 +147,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     parser = Parser(
         prog="rvmon",
         description="Temporal requirements in, verdicts about robots out.",
-        epilog="example: rvmon run specs/handover.rv recording.csv",
+        epilog="example: rvmon run examples/base.rv examples/base.csv",
     )
     parser.add_argument("--version", action="version", version=f"rvmon {__version__}, law {LAW}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import constants_of, ids_of
+from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.reading import allowed_names, reading_spec
 from rvmon.loading import load
 from rvmon.readers.recording import FileRecording
@@ -60,7 +60,7 @@ def spec_and_options(
     loaded = load(arguments.spec, name=name, const=constants_of(arguments.const))
     spec = reading_spec(loaded, arguments)
     return spec, Options(
-        ids_of(arguments.only, spec),
+        asked_ids(arguments, spec),
         arguments.engine,
         arguments.until,
         arguments.strict_columns,

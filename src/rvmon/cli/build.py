@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import os
 
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
+from rvmon.cli.progress import busy
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
@@ -18,7 +19,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Compile a specification to a program (by a C compiler: $CC, cc, gcc or "
         "clang). It reads a recording (.csv, .jsonl, .bin, or - for JSON lines on standard input) "
         "and prints the verdicts as `rvmon run --format json` does, without reasons.",
-        epilog="example: rvmon build specs/door.rv -o door && ./door monday.csv",
+        epilog="example: rvmon build examples/base.rv -o judge && ./judge examples/base.csv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("-o", "--output", metavar="BINARY", required=True, help="the program")
@@ -39,8 +40,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     measured = arguments.robustness
-    plan = spec.plan(only=ids_of(arguments.only, spec), robustness=measured)
-    path = built(program_build(plan, measured=measured))
+    plan = spec.plan(only=asked_ids(arguments, spec), robustness=measured)
+    with busy("compiling"):
+        path = built(program_build(plan, measured=measured))
     try:
         write_whole(arguments.output, path.read_bytes())
         if os.path.isfile(arguments.output):  # whoever may read it may run it

@@ -16,6 +16,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cli import evidence, guarded
 from rvmon.cli.numbers import duration, number_or_folder, positive, shard
 from rvmon.cli.options import add_dask
+from rvmon.cli.parser import Parser
 from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
 from rvmon.report.folder import refuse_no_file, write_file
@@ -41,7 +42,7 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser(campaign: Campaign) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser: argparse.ArgumentParser = Parser(
         description=f"{campaign.name}: tests checked against requirements."
     )
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -50,12 +51,10 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         help="play the tests of a campaign",
         description="Generate tests, play them on all cores, evaluate them, show and keep the "
         "table.",
+        epilog="example: %(prog)s --tests 20 --out out/mine",
     )
-    run.add_argument(
-        "--strategy",
-        metavar="NAMES",
-        help=f"of {', '.join(campaign.strategies)} (default: all)",
-    )
+    strategies = ", ".join(campaign.strategies)
+    run.add_argument("--strategy", metavar="NAMES", help=f"of {strategies} (default: all)")
     run.add_argument(
         "--robot", metavar="NAMES", help=f"of {', '.join(campaign.robots)} (default: all)"
     )
@@ -74,11 +73,10 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         help="make tests until coverage has no holes",
         description="Make tests aimed at what is not covered, play and evaluate them, until all is "
         "that can be; keep the fewest that cover as much.",
+        epilog="example: %(prog)s --out out/closed",
     )
     close.add_argument(
-        "--strategy",
-        metavar="NAMES",
-        help=f"draw from, of {', '.join(campaign.strategies)} (default: those of the campaign)",
+        "--strategy", metavar="NAMES", help=f"of {strategies} (default: those of the campaign)"
     )
     close.add_argument(
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
@@ -92,6 +90,7 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "replay",
         help="play one test again",
         description="Play a test file alone and evaluate it; the same test gives the same run.",
+        epilog="example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/replay",
     )
     add_replay_options(replay)
     replay.add_argument(
@@ -109,6 +108,7 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         help="which small wrong changes of the code, and of requirements, do tests see?",
         description="Change one small thing at a time, play the tests of each strategy, and show "
         "what kills the mutant, or which question a survivor asks.",
+        epilog="example: %(prog)s --list",
     )
     add_mutate_options(mutate)
     mutate.add_argument(
@@ -164,6 +164,7 @@ def add_playing_options(parser: argparse.ArgumentParser) -> None:
 
 def add_shrink_options(parser: argparse.ArgumentParser) -> None:
     """Declare which test is shrunk, by which failure, and where the smallest one goes."""
+    parser.epilog = "example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/small"
     parser.description = (
         "Take away from a failing test what its failure does not need, print what is left, and "
         "write it as a regression test."

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,7 +27,7 @@ from rvmon.cdv.text import print_summary
 from rvmon.cdv.unfinished import unfinished
 from rvmon.cdv.write_pages import write_pages
 from rvmon.cli.campaign_evidence import begun, write_campaign
-from rvmon.cli.progress import bar
+from rvmon.cli.progress import bar, busy
 from rvmon.cli.say import say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.loading import load
@@ -95,7 +94,7 @@ def conduct(
         raise RvmonError("--evidence is of all tests: give it to the command that joins the shards")
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
-    with told("generating tests"):
+    with busy("generating tests"):
         if arguments.suite is not None:
             chosen = plan_of_folder(campaign, arguments.suite)
         else:
@@ -186,7 +185,7 @@ def written(
     tables = campaign.presentation.tables(summary)
     if folder is None:
         return Conducted(results, summary, tables)
-    with told("writing tables"):
+    with busy("writing tables"):
         write_tables(folder, summary, tables, campaign.presentation)
         write_tests(folder, results)
         played = frozenset(one.job.test.strategy for one in results.played)
@@ -210,12 +209,6 @@ def written(
             "depend on its test alone, and its random numbers on the test's seed"
         )
     return Conducted(results, summary, tables)
-
-
-def told(what: str) -> AbstractContextManager[object]:
-    """Tell a person at a terminal what is being done."""
-    console = Terminal(stderr=True)
-    return console.status(what) if console.is_terminal else nullcontext()
 
 
 def show(campaign: Campaign, conducted: Conducted, form: str) -> None:

@@ -13,7 +13,7 @@ from rvmon.cdv.play import player
 from rvmon.cdv.regression import regression_test, removed, save_regression
 from rvmon.cdv.shrink import Shrunk, shrink
 from rvmon.cli.campaign_replay import robot_of
-from rvmon.cli.campaign_run import told
+from rvmon.cli.progress import busy
 from rvmon.cli.say import say_json, warn
 from rvmon.coverage.record import Ending
 from rvmon.report.folder import made
@@ -34,7 +34,7 @@ def shrink_file(
     test = load_test(path, campaign.test)
     job = Job(test, robot_of(campaign, test, robot))
     folder = made(out) if out else None  # told before anything is played
-    with told("shrinking"):
+    with busy("shrinking"):
         found = _found(campaign, job, requirement)
     if found is None:
         why = f"{requirement} does not fail" if requirement else "no requirement fails"

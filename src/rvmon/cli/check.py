@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_binding
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.say import rendered, say, say_json, warn
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
 if TYPE_CHECKING:
@@ -27,7 +28,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "check",
         help="find what is wrong in specifications",
         description="Find what is wrong in specifications: all errors and warnings of each file.",
-        epilog="examples: rvmon check specs/*.rv --format concise; rvmon check door.rv --engines",
+        epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format "
+        "concise; rvmon check examples/base.rv --engines",
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
     add_const(parser)
@@ -82,7 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.binding is not None and checked is not None:
             remarks += _bound(arguments.binding, checked)
         if arguments.analyse and checked is not None:
-            more, remark = _analysed(checked, arguments.seconds)
+            with busy(f"analysing {name}"):
+                more, remark = _analysed(checked, arguments.seconds)
             findings += more
             remarks += remark
     findings = list(dict.fromkeys(findings))  # a file may be imported by several
@@ -150,7 +153,6 @@ def _show(
     from rvmon.diagnostics.render import (
         coloured,
         render_concise,
-        render_full,
         render_json,
         wants_colour,
     )
@@ -164,7 +166,7 @@ def _show(
         case "concise" if findings:
             warn(render_concise(findings))
         case "text" if findings:
-            text = render_full(findings)
+            text = rendered(findings)
             # Nothing of others is left in it that could steer a terminal.
             sys.stderr.write(f"{coloured(text) if wants_colour(sys.stderr) else text}\n")
 

@@ -35,8 +35,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Cut a recording around an attempt, in the recording's own format. The last "
         "values of signals before the cut are carried to its start. The piece is evaluated again; "
         "the exit code is 1 if the attempt gets another verdict there.",
-        epilog="example: rvmon clip monday.bag --spec base.rv --failure B2#3 --before 10s "
-        "--after 5s -o incident.bag",
+        epilog="example: rvmon clip examples/base.csv --spec examples/base.rv --failure "
+        "B2#2 --before 1s -o piece.csv",
     )
     parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     parser.add_argument("--spec", metavar="SPEC", required=True, help="a .rv file")

@@ -27,7 +27,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "requirement: what fails now, what is fixed, what is no longer shown. Files are those of "
         "`rvmon run --out` (.csv, .parquet, .sqlite, .duckdb) and of `--format json` (.json). The "
         "exit code is 1 if less holds than before.",
-        epilog="example: rvmon compare monday.parquet tuesday.parquet",
+        epilog="examples: rvmon run examples/base.rv examples/base.csv --out old.csv; rvmon "
+        "compare old.csv old.csv",
     )
     parser.add_argument("before", metavar="OLD", help="the earlier verdicts")
     parser.add_argument("after", metavar="NEW", help="the later ones")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.say import say
 from rvmon.diagnostics.shown import shown_json
 from rvmon.errors import RvmonError
@@ -29,8 +29,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "header, a source, a header for C++) that allocates nothing. Or the automata: dot for "
         "Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time). "
         "Or costs: a line per requirement with its monitor and what open attempts cost.",
-        epilog="examples: rvmon compile specs/handover.rv --to c -o monitor/; "
-        "rvmon compile specs/handover.rv --to dot --only R1 | dot -Tsvg -o r1.svg",
+        epilog="examples: rvmon compile examples/base.rv --to c -o monitor/; rvmon compile "
+        "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument(
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.loading import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids = ids_of(arguments.only, spec)
+    ids = asked_ids(arguments, spec)
     if arguments.to in _AUTOMATA:
         if not spec.requirements:
             raise RvmonError(f"error: {arguments.spec} has no requirement: it has no automaton")

@@ -28,8 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "they show: their events are the labels of its edges, or its channels. The first sample "
         "is the network's start. Exit code 0: all conform; 1: some do not, or it is not decided; "
         "2: a recording cannot be read, or shows nothing of the model.",
-        epilog="example: rvmon conform model.ta monday.csv --observe started,stopped "
-        "--tolerance 0.1",
+        epilog="example: rvmon conform examples/models/dock.ta examples/models/dock_monday.csv",
     )
     parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
     parser.add_argument("traces", metavar="TRACE", nargs="+", help="recordings, folders of them")

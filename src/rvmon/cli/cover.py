@@ -27,7 +27,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="what tests have covered, what is missing, and what each test is good for",
         description="Show what the tests of one or several databases of coverage have covered "
         "together: groups and total, verdicts, and first of all what is wrong.",
-        epilog="example: rvmon cover monday.cov tuesday.cov --holes --require 95%",
+        epilog="examples: rvmon run examples/base.rv examples/base.csv --coverage base.cov; "
+        "rvmon cover base.cov --holes",
     )
     parser.add_argument("databases", metavar="DB", nargs="+", help="written by run --coverage")
     parser.add_argument("--campaign", metavar="NAME", help="show the tests of this one only")

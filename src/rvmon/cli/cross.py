@@ -10,7 +10,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import add_const, add_format, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_format, add_only, asked_ids, constants_of
+from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_reading, opened, reading_spec
 from rvmon.cli.say import say, say_json
 from rvmon.errors import RvmonError
@@ -35,7 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "small enough, by compiled C where there is a compiler, and by the other monitors that are "
         "installed (rtamt, reelay, mstlo, sentil) where they have such a formula. Prints who "
         "agrees; a disagreement is shown with attempt and instant, and exits with 1.",
-        epilog="example: rvmon cross specs/door.rv monday.csv",
+        epilog="example: rvmon cross examples/base.rv examples/base.csv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
@@ -66,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     checked = spec.checked
     if not checked.requirements:
         raise RvmonError(f"error: {arguments.spec} has no requirement: there is nothing to compare")
-    if (ids := ids_of(arguments.only, spec)) is not None:
+    if (ids := asked_ids(arguments, spec)) is not None:
         chosen = {name: checked.requirements[name] for name in ids}
         checked = replace(checked, requirements=chosen)
     recording = opened(spec, arguments.trace)
@@ -76,7 +77,8 @@ def run(arguments: argparse.Namespace) -> int:
     case = Case(checked, tuple(samples), recording.end, recording.names)
     with ExitStack() as stack:
         peers = {name: stack.enter_context(peer) for name, peer in _peers(arguments.peers)}
-        found = list(crossings(case, peers))
+        with busy("judging in every way there is"):
+            found = list(crossings(case, peers))
     if arguments.format == "json":
         say_json(_json(arguments, found, 0 if late is None else late[0], recording.health()))
     else:

@@ -29,7 +29,7 @@ def add_parser(
         description="See that nothing in evidence (`--evidence FILE`) was changed, that recordings "
         "are those that were evaluated, and evaluate a sample again. Exit codes: 0 it holds, 1 it "
         "does not, 2 something could not be checked.",
-        epilog="example: rvmon evidence verify monday.zip --sample all",
+        epilog="example: %(prog)s base.zip --sample all",
     )
     verify.add_argument("file", metavar="FILE", help="the evidence")
     verify.add_argument(

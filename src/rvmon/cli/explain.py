@@ -30,7 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Explain a requirement: in plain words, its automaton, and the shortest runs "
         "on which it passes, fails, is not triggered, stays open. Two: where they differ. "
         "A diagnostic's code such as RV012: its page; `codes`: all codes.",
-        epilog="example: rvmon explain specs/door.rv D1",
+        epilog="examples: rvmon explain examples/base.rv B2; rvmon explain RV001",
     )
     parser.add_argument("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
     parser.add_argument(

@@ -24,7 +24,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="a starter specification from a recording",
         description="Write a starter specification from a recording: signals with guessed types, "
         "ranges and rates, events, and two requirements that run at once.",
-        epilog="example: rvmon init monday.csv && rvmon run monday.rv monday.csv",
+        epilog="examples: rvmon init examples/base.csv -o mine.rv; rvmon run mine.rv "
+        "examples/base.csv",
     )
     parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     parser.add_argument(

@@ -17,8 +17,36 @@ if TYPE_CHECKING:
 
 
 def add_only(parser: argparse.ArgumentParser, what: str = "these requirements") -> None:
-    """Declare `--only`."""
+    """Declare `--only`, `--severity` and `--tag`."""
     parser.add_argument("--only", metavar="IDS", help=f"{what}: R1,R3")
+    parser.add_argument(
+        "--severity", metavar="LEVELS", help="of these, those of one of the severities: high,medium"
+    )
+    parser.add_argument(
+        "--tag",
+        metavar="TAGS",
+        action="append",
+        default=[],
+        help="of these, those with one of the tags: stop,arm; given twice: with one of each list",
+    )
+
+
+def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | None:
+    """The requirements that what `add_only` declares leaves; `None`: all.
+
+    Raises:
+        UnknownNameError: there is no such requirement, severity or tag, or none that fits all.
+    """
+    from rvmon.spec.checked.selection import labelled
+
+    ids = ids_of(arguments.only, spec)
+    severities = [] if arguments.severity is None else [_listed(arguments.severity)]
+    tags = [_listed(one) for one in arguments.tag]
+    return labelled(spec.checked, ids, severities, tags) if severities or tags else ids
+
+
+def _listed(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
 
 
 def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
@@ -31,7 +59,7 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
 
     if listed is None:
         return None
-    ids = tuple(name.strip() for name in listed.split(",") if name.strip())
+    ids = _listed(listed)
     if not ids:
         known = ", ".join(spec.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")

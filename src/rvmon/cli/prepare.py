@@ -6,7 +6,7 @@ import argparse
 from dataclasses import asdict
 from itertools import count
 
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say, say_json
 
@@ -21,7 +21,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "reports, and the engine c starts at once; on the same machine without a compiler as "
         "well. The files are kept in the cache. rvmon check --engines shows what auto does not "
         "take.",
-        epilog="example: rvmon prepare specs/door.rv && rvmon run specs/door.rv *.csv --engine c",
+        epilog="examples: rvmon prepare examples/base.rv; rvmon run examples/base.rv "
+        "examples/base.csv --engine c",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument(
@@ -41,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.report.plain_table import plain_table
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    ids, done = ids_of(arguments.only, spec), count(1)
+    ids, done = asked_ids(arguments, spec), count(1)
     with bar("compiling", len(USES) - (not arguments.robustness)) as tell:
         found = spec.prepare(
             only=ids, ready=lambda _: tell(next(done)), robustness=arguments.robustness

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -57,6 +57,15 @@ def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
     finally:
         if progress is not None:
             progress.stop()
+
+
+def busy(what: str) -> AbstractContextManager[object]:
+    """Tell a person at a terminal what is being done, where nobody knows how far it is."""
+    if not sys.stderr.isatty():
+        return nullcontext()
+    from rvmon.report.terminal import Terminal
+
+    return Terminal(stderr=True).status(what)
 
 
 def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:

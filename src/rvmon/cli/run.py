@@ -25,7 +25,7 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_files import write_files, write_results
-from rvmon.cli.say import say_json, warn
+from rvmon.cli.say import rendered, say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.monitor.engines.registry import ENGINES
 from rvmon.report.folder import refuse_no_file
@@ -51,7 +51,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Check recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
         "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
         "I inconclusive.",
-        epilog="example: rvmon run specs/door.rv monday.csv tuesday.csv --junit verdicts.xml",
+        epilog="examples: rvmon run examples/base.rv examples/base.csv; rvmon run "
+        "examples/base.rv examples/base.csv --only B2 --report pages --junit "
+        "verdicts.xml",
     )
     parser.add_argument(
         "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"
@@ -308,9 +310,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
 
 def _show_warnings(spec: Spec) -> None:
     if spec.warnings:
-        from rvmon.diagnostics.render import render_full
-
-        warn(render_full(spec.warnings))
+        warn(rendered(spec.warnings))
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
         warn(f"{spec.checked.name} has no requirement: there is nothing to check")
@@ -328,7 +328,7 @@ def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -
             warn(f"warning: {message}")
     if arguments.format == "json":
         _show_doubts(judged)
-        texts = [_json(one) for one in judged]
+        texts = [_json(one, spec) for one in judged]
         say_json(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]")
         return
     from rvmon.report.run_text import print_reports
@@ -354,9 +354,9 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
                 warn(f"warning: {one.trace}: `{health.name}`: {health.remark}")
 
 
-def _json(one: Judged) -> str:
+def _json(one: Judged, spec: Spec) -> str:
     if one.report is not None:
-        return one.report.to_json()
+        return one.report.to_json(spec.requirements)
     from rvmon.verdict.report_json import encode_broken
 
     return encode_broken(one.trace, one.error, one.before)

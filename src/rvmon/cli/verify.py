@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_budget, add_format, budget_of
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.say import rendered, say, say_json, warn
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Decide queries on a network of timed automata (.ta, or UPPAAL's .xml), each "
         "with a timed run that shows why. Exit code 0: all hold; 1: some do not, or the budget "
         "ended first.",
-        epilog="example: rvmon verify model.ta --query 'A[] not deadlock' --trace fastest",
+        epilog="example: rvmon verify examples/models/train_gate.ta --query 'A[] not "
+        "deadlock' --trace fastest",
     )
     parser.add_argument("model", metavar="MODEL", help="a .ta or .xml file")
     parser.add_argument(
@@ -158,9 +159,7 @@ def _constant(text: str) -> tuple[str, int]:
 
 def _show_warnings(network: Network) -> None:
     if network.warnings:
-        from rvmon.diagnostics.render import render_full
-
-        warn(render_full(network.warnings))
+        warn(rendered(network.warnings))
 
 
 def _print_outcome(network: Network, outcome: Outcome) -> None:

@@ -13,7 +13,7 @@ from io import FileIO
 from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive, span
-from rvmon.cli.options import add_const, add_only, constants_of, ids_of
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
 from rvmon.cli.say import warn
 from rvmon.errors import RvmonError, SpecError
@@ -46,7 +46,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Evaluate JSON lines as they arrive, and report each verdict as soon as it is "
         "decided: a missed deadline is reported when it is over. A change of the specification is "
         "taken up at once. Ends with the stream, or with Ctrl-C.",
-        epilog="example: my_robot --telemetry | rvmon watch specs/base.rv",
+        epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
+        "rvmon watch examples/base.rv",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument(
@@ -141,7 +142,7 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
     with _opened(arguments.source) as file:
         lines = read_lines(file.fileno())
         is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
-        only = ids_of(arguments.only, spec)
+        only = asked_ids(arguments, spec)
         return watch_kept(arguments, spec, only, lines, is_file=is_file)
 
 
@@ -306,7 +307,7 @@ def _live(
     return Live(
         spec,
         clock=clock,
-        only=ids_of(arguments.only, spec),
+        only=asked_ids(arguments, spec),
         lag_ns=arguments.realtime,
         room=arguments.room,
         on_judged=judged,

@@ -20,7 +20,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "why",
         help="an attempt taken apart: why it passed, failed or stayed open",
         description="Take one attempt apart: when each part of its requirement was true.",
-        epilog="example: rvmon why specs/door.rv monday.csv D1#3",
+        epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
     )
     parser.add_argument(
         "spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest"

@@ -10,13 +10,13 @@ from typing import Any, TextIO
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Label
 from rvmon.diagnostics.shown import shown_line
-from rvmon.diagnostics.snippet import snippet
+from rvmon.diagnostics.snippet import WIDEST, snippet
 from rvmon.diagnostics.span import Source, Span
 
 
-def render_full(diagnostics: Sequence[Diagnostic]) -> str:
+def render_full(diagnostics: Sequence[Diagnostic], width: int = WIDEST) -> str:
     """Every finding with its places underlined and what fixes it, a blank line between."""
-    return "\n\n".join(map(_full, diagnostics))
+    return "\n\n".join(_full(one, width) for one in diagnostics)
 
 
 def render_concise(diagnostics: Sequence[Diagnostic]) -> str:
@@ -33,11 +33,11 @@ def render_json(diagnostics: Sequence[Diagnostic]) -> str:
     return "[\n" + ",\n".join(lines) + "\n]" if lines else "[]"
 
 
-def _full(diagnostic: Diagnostic) -> str:
+def _full(diagnostic: Diagnostic, width: int) -> str:
     lines = [_heading(diagnostic)]
     for number, label in enumerate(diagnostic.spans):
         arrow, mark = (":::", "-") if number else ("-->", "^")
-        lines.append(snippet(label.span, label.text, arrow=arrow, mark=mark))
+        lines.append(snippet(label.span, label.text, arrow=arrow, mark=mark, width=width))
     if diagnostic.help:
         lines.append(f"help: {_one_line(diagnostic.help)}")
     return "\n".join(lines)

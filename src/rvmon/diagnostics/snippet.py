@@ -7,11 +7,15 @@ import unicodedata
 from rvmon.diagnostics.shown import shown_line
 from rvmon.diagnostics.span import Span
 
-WIDEST = 100
-"""Longer lines are cut to so many characters around the place."""
+WIDEST = 105
+"""A snippet is so many columns wide at most: longer lines are cut around the place."""
+
+_GUTTER = 5
 
 
-def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^") -> str:
+def snippet(
+    span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^", width: int = WIDEST
+) -> str:
     """The line of a place with the place underlined.
 
     Args:
@@ -19,6 +23,7 @@ def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^"
         remark: stands behind the underline.
         arrow: leads to the file's name; other places of the same finding take `:::`.
         mark: the character to underline with.
+        width: columns that there are, so that underlines stay below what they mean.
 
     >>> from rvmon.diagnostics.span import Source
     >>> print(snippet(Span(Source("a.rv", "upon sensd"), 5, 10)))
@@ -32,20 +37,22 @@ def snippet(span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^"
     stop = text.find("\n", span.start)
     last = len(text) if stop < 0 else stop
     end = min(max(span.end, span.start), last)
-    left = max(first, min(span.start - 40, last - WIDEST))
-    right = min(last, left + WIDEST)
+    room = max(min(width, WIDEST) - _GUTTER, 10)
+    room -= 2 * (last - first > room)  # for the dots
+    left = max(first, min(span.start - room * 2 // 5, last - room))
+    right = min(last, left + room)
     head = ("…" if left > first else "") + _shown(text[left : span.start])
     body = _shown(text[span.start : min(end, right)])
     tail = _shown(text[min(end, right) : right]) + ("…" if right < last else "")
     number = str(span.line)
-    width = max(len(number), 2)
-    gutter = " " * width
+    digits = max(len(number), 2)
+    gutter = " " * digits
     underline = " " * _width(head) + mark * max(_width(body), 1)
     return "\n".join(
         (
             f"{gutter}{arrow} {shown_line(span.source.name)}:{number}:{span.column}",
             f"{gutter} |",
-            f"{number:>{width}} | {head}{body}{tail}".rstrip(),
+            f"{number:>{digits}} | {head}{body}{tail}".rstrip(),
             f"{gutter} | {underline}{' ' + shown_line(remark) if remark else ''}",
         )
     )

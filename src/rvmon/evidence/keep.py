@@ -54,6 +54,8 @@ class Judging(msgspec.Struct, frozen=True):
     engine: str
     strict_columns: bool
     robustness: bool
+    severity: str | None = None
+    tag: list[str] = []
 
 
 class About(msgspec.Struct, frozen=True, kw_only=True):

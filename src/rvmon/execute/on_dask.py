@@ -22,7 +22,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from rvmon.cache import contents
-from rvmon.errors import RvmonError, WorkerLostError
+from rvmon.errors import RvmonError, WorkerLostError, not_installed
 from rvmon.execute.ended import Ended
 from rvmon.execute.worker import answer, packed_error
 
@@ -68,7 +68,7 @@ def execute_on_dask(
         import cloudpickle
         from distributed import Client
     except ImportError:
-        raise RvmonError("Dask is not installed: pip install 'rvmon[dask]'") from None
+        raise not_installed("Dask", "distributed") from None
     try:
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -20,8 +20,10 @@ def facts_of(compiled: CompiledRequirement) -> Facts:
         "decided": _decided(compiled),
         "memory": _memory(compiled, automaton),
     }
-    past = _past(compiled)
-    return {**facts, "looks back": past} if past else facts
+    one = compiled.requirement
+    facts |= {"looks back": _past(compiled), "source": one.source, "rationale": one.rationale}
+    facts |= {"severity": one.severity, "tags": ", ".join(one.tags)}
+    return {heading: fact for heading, fact in facts.items() if fact}
 
 
 def _engine(compiled: CompiledRequirement, automaton: Automaton | None) -> str:

@@ -17,7 +17,7 @@ from typing import Any
 
 import msgspec
 
-from rvmon.errors import RvmonError
+from rvmon.errors import RvmonError, not_installed
 from rvmon.export.foxglove_layout import ATTEMPTS, foxglove_layout, topic_of
 from rvmon.export.foxglove_scene import SCENE, scene_updates, seconds_and_rest
 from rvmon.report.concerned import concerned_names
@@ -67,9 +67,7 @@ def refuse_mcap(path: str) -> None:
     if not path.endswith(".mcap"):
         raise RvmonError(f"cannot write {path}: the name of an MCAP file ends in .mcap")
     if find_spec("mcap") is None:
-        raise RvmonError(
-            "MCAP needs the package mcap, which is not installed: pip install 'rvmon[mcap]'"
-        )
+        raise not_installed("MCAP", "mcap")
 
 
 def layout_path(path: str) -> str:

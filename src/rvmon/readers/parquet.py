@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import TraceError, not_installed
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.columns import values_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
@@ -39,9 +39,7 @@ def parquet_file(path: str | Path) -> Any:
         import pyarrow
         import pyarrow.parquet
     except ImportError:
-        raise RvmonError(
-            "Parquet needs pyarrow, which is not installed: pip install 'rvmon[arrow]'"
-        ) from None
+        raise not_installed("Parquet", "pyarrow") from None
     try:
         return pyarrow.parquet.ParquetFile(path)
     except MemoryError:  # of Arrow, too: the file may be as it should be

@@ -12,7 +12,7 @@ from io import BufferedReader, RawIOBase
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.readers.values import first_line
 
 PACKED = (".gz", ".zst")
@@ -142,9 +142,7 @@ def _zstd() -> Any:
         try:
             from backports import zstd
         except ImportError:
-            raise RvmonError(
-                "Zstandard needs backports.zstd, which is not installed: pip install 'rvmon[zstd]'"
-            ) from None
+            raise not_installed("Zstandard", "backports.zstd") from None
     return zstd
 
 
@@ -217,9 +215,7 @@ def _system(address: str) -> tuple[Any, str]:
     try:
         from fsspec.core import url_to_fs
     except ImportError:
-        raise RvmonError(
-            "addresses need fsspec, which is not installed: pip install 'rvmon[remote]'"
-        ) from None
+        raise not_installed("an address", "fsspec") from None
     system, inner = url_to_fs(address)
     return system, str(inner)
 
@@ -233,6 +229,8 @@ def _remote_errors(address: str) -> Iterator[None]:
     except FileNotFoundError:
         raise TraceError(f"{address}: there is nothing at this address") from None
     except ImportError as error:
-        raise RvmonError(f"{address}: {first_line(error)}") from None
+        extra = {"s3": "s3", "http": "remote", "https": "remote"}.get(address.partition(":")[0])
+        how = f": pip install 'rvmon[{extra}]'" if extra else ""
+        raise RvmonError(f"{address}: {first_line(error)}{how}") from None
     except Exception as error:  # noqa: BLE001 - each kind of place has errors of its own
         raise TraceError(f"{address}: cannot be read ({first_line(error)})") from None

@@ -10,7 +10,7 @@ import reprlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import TraceError, not_installed
 
 
 def columns_by_name(table: Any) -> dict[str, Any] | None:
@@ -53,9 +53,7 @@ def _imported(table: Any) -> Any:
         import pyarrow
         from pyarrow.interchange import from_dataframe
     except ImportError:
-        raise RvmonError(
-            f"{kind} needs pyarrow, which is not installed: pip install 'rvmon[arrow]'"
-        ) from None
+        raise not_installed(kind, "pyarrow") from None
     try:
         return (
             pyarrow.table(table) if hasattr(table, "__arrow_c_stream__") else from_dataframe(table)

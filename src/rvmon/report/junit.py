@@ -14,7 +14,7 @@ from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.spec.checked.specification import CheckedSpec
+    from rvmon.spec.checked.specification import CheckedSpec, Requirement
 
 
 def junit_xml(
@@ -43,7 +43,7 @@ def junit_xml(
             skipped=str(len(report.verdicts) - len(failures) - passed),
         )
         for name, verdict in report.verdicts.items():
-            case = _add_case(suite, report, name, verdict, spec.requirements[name].text)
+            case = _add_case(suite, report, name, verdict, spec.requirements[name])
             if verdict is Verdict.FAIL and name not in failures:
                 _accept(case, known.expected(report)[name])
         for one in report.illegal:
@@ -62,12 +62,14 @@ def junit_xml(
 
 
 def _add_case(
-    suite: ET.Element, report: Report, name: str, verdict: Verdict, requirement: str
+    suite: ET.Element, report: Report, name: str, verdict: Verdict, requirement: Requirement
 ) -> ET.Element:
     case = ET.SubElement(suite, "testcase", name=shown(name), classname=suite.get("name", ""))
-    if requirement:
-        properties = ET.SubElement(case, "properties")
-        ET.SubElement(properties, "property", name="requirement", value=shown(requirement))
+    said = [("requirement", requirement.text), ("severity", requirement.severity)]
+    said = [one for one in (*said, *(("tag", tag) for tag in requirement.tags)) if one[1]]
+    properties = ET.SubElement(case, "properties") if said else case
+    for kind, value in said:
+        ET.SubElement(properties, "property", name=kind, value=shown(value))
     if verdict is Verdict.PASS:
         return case
     if report.is_silent(name):

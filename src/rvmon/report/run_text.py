@@ -84,13 +84,18 @@ def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
     least = _least_robustness(report)
     if least:
         table.add_column("robustness", no_wrap=True)
+    levels = any(spec.requirements[name].severity for name in report.verdicts)
+    if levels:
+        table.add_column("severity", no_wrap=True)
     table.add_column("requirement", style="dim")
     for name, verdict in report.verdicts.items():
         counts = report.counts[name]
         listed = "  ".join(f"{count} {kind}" for kind, count in counts.items() if count)
         figure = [least.get(name, "–")] if least else []
-        text = spec.requirements[name].text
-        table.add_row(name, verdict_text(verdict), listed or "–", *figure, text)
+        one = spec.requirements[name]
+        level = [one.severity or "–"] if levels else []
+        text = f"{one.text}  [{', '.join(one.tags)}]".lstrip() if one.tags else one.text
+        table.add_row(name, verdict_text(verdict), listed or "–", *figure, *level, text)
     return table
 
 
@@ -149,7 +154,7 @@ def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, wi
     span = requirement.span
     if attempt.blame is not None and span is not None:
         span = type(span)(span.source, attempt.blame.start, attempt.blame.end)
-        text.append(snippet(span))
+        text.append(snippet(span, width=width))
     return text
 
 

@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.results.write import TABLE, refuse
-from rvmon.verdict.frames import missing
 from rvmon.verdict.report import Report
 from rvmon.verdict.rows import broken_rows
 from rvmon.verdict.verdict import Verdict
@@ -79,7 +78,7 @@ def _parquet(path: str) -> Iterator[Iterable[Any]]:
     try:
         from pyarrow import ArrowException, parquet
     except ImportError:
-        raise missing("pyarrow") from None
+        raise not_installed("this table", "pyarrow") from None
     try:
         table = parquet.read_table(path, columns=list(Kept._fields))
     except ArrowException as error:
@@ -103,7 +102,7 @@ def _duckdb(path: str) -> Iterable[Iterable[Any]]:
     try:
         import duckdb
     except ImportError:
-        raise missing("duckdb") from None
+        raise not_installed("this table", "duckdb") from None
     config: dict[str, Any] = {"enable_external_access": "false"}  # a view could read other files
     try:
         with duckdb.connect(path, read_only=True, config=config) as database:

@@ -10,8 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NoReturn
 
-from rvmon.errors import RvmonError
-from rvmon.verdict.frames import arrow_table, column_types, missing
+from rvmon.errors import RvmonError, not_installed
+from rvmon.verdict.frames import arrow_table, column_types
 from rvmon.verdict.rows import VerdictRow
 from rvmon.writing import write_whole
 
@@ -30,7 +30,7 @@ def refuse_format(path: str | Path) -> None:
     _, packages = _form(path)
     for package in packages:
         if find_spec(package) is None:
-            raise missing(package)
+            raise not_installed("this table", package)
 
 
 def write_results(path: str | Path, rows: Iterable[VerdictRow], about: Mapping[str, str]) -> None:

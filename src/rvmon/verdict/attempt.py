@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
+from importlib import import_module
 from typing import Any
 
 from rvmon.trace.sample import Scalar
@@ -129,6 +130,9 @@ class Attempt(_Later):
     def numbered(self) -> str:
         """Its number, behind a question mark if it is in doubt."""
         return f"?{self.number}" if self.in_doubt else str(self.number)
+
+    def _repr_html_(self) -> str:
+        return str(import_module("rvmon.report.notebook").attempt_html(self))  # lies above
 
     def __str__(self) -> str:
         """One line for people.

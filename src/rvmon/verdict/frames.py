@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, get_args, get_type_hints
 
-from rvmon.errors import RvmonError
+from rvmon.errors import not_installed
 from rvmon.verdict.rows import VerdictRow
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow
     try:
         import pyarrow
     except ImportError:
-        raise missing("pyarrow") from None
+        raise not_installed("this table", "pyarrow") from None
     types = {
         str: pyarrow.string(),
         int: pyarrow.int64(),
@@ -53,7 +53,7 @@ def pandas_frame(table: pyarrow.Table) -> pandas.DataFrame:
     try:
         import pandas
     except ImportError:
-        raise missing("pandas") from None
+        raise not_installed("this table", "pandas") from None
     import pyarrow
 
     whole = {pyarrow.int64(): pandas.Int64Dtype()}
@@ -70,13 +70,7 @@ def polars_frame(table: pyarrow.Table) -> polars.DataFrame:
     try:
         import polars
     except ImportError:
-        raise missing("polars") from None
+        raise not_installed("this table", "polars") from None
     frame = polars.from_arrow(table)
     assert isinstance(frame, polars.DataFrame)  # noqa: S101 - as a table is no column
     return frame
-
-
-def missing(package: str) -> RvmonError:
-    """The error that a package is not installed."""
-    extra = "'rvmon[arrow]'" if package == "pyarrow" else package
-    return RvmonError(f"this table needs {package}, which is not installed: pip install {extra}")

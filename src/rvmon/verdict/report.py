@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon.trace.health import Health
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     import polars
     import pyarrow
 
+    from rvmon.spec.checked.specification import Requirement
     from rvmon.verdict.rows import VerdictRow
 
 _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
@@ -67,6 +69,9 @@ class Report:
     _kinds: dict[tuple[str, Verdict], list[Attempt]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+
+    def _repr_html_(self) -> str:
+        return str(import_module("rvmon.report.notebook").report_html(self))  # lies above
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.
@@ -149,13 +154,16 @@ class Report:
 
         return polars_frame(self.to_arrow())
 
-    def to_json(self) -> str:
+    def to_json(self, requirements: Mapping[str, Requirement] | None = None) -> str:
         """The report as JSON text, in the shape that `rvmon run --format json` prints.
 
         JSON knows no infinities: such captured values and robustnesses become null.
+
+        Args:
+            requirements: `Spec.requirements`, of which severity and tags are to stand there.
         """
         from rvmon.verdict.attempt_json import attempt_text
-        from rvmon.verdict.report_json import encode
+        from rvmon.verdict.report_json import encode, labels
 
         if isinstance(self.attempts, LazyAttempts):
             texts = self.attempts.texts(self.origin)
@@ -163,7 +171,10 @@ class Report:
             texts = ((one.requirement, attempt_text(one, self.origin)) for one in self.attempts)
         return encode(
             {"law": self.law, "trace": self.trace, "origin": self.origin, "end": self.end},
-            {name: (verdict, self._rest_of(name)) for name, verdict in self.verdicts.items()},
+            {
+                name: (verdict, self._rest_of(name) | labels((requirements or {}).get(name)))
+                for name, verdict in self.verdicts.items()
+            },
             texts,
             {
                 "health": self.health,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 
@@ -13,6 +13,9 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.attempt_json import encoded, record
 from rvmon.verdict.illegal import IllegalHit
 from rvmon.verdict.verdict import LAW, Verdict
+
+if TYPE_CHECKING:
+    from rvmon.spec.checked.specification import Requirement
 
 
 class RequirementJson(msgspec.Struct):
@@ -76,6 +79,14 @@ def _document(
             yield text
         yield f"],{encoded(rest)[1:]}"
     yield f"}},{encoded(tail)[1:]}"
+
+
+def labels(requirement: Requirement | None) -> dict[str, object]:
+    """A requirement's severity and tags, as far as it has them."""
+    if requirement is None:
+        return {}
+    found = {"severity": requirement.severity, "tags": requirement.tags}
+    return {name: value for name, value in found.items() if value}
 
 
 def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:

@@ -52,3 +52,10 @@ def test_short_work_and_files_show_no_bar(screen, monkeypatch):
     with redirect_stderr(screen):
         assert main(["run", "s.rv", "one.jsonl", "two.jsonl"]) == 0
     assert screen.getvalue() == ""
+
+
+def test_what_nobody_can_count_is_named_while_it_lasts(screen):
+    """An analysis, which may take its seconds."""
+    with redirect_stderr(screen):
+        assert main(["check", "s.rv", "--analyse"]) == 0
+    assert "analysing s.rv" in screen.getvalue()

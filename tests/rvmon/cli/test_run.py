@@ -50,6 +50,65 @@ def test_exit_code_and_verdict(files, capsys, trace, code, strict):
     assert main(["run", "door.rv", f"{trace}.csv", "--strict"]) == strict
 
 
+LABELLED = SPEC.replace("requirement D1", "requirement D0") + (
+    "  severity high\n  tags safety, knocks\n"
+    "requirement D1\n  always closed\n  severity low\n  tags safety\n"
+    "requirement D2\n  always not closed\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("words", "chosen"),
+    [
+        ("--severity high", ["D0"]),
+        ("--severity low,high", ["D0", "D1"]),
+        ("--tag safety", ["D0", "D1"]),
+        ("--tag safety --tag knocks", ["D0"]),
+        ("--tag safety --severity low", ["D1"]),
+        ("--tag safety --only D1,D2", ["D1"]),
+    ],
+)
+def test_severity_and_tags_choose_requirements(files, capsys, words, chosen):
+    """A list means any of its words, and what is given twice means both; JSON has them."""
+    (files / "door.rv").write_text(LABELLED)
+    main(["run", "door.rv", "P.csv", "--format", "json", *words.split()])
+    judged = json.loads(capsys.readouterr().out)["requirements"]
+    assert list(judged) == chosen
+    labels = {"D0": ("high", ["safety", "knocks"]), "D1": ("low", ["safety"])}
+    found = {name: (one["severity"], one["tags"]) for name, one in judged.items()}
+    assert found == {name: labels[name] for name in chosen}
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("--tag saftey", "no requirement has the tag `saftey`: did you mean `safety`?"),
+        ("--severity=", "no requirement has the severity ``: there are high, low"),
+        (
+            "--tag knocks --severity low",
+            "no requirement that is asked for has the severity low, the tag knocks",
+        ),
+    ],
+)
+def test_a_severity_or_tag_that_nothing_has_is_an_error(files, capsys, words, told):
+    """With a suggestion, or with those that there are."""
+    (files / "door.rv").write_text(LABELLED)
+    assert main(["run", "door.rv", "P.csv", *words.split()]) == 2
+    assert capsys.readouterr().err == f"error: {told}\n"
+
+
+def test_severity_and_tags_are_shown_and_kept(files, capsys):
+    """In the table, in JUnit, and in evidence, which is judged again with the same choice."""
+    (files / "door.rv").write_text(LABELLED)
+    words = "--tag safety --junit j.xml --evidence e.zip"
+    main(["run", "door.rv", "P.csv", *words.split()])
+    assert "high       Knocking opens the door  [safety, knocks]" in capsys.readouterr().out
+    said = [(one.get("name"), one.get("value")) for one in ET.parse("j.xml").iter("property")]  # noqa: S314
+    assert ("severity", "high") in said
+    assert [value for name, value in said if name == "tag"] == ["safety", "knocks", "safety"]
+    assert main(["evidence", "verify", "e.zip"]) == 0
+
+
 def told(text: str) -> dict:
     """Verdicts and attempts without reasons."""
     return {

@@ -9,7 +9,7 @@ from typing import Any, BinaryIO
 
 import msgspec
 
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.readers.jsonl_rows import decoded
 from rvmon.readers.messages.ros import BagMessages, ros_topic
 from rvmon.readers.messages.topic import Message, Messages, Topic
@@ -60,9 +60,7 @@ def mcap_reader(file: BinaryIO) -> Any:
     try:
         from mcap.reader import make_reader
     except ImportError:
-        raise RvmonError(
-            "MCAP needs the package mcap, which is not installed: pip install 'rvmon[mcap]'"
-        ) from None
+        raise not_installed("MCAP", "mcap") from None
     return make_reader(file)
 
 
@@ -233,10 +231,7 @@ def _protobuf(schema: Any) -> Decode:
     try:
         from mcap_protobuf.decoder import DecoderFactory
     except ImportError:
-        raise RvmonError(
-            "messages of Protocol Buffers need mcap-protobuf-support, which is not installed: "
-            "pip install 'rvmon[mcap]'"
-        ) from None
+        raise not_installed("a message of Protocol Buffers", "mcap-protobuf-support") from None
     decode = DecoderFactory().decoder_for("protobuf", schema)
     assert decode is not None, "it is of this encoding"  # noqa: S101
     return decode

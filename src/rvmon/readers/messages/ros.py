@@ -8,7 +8,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
-from rvmon.errors import RvmonError, TraceError
+from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.topic import Message, Topic
 from rvmon.readers.values import first_line
 from rvmon.trace.schema import Kind
@@ -102,9 +102,7 @@ def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
     try:
         from rosbags import rosbag1, rosbag2
     except ImportError:
-        raise RvmonError(
-            "bags need rosbags, which is not installed: pip install 'rvmon[ros]'"
-        ) from None
+        raise not_installed("a bag", "rosbags") from None
     return {"ros1": rosbag1.Reader, "ros2": rosbag2.Reader}
 
 

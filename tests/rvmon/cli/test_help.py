@@ -1,0 +1,78 @@
+"""Help, and what is said of a command line that is wrong."""
+
+import glob
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+
+import handover.cli
+from rvmon.cli import COMMANDS, _parser, main
+
+ROOT = Path(__file__).parents[3]
+PARSED = {"bind", "build", "cross", "prepare", "watch"}
+"""Commands whose examples need a bag, a compiler or a pipe."""
+HANDOVER = ("run", "demo", "close", "replay", "shrink", "mutate", "evidence verify")
+
+
+def examples(program, words, capsys):
+    """The command lines that help shows as examples."""
+    assert program([*words.split(), "--help"]) == 0
+    shown = capsys.readouterr().out
+    assert len(shown.splitlines()[0]) <= 80
+    lines = re.split(r"\nexamples?:\n", shown)[1].splitlines()
+    return [one for line in lines for one in re.split(r" && | \| | > .+? && ", line.strip())]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_every_example_of_help_runs(command, tmp_path, monkeypatch, capsys):
+    """From the folder of the project, in the order in which they stand."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+    for name in ("examples", "specs"):
+        shutil.copytree(ROOT / name, tmp_path / name)
+    own = 0
+    words = "evidence verify" if command == "evidence" else command
+    if command == "evidence":
+        main(["run", "examples/base.rv", "examples/base.csv", "--evidence", "base.zip"])
+        capsys.readouterr()
+    for one in examples(main, words, capsys):
+        words = [found for word in shlex.split(one) for found in glob.glob(word) or [word]]
+        if words[0] == "rvmon":
+            own += 1
+            assert _parser(words[1:]).parse_args(words[1:])
+            if command not in PARSED:
+                assert main(words[1:]) in (0, 1), one
+    assert own
+
+
+@pytest.mark.parametrize("command", HANDOVER)
+def test_every_example_of_handover_is_understood(command, capsys, monkeypatch):
+    """By the parser of its own."""
+    monkeypatch.setenv("COLUMNS", "80")
+    for one in examples(handover.cli.main, command, capsys):
+        program, *words = shlex.split(one)
+        assert (program, " ".join(words).startswith(("run", command))) == ("handover", True)
+        assert handover.cli._parser().parse_args(words)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("chek base.rv", "did you mean `check`?"),
+        ("run base.rv base.csv --repot out", "did you mean `--report`?"),
+        ("run base.rv base.csv --format jsn", "did you mean `json`?"),
+        ("run base.rv", "rvmon run examples/base.rv examples/base.csv\n"),
+        ("", "judge recordings by a specification"),
+    ],
+)
+def test_a_wrong_command_line_says_what_was_meant_or_how_it_is_done(words, told, capsys):
+    """In few lines, on standard error, with code 2."""
+    assert main(words.split()) == 2
+    shown = capsys.readouterr()
+    assert told in shown.err
+    assert shown.out == ""
+    assert len(shown.err.splitlines()) < (9 if words else 50)

@@ -1,0 +1,59 @@
+"""What is printed fits the terminal, and the encoding."""
+
+import io
+import re
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from rvmon.cli import main
+
+BASE = Path(__file__).parents[3] / "examples" / "base"
+WRONG = """signal speed : real [m/s]
+event a_rather_long_name_of_an_event
+requirement R
+  upon a_rather_long_name_of_an_event then within 2 s for 1 s spede <= 1 m/s or speed > 3 m/s
+"""
+
+
+def underlined(text):
+    """What stands above each underline of carets."""
+    lines = text.splitlines()
+    for above, line in pairwise(lines):
+        if set(line.strip(" |")) == {"^"}:
+            yield above[line.index("^") : line.rindex("^") + 1]
+
+
+@pytest.mark.parametrize("columns", ["40", "80", "200"])
+def test_carets_stand_below_what_they_mean(tmp_path, monkeypatch, capsys, columns):
+    """Of verdicts and of diagnostics: lines of files are cut where they do not fit."""
+    monkeypatch.setenv("COLUMNS", columns)
+    main(["run", f"{BASE}.rv", f"{BASE}.csv"])
+    (tmp_path / "wrong.rv").write_text(WRONG)
+    shown = capsys.readouterr().out
+    assert next(underlined(shown)) == "speed <= 300 mm/s"
+    for words in (["check", "wrong.rv"], ["run", "wrong.rv", f"{BASE}.csv"]):
+        monkeypatch.chdir(tmp_path)
+        assert main(words) == 2
+        told = capsys.readouterr().err
+        assert list(underlined(told))[-1] == "spede"
+        shown += told
+    lines = [line for line in shown.splitlines() if re.match(r" *\d+ \| ", line)]
+    assert max(map(len, lines)) <= int(columns)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252"])
+def test_signs_that_an_encoding_lacks_are_spelled(monkeypatch, encoding):
+    """An F has no question mark, which is the sign of an I; lines are no longer than they were."""
+    texts = []
+    for encoded in ("utf-8", encoding):
+        out = io.TextIOWrapper(io.BytesIO(), encoding=encoded)
+        monkeypatch.setattr(sys, "stdout", out)
+        assert main(["why", f"{BASE}.rv", f"{BASE}.csv", "B2#2"]) == 0
+        texts.append(out.buffer.getvalue().decode(encoded))
+    whole, spelled = texts
+    assert spelled.startswith("B2#2  F  x\n")
+    assert spelled.count("?") == whole.count("?")
+    assert list(map(len, spelled.splitlines())) == list(map(len, whole.splitlines()))

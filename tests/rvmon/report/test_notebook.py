@@ -1,0 +1,70 @@
+"""What notebooks show, and the notebook of the examples."""
+
+import ast
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import rvmon
+from rvmon.report.notebook import DRAWN
+
+FOLDER = Path(__file__).parents[3] / "examples" / "notebook"
+HOSTILE = "</style><script>alert(1)</script>"
+
+
+def shown(book):
+    """What each cell of code shows, the cells run one after the other as a kernel does."""
+    names = {}
+    for cell in book["cells"]:
+        if cell["cell_type"] == "code":
+            *lines, last = ast.parse("".join(cell["source"])).body
+            exec(compile(ast.Module(lines, []), "cell", "exec"), names)  # noqa: S102 - ours
+            value = eval(compile(ast.Expression(last.value), "cell", "eval"), names)  # noqa: S307
+            yield value._repr_html_()
+
+
+def test_the_notebook_runs(monkeypatch):
+    """Every cell shows a specification, a report or an attempt, in less than 20 kB."""
+    monkeypatch.chdir(FOLDER)
+    spec, report, failed, decided = shown(json.loads((FOLDER / "verdicts.ipynb").read_text()))
+    assert "then within 500 ms for 1 s speed &lt;= 1 mm/s" in spec
+    assert "B1 failed, B2 failed" in report
+    assert report.count('class="on"') == 3  # a bar per attempt
+    assert "deadline" in failed
+    assert "B1#1" in decided
+    assert max(map(len, (spec, report, failed, decided))) < 20_000
+
+
+def test_nothing_of_a_piece_reaches_the_notebook():
+    """Its style is scoped, it has no script, and no text of a file becomes markup."""
+    text = (
+        f'spec s\nsignal b : bool\nrequirement R "{HOSTILE}"\n  always b\n  severity "{HOSTILE}"\n'
+    )
+    spec = rvmon.loads(text)
+    report = spec.evaluate({"t": [0, 1], "b": [True, False]})
+    pieces = (spec, report, report.attempts[0])
+    for piece in (one._repr_html_() for one in pieces):
+        (style,) = re.findall(r"<style>(.*?)</style>", piece, re.DOTALL)
+        assert style.startswith("@scope (.rvmon){")
+        assert not re.search(r":root|(?<![.\w-])body[ {>]", style)
+        assert "<script" not in piece
+
+
+def test_themes_of_notebooks_come_before_the_systems():
+    """Both sets of colours, the verdicts' and the page's, follow either."""
+    piece = rvmon.loads("signal b : bool\nrequirement R\n  always b\n")._repr_html_()
+    assert piece.count("[data-jp-theme-light=false]") == 2
+    assert piece.count(":not([data-jp-theme-light=true] *)") == 2
+
+
+@pytest.mark.parametrize("failures", [1, DRAWN + 7])
+def test_many_attempts_are_counted(failures):
+    """So many bars at most, a few of them in full, and how many more there are."""
+    spec = rvmon.loads("event go\nrequirement R\n  upon go\n  then false\n")
+    report = spec.evaluate([(t, {"go": True}) for t in range(failures)])
+    piece = report._repr_html_()
+    assert piece.count('class="on"') == min(failures, DRAWN)
+    assert piece.count("<details") == min(failures, 4)
+    assert (f"… and {failures - 4:,} more of R" in piece) == (failures > 4)
