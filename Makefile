@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # What Python makes of files is kept, whatever is the custom here: else each program that tests start makes it anew.
 TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: help demo test quick check docs format bench fuzz clean
+.PHONY: help demo test quick check docs format bench claims fuzz release clean
 
 help:  ## show this list
 	@awk -F':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -39,6 +39,12 @@ bench: $(VENV)/.dev  ## time monitors against peers, 20 minutes; writes benchmar
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,arrow]' \
 	  || echo "rvmon: pyarrow does not install here: Parquet is not measured"
 	@$(BIN)/python -m benchmarks
+
+claims: $(VENV)/.dev  ## run what docs/claims.md claims, 3 minutes; LONG=1: all of it
+	@$(BIN)/python -m benchmarks.claims $(if $(LONG),--long)
+
+release: $(VENV)/.dev  ## build wheel and sdist into dist, check them, install each extra alone; uploads nothing
+	@$(BIN)/python -m benchmarks.release
 
 fuzz: $(VENV)/.dev  ## feed damaged input to all readers for SECONDS=600, and Python and C to each other
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3,<4' \

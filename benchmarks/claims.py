@@ -1,0 +1,188 @@
+"""Run the claims of `docs/claims.md`: its tables are read, there is no other list.
+
+    python -m benchmarks.claims [--long] [--only WORD]
+
+A row has what is claimed, the command, a regular expression with one group that finds the figure
+in what the command prints (or `exit code`), the expected value and its tolerance: `exact`,
+`at least`, `at most`, or `± 10 %`. Each finding has to hold. Each command runs once, however many
+rows have it. The exit code is 0 if all claims hold, 1 if one does not, 2 if a row is malformed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "claims.md"
+QUICK, LONG = "## In three minutes", "## In an hour"
+EXIT_CODE = "exit code"
+LONGEST_S = 3600
+"""After which a command counts as hanging."""
+
+SHOWN_LINES = 8
+"""Of what a command printed last, where it does not show what is claimed."""
+
+_CELL = re.compile(r"(?<!\\)\|")
+
+
+class ClaimError(Exception):
+    """A row of the page cannot be read; the text names line, cause and fix."""
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """One row of the page.
+
+    Attributes:
+        text: what is claimed.
+        command: that shows it.
+        pattern: finds it in what the command prints; `EXIT_CODE` is the command's.
+        expected: a number, or a text to be equal.
+        tolerance: `exact`, `at least`, `at most`, or `± N %`.
+    """
+
+    text: str
+    command: str
+    pattern: str
+    expected: str
+    tolerance: str
+
+    def holds_for(self, found: str) -> bool:
+        """Whether what was found is what is claimed.
+
+        >>> Claim("", "", "", "5", "± 10 %").holds_for("5.4")
+        True
+        """
+        if self.tolerance == "exact":
+            return found == self.expected
+        value, expected = _number(found), _number(self.expected)
+        match self.tolerance:
+            case "at least":
+                return value >= expected
+            case "at most":
+                return value <= expected
+            case _:
+                share = _number(self.tolerance.strip("± %")) / 100
+                return abs(value - expected) <= share * abs(expected)
+
+
+def claims_of(page: str, *, long: bool) -> list[Claim]:
+    """The rows of the page's tables.
+
+    Args:
+        page: its text.
+        long: those of the second section, too.
+
+    Raises:
+        ClaimError: a row has no five cells, no such pattern or no such tolerance.
+    """
+    claims, wanted = [], False
+    for number, line in enumerate(page.splitlines(), 1):
+        if line.startswith("## "):
+            wanted = line == QUICK or (long and line == LONG)
+        if not wanted or not line.startswith("| ") or line.startswith("| claim"):
+            continue
+        cells = [cell.strip().replace(r"\|", "|") for cell in _CELL.split(line)[1:-1]]
+        if len(cells) != 5:
+            raise ClaimError(f"line {number}: {len(cells)} cells; a claim has five")
+        claim = Claim(cells[0], *(cell.strip("`") for cell in cells[1:]))
+        _check(claim, number)
+        claims.append(claim)
+    return claims
+
+
+def found_by(claim: Claim) -> tuple[list[str], str]:
+    """What the command of a claim shows, and the last lines that it printed."""
+    code, output = _printed(claim.command)
+    last = "\n".join(output.splitlines()[-SHOWN_LINES:])
+    if claim.pattern == EXIT_CODE:
+        return [str(code)], last
+    return re.findall(claim.pattern, output, re.MULTILINE), last
+
+
+def main() -> int:
+    """Run what the command line names and print how it went."""
+    parser = argparse.ArgumentParser(description="Do the claims of docs/claims.md hold?")
+    parser.add_argument("--long", action="store_true", help="those that take long, too")
+    parser.add_argument("--only", metavar="WORD", default="", help="in the claim or its command")
+    options = parser.parse_args()
+    try:
+        claims = claims_of(PAGE.read_text(encoding="utf-8"), long=options.long)
+    except ClaimError as error:
+        print(f"docs/claims.md: {error}", file=sys.stderr)
+        return 2
+    failed = 0
+    chosen = [claim for claim in claims if options.only in claim.text + claim.command]
+    for claim in chosen:
+        began = time.perf_counter()
+        lines = list(_complaints(claim))
+        failed += bool(lines)
+        word = "does not hold" if lines else "holds"
+        print(f"{word:<13} {time.perf_counter() - began:6.1f} s  {claim.text}", flush=True)
+        print("".join(f"  {line}\n" for line in lines), end="", flush=True)
+    print(f"{len(chosen) - failed} passed, {failed} failed")
+    return int(failed > 0 or not chosen)
+
+
+def _check(claim: Claim, line: int) -> None:
+    try:
+        groups = 1 if claim.pattern == EXIT_CODE else re.compile(claim.pattern).groups
+        if claim.tolerance != "exact":
+            claim.holds_for(claim.expected)
+    except (re.error, ValueError) as error:
+        raise ClaimError(f"line {line}: {error}") from None
+    if groups != 1:
+        raise ClaimError(f"line {line}: `{claim.pattern}` has {groups} groups; it needs one")
+
+
+def _complaints(claim: Claim) -> Iterator[str]:
+    findings, last = found_by(claim)
+    wrong = [found for found in findings if not claim.holds_for(found)]
+    if findings and not wrong:
+        return
+    wanted = f"expected {claim.expected} ({claim.tolerance})"
+    yield f"{wanted}, came {', '.join(wrong) or 'nothing that fits ' + claim.pattern}"
+    yield f"$ {claim.command}"
+    yield from last.splitlines()
+
+
+@cache
+def _printed(command: str) -> tuple[int, str]:
+    """Exit code and output of a command, run in the project's folder and environment."""
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    with tempfile.TemporaryDirectory() as folder:
+        words = [word.replace("OUT", folder, 1) for word in shlex.split(command)]
+        try:
+            done = subprocess.run(
+                words,
+                cwd=ROOT,
+                env={**os.environ, "PATH": path, "COLUMNS": "100"},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                timeout=LONGEST_S,
+                check=False,
+            )
+        except (OSError, subprocess.TimeoutExpired) as error:
+            return -1, str(error)
+    return done.returncode, done.stdout
+
+
+def _number(text: str) -> float:
+    return float(text.replace(",", ""))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
