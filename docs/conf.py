@@ -22,7 +22,6 @@ html_css_files = ["site.css"]
 html_copy_source = False
 html_show_copyright = False
 html_show_sourcelink = False
-smartquotes = False  # it makes a dash of `--`
 
 myst_heading_anchors = 4  # the anchors of forges
 myst_enable_extensions = ["deflist"]

@@ -67,9 +67,10 @@ def _examples(epilog: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Text that Markdown shows as it stands, but for what is between backticks."""
+    """Text that Markdown shows as it stands; options, and what is between backticks, as code."""
     parts = text.split("`")
     for index in range(0, len(parts), 2):
         for sign in "\\*_<[":
             parts[index] = parts[index].replace(sign, f"\\{sign}")
+        parts[index] = re.sub(r"(?<![\w-])--[a-z][\w-]*", r"`\g<0>`", parts[index])
     return "`".join(parts)

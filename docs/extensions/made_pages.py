@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 
@@ -48,10 +49,19 @@ class Timeline(SphinxDirective):
         return [*source, nodes.raw("", timeline.timeline(text), format="html")]
 
 
+def short_names(
+    _app: Sphinx, _what: str, _name: str, _of: object, _options: object, *shown: str | None
+) -> tuple[str, str | None] | None:
+    """A signature without the modules of its types, as `autodoc_typehints_format` has others."""
+    signature, result = shown
+    return (re.sub(r"~(\w+\.)+", "", signature), result) if signature else None
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register directive and lexers."""
     app.add_directive("made", Made)
     app.add_directive("timeline", Timeline)
+    app.connect("autodoc-process-signature", short_names)
     app.add_lexer("rv", specification_language.SpecificationLexer)
     app.add_lexer("csv", TextLexer)
     app.add_lexer("ta", TextLexer)

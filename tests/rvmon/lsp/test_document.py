@@ -174,7 +174,7 @@ def test_half_written_texts():
 
 
 def test_findings():
-    """A finding has its code with a page, its places, and what mends it."""
+    """A finding has its code with a page, its places, and what fixes it."""
     text = "event a\nevent a\nconst T = 3 s\nrequirement R upon a then within 2 s a\n"
     of = document(text)
     (double,) = of.diagnostics[of.uri]
