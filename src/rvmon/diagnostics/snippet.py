@@ -7,7 +7,7 @@ import unicodedata
 from rvmon.diagnostics.shown import shown_line
 from rvmon.diagnostics.span import Span
 
-WIDEST = 105
+WIDEST = 107
 """A snippet is so many columns wide at most: longer lines are cut around the place."""
 
 _GUTTER = 5
