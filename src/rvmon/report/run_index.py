@@ -173,7 +173,9 @@ def _cell(one: Listed, requirement: str, known: str) -> ET.Element:
     verdict = one.report.verdicts[requirement]
     text = f"{verdict.value} {MARKS[verdict].sign}"
     attributes = {"data-verdict": verdict.value}
-    first = next(one.report.of(requirement, verdict), None)
-    reason = (known and f"known: {known}") or (first.reason if first is not None else "")
+    reason = f"known: {known}" if known else None
+    if reason is None and verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
+        first = next(one.report.of(requirement, verdict), None)
+        reason = None if first is None else first.reason
     link = e("a", {"href": f"{one.page}#{requirement}", "title": reason}, text)
     return e("td", attributes, link, " known" if known else None)
