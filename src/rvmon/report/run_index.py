@@ -152,7 +152,7 @@ def _row(
     name: Child = e("a", {"href": one.page}, shown) if one.page else shown
     failed = _failed(one)
     asked = [one.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
-    attributes = {"data-group": group, "data-name": " ".join(asked).lower()}
+    attributes = {"data-group": group, "data-name": " ".join(asked).strip().lower()}
     first = e("th", {"scope": "row"}, name)
     if one.report is None:
         width = str(max(1, len(ids)))

@@ -370,4 +370,4 @@ def test_a_list_has_totals_and_severities_and_the_most_failures_first(tmp_path):
     rows = {row.partition("<")[0]: row for row in index.split('<th scope="row">')[1:4]}
     assert re.findall(r">(\d)</td>", rows["D1"]) == ["1", "2", "0", "0"]
     assert "severity: high" in rows["D3"]
-    assert re.search(r'data-name="week/worse.csv d1 d2 *"', index)
+    assert re.search(r'data-name="week/worse.csv d1 d2"', index)
