@@ -221,5 +221,7 @@ def _verdict_cell(one: KnownAnswer, requirement: str, address: str | None) -> ET
     text = f"{verdict.value} {MARKS[verdict].sign}"
     if expected is not None and expected != verdict:
         text += f" ≠ {expected}"
-    shown: Child = text if address is None else e("a", {"href": f"{address}#{requirement}"}, text)
+    shown: Child = text
+    if address is not None and verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
+        shown = e("a", {"href": f"{address}#{requirement}"}, text)
     return e("td", {"data-verdict": verdict.value}, shown)

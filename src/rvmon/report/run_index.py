@@ -152,7 +152,7 @@ def _row(
     name: Child = e("a", {"href": one.page}, shown) if one.page else shown
     failed = _failed(one)
     asked = [one.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
-    attributes = {"data-group": group, "data-name": " ".join(asked).lower()}
+    attributes = {"data-group": group, "data-name": " ".join(asked).strip().lower()}
     first = e("th", {"scope": "row"}, name)
     if one.report is None:
         width = str(max(1, len(ids)))
@@ -173,7 +173,9 @@ def _cell(one: Listed, requirement: str, known: str) -> ET.Element:
     verdict = one.report.verdicts[requirement]
     text = f"{verdict.value} {MARKS[verdict].sign}"
     attributes = {"data-verdict": verdict.value}
-    first = next(one.report.of(requirement, verdict), None)
-    reason = (known and f"known: {known}") or (first.reason if first is not None else "")
+    reason = f"known: {known}" if known else None
+    if reason is None and verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
+        first = next(one.report.of(requirement, verdict), None)
+        reason = None if first is None else first.reason
     link = e("a", {"href": f"{one.page}#{requirement}", "title": reason}, text)
     return e("td", attributes, link, " known" if known else None)

@@ -180,7 +180,7 @@ def test_what_fails_stands_first_in_the_list_of_recordings(folder):
     """What cannot be judged stands before, with the reason; cells lead to the failure."""
     assert main(["run", "s.rv", "good.csv", "bad.csv", "cut.csv", "--report", "pages"]) == 2
     index = (folder / "pages" / "index.html").read_text()
-    places = [index.index(f'data-name="{name}.csv"') for name in ("cut", "bad", "good")]
+    places = [index.index(f'data-name="{name}.csv') for name in ("cut", "bad", "good")]
     assert places == sorted(places)
     assert "cannot be evaluated: " in index
     assert 'href="bad.html#R1"' in index

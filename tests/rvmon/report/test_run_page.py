@@ -352,3 +352,22 @@ def test_all_requirements_stand_over_the_whole_recording():
     bars = re.findall(r'data-verdict="(.)" style="left:([\d.]+)%;width:([\d.]+)%', row)
     assert [(verdict, float(left)) for verdict, left, _ in bars] == [("P", 25.0), ("F", 75.0)]
     assert float(bars[1][2]) == pytest.approx(10, abs=0.5)  # two of twenty seconds
+
+
+def test_a_list_has_totals_and_severities_and_the_most_failures_first(tmp_path):
+    """Per requirement, how many recordings have which verdict; names without the folder of all."""
+    spec = rvmon.loads(SPEC + "  severity high\n")
+    runs = {"week/fine.csv": door(answer=1.0)[1], "week/bad.csv": door()[1]}
+    runs["week/worse.csv"] = door(gap=0.01)[1]
+    reports = [replace(run.report, trace=name) for name, run in runs.items()]
+    write_run_pages(tmp_path, spec.checked, reports, lambda _: [], lambda name: name)
+    index = (tmp_path / "index.html").read_text()
+    assert re.findall(r'<a href="[^"#]*">([^<]*)</a></th>', index) == [
+        "worse.csv",
+        "bad.csv",
+        "fine.csv",
+    ]
+    rows = {row.partition("<")[0]: row for row in index.split('<th scope="row">')[1:4]}
+    assert re.findall(r">(\d)</td>", rows["D1"]) == ["1", "2", "0", "0"]
+    assert "severity: high" in rows["D3"]
+    assert re.search(r'data-name="week/worse.csv d1 d2"', index)
