@@ -130,7 +130,8 @@ def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
 
 
 def _saved(server: Server, params: lsp.DidSaveTextDocumentParams) -> None:
-    server.take(params.text_document.uri, server.texts[params.text_document.uri])
+    text = server.texts[params.text_document.uri]
+    server.take(params.text_document.uri, Text(text.raw, text.encoding))  # and what it imports
 
 
 def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:

@@ -48,7 +48,8 @@ class Editor:
         """Open a document, and give what was found in it, each by code and place."""
         item = lsp.TextDocumentItem(self.document(name).uri, "rv", 1, text)
         self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
-        await self.notified()
+        while item.uri not in self.client.diagnostics:
+            await self.notified()
         return self.found(name)
 
     def type(self, name, line, start, end, text):
@@ -130,7 +131,7 @@ def test_a_session(tmp_path):
 
 
 def test_layout_and_another_encoding(tmp_path):
-    """Positions are counted as the editor wants; the layout is that of `rvmon format`."""
+    """Positions are counted as the editor wants; layout is that of `rvmon format`; saves count."""
 
     async def session():
         async with editor(tmp_path, [lsp.PositionEncodingKind.Utf8]) as of:
@@ -143,6 +144,14 @@ def test_layout_and_another_encoding(tmp_path):
             of.type("a.rv", 0, 16, 24, "\r\n" + lines.replace("\n", "\r\n"))
             (edit,) = await of.client.text_document_formatting_async(layout)
             assert edit.new_text == LAID_OUT.replace("\n", "\r\n")
+            (tmp_path / "b.rv").write_text("event ask\n", encoding="utf-8")
+            text = 'import "b.rv"\nrequirement R upon ask then within 3 s ask\n'
+            assert await of.open("c.rv", text) == []
+            (tmp_path / "b.rv").write_text("event asked\n", encoding="utf-8")
+            saved = lsp.DidSaveTextDocumentParams(of.document("c.rv"))
+            of.client.text_document_did_save(saved)
+            while not of.found("c.rv"):
+                await of.notified()
 
     asyncio.run(session())
 
