@@ -42,15 +42,12 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser(campaign: Campaign) -> argparse.ArgumentParser:
-    parser: argparse.ArgumentParser = Parser(
-        description=f"{campaign.name}: tests checked against requirements."
-    )
+    parser: argparse.ArgumentParser = Parser(description=f"{campaign.name}: evaluated tests.")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     run = commands.add_parser(
         "run",
         help="play the tests of a campaign",
-        description="Generate tests, play them on all cores, evaluate them, show and keep the "
-        "table.",
+        description="Generate tests, play them on all cores, evaluate them, keep the table.",
         epilog="example: %(prog)s --tests 20 --out out/mine",
     )
     strategies = ", ".join(campaign.strategies)

@@ -11,8 +11,8 @@ from rvmon.lsp.names import Names
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.specification import EndPolicy
 from rvmon.spec.syntax.expected import accepted_terminals
-from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem
 from rvmon.spec.syntax.fixes import word_pattern
+from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.split import split_items
 from rvmon.spec.syntax.units import unit_table

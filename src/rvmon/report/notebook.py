@@ -23,7 +23,7 @@ DRAWN = 200
 """Attempts of each verdict that are drawn per requirement, the first ones; the rest is counted."""
 
 _DARK = re.compile(
-    r"@media ?\(prefers-color-scheme: ?dark\) ?\{\s*:root ?\{(.*?)\}\s*\}", re.DOTALL
+    r"@media (?:screen and )?\(prefers-color-scheme: ?dark\) ?\{\s*:root ?\{(.*?)\}\s*\}", re.DOTALL
 )
 _THEMES = (
     r"@media(prefers-color-scheme:dark){:root:not([data-jp-theme-light=true] *){\1}}"
