@@ -41,15 +41,12 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser(campaign: Campaign) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        description=f"{campaign.name}: tests checked against requirements."
-    )
+    parser = argparse.ArgumentParser(description=f"{campaign.name}: tests against requirements.")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     run = commands.add_parser(
         "run",
         help="play the tests of a campaign",
-        description="Generate tests, play them on all cores, evaluate them, show and keep the "
-        "table.",
+        description="Generate tests, play and evaluate them on all cores, show and keep the table.",
     )
     run.add_argument(
         "--strategy",
