@@ -103,6 +103,7 @@ EXTRAS = {
     "mcap-protobuf-support": "mcap",
     "paho-mqtt": "mqtt",
     "pyarrow": "arrow",
+    "pygls": "lsp",
     "pymunk": "handover",
     "rosbags": "ros",
 }

@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 
-from rvmon.errors import RvmonError
+from rvmon.errors import not_installed
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -18,7 +18,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Serve an editor over standard input and output by the Language Server "
         "Protocol: findings, explanations, definitions, names and units, layout. It ends when the "
         "editor does.",
-        epilog="example, in a file of Neovim: vim.lsp.start({ cmd = { 'rvmon', 'lsp' } })",
+        epilog="example: rvmon lsp --stdio",
     )
     parser.add_argument("--stdio", action="store_true", help="as without: some editors say it")
 
@@ -28,9 +28,7 @@ def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way 
     try:
         from rvmon.lsp.server import Server
     except ImportError:
-        raise RvmonError(
-            "the language server needs pygls, which is not installed: pip install 'rvmon[lsp]'"
-        ) from None
+        raise not_installed("the language server", "pygls") from None
     for ending in (signal.SIGINT, signal.SIGTERM):  # at once: a thread waits for the editor
         signal.signal(ending, lambda *_: os._exit(130))
     # Standard output is the protocol's alone: what anything else prints there goes to the log.
