@@ -162,8 +162,9 @@ class Runner:
             out, err = self._captured()
         else:
             path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+            settings = {"PATH": path, "PYTEST_ADDOPTS": "-p no:asyncio -p no:pytest-lsp"}
             done = subprocess.run(  # noqa: S603 - our own pages
-                words, capture_output=True, text=True, check=False, env={**os.environ, "PATH": path}
+                words, capture_output=True, text=True, check=False, env={**os.environ, **settings}
             )
             out, err = done.stdout, done.stderr
         if to_file:
