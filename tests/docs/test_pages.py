@@ -51,6 +51,7 @@ def stream_of(path):
 def test_the_page_is_true(page, tmp_path, monkeypatch, capsys):
     """Files are written, commands and programs run in the page's order, and print what it says."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("COLUMNS", raising=False)  # which tests that run side by side have
     runner = Runner(tmp_path, capsys.readouterr, names_for(page, tmp_path))
     for block in blocks(page):
         runner.run(block)
