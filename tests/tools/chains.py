@@ -14,6 +14,7 @@ _HEADS = (
     "whenever p or {} then {}",
     "upon p then {}",
     "upon e then {}",
+    "upon p then r R {}",
     "upon start then {}",
     "upon g then {}\n  for each k in g.k",
     "upon p then {}\n  let v = x",

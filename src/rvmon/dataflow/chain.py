@@ -76,7 +76,8 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
     top, left = len(nodes) - 1, None
     root = nodes[top]
     if isinstance(root, Sweep):
-        if not (root.future and root.dual and isinstance(nodes[root.left], Leaf)):
+        end = nodes[root.left]
+        if not (root.future and root.dual and isinstance(end, Leaf)):
             return None
         left, top = root.left, root.right
         right = nodes[top]
@@ -85,6 +86,8 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
             if right.every or len(inner) != 1 or len(right.operands) != 2:
                 return None
             top = inner[0]
+        elif not isinstance(end.core, Constant):
+            return None  # what is kept up has to hold where that ends, too
     windows: list[Window] = []
     node = nodes[top]
     while isinstance(node, Window) and node.over is not None and node.low <= node.high:

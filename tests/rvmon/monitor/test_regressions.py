@@ -18,6 +18,18 @@ ONLINE = [one for one, form in zip(ALL, FORMS, strict=True) if form not in ("fil
 """Forms that are told one thing after the other."""
 
 CASES = {
+    "a window that is to hold up to the left operand and with it is not met before it is over": (
+        "held",
+        "upon start\n  then e R (for 0 s true)",
+        [(0, {"e": True})],
+        0,
+    ),
+    "a window fails where the left operand holds": (
+        "sampled",
+        "upon start\n  then e R (within 2 ns p)",
+        [(0, {"e": True, "p": False}), (5, {})],
+        5,
+    ),
     "a row met younger later leads on younger": (
         "held",
         "upon start\n  then (always p) R (e R[3 ns, 5 ns] true)",
