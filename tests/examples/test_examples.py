@@ -1,5 +1,6 @@
 """The examples print what their table says; those of ROS run with their adapters."""
 
+import os
 import runpy
 import shutil
 import subprocess
@@ -84,6 +85,7 @@ def test_tests_of_a_base():
     told = subprocess.run(
         [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist"],
         cwd=EXAMPLES / "pytest_plugin",
+        env={**os.environ, "PYTEST_ADDOPTS": "-p no:asyncio -p no:pytest-lsp"},
         stdout=subprocess.PIPE,
         text=True,
     )

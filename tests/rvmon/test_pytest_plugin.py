@@ -16,8 +16,9 @@ requirement D2
 
 
 @pytest.fixture
-def folder(pytester):
-    """A folder with a specification."""
+def folder(pytester, monkeypatch):
+    """A folder with a specification, and the plugins that the tests of ours run with."""
+    monkeypatch.setenv("PYTEST_ADDOPTS", "-p no:asyncio -p no:pytest-lsp")
     pytester.makefile(".rv", door=SPEC)
     return pytester
 

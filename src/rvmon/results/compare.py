@@ -93,7 +93,7 @@ def compare(before: Iterable[Kept], after: Iterable[Kept]) -> Comparison:
 
     >>> old = Kept("a.csv", "R1", "R1#1", "P", "", "")
     >>> compare([old], [old._replace(verdict="F", reason="late")]).differences[0].change.value
-    'fails anew'
+    'fails now'
     """
     old, new = _runs(before), _runs(after)
     if not old.keys() & new.keys():
