@@ -31,6 +31,7 @@ DOORS = {
     "mcap": "rvmon.readers.messages.mcap mcap.reader",
     "dds": "rvmon.adapters.dds cyclonedds",
     "gym": "rvmon.adapters.gym gymnasium",
+    "lsp": "rvmon.lsp.server pygls",
     "dask": "rvmon.execute.on_dask distributed",
     "mqtt": "rvmon.adapters paho.mqtt.client",
     "zstd": "rvmon.readers.places",
@@ -50,7 +51,13 @@ class ReleaseError(Exception):
 def main() -> int:
     """Build, check, install, and print how it went."""
     parser = argparse.ArgumentParser(description="Build and check a release; upload nothing.")
-    parser.add_argument("--only", nargs="+", metavar="EXTRA", help="`core` or names of extras")
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        metavar="EXTRA",
+        help="`core` or names of extras",
+        choices=[name or "core" for name in DOORS],
+    )
     parser.add_argument("--no-pythons", action="store_true", help="this Python alone")
     options = parser.parse_args()
     chosen = [name for name in DOORS if options.only is None or (name or "core") in options.only]
