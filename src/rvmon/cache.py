@@ -209,5 +209,5 @@ def _tidy(folder: Path) -> None:
 
 def _most() -> int:
     """Bytes that are kept; what `RVMON_CACHE_MB` says is passed over if it is no number."""
-    said = os.environ.get("RVMON_CACHE_MB", "")
-    return 1_000_000 * int(said if said.isascii() and said.isdecimal() else _MOST_MB)
+    limit = os.environ.get("RVMON_CACHE_MB", "")
+    return 1_000_000 * int(limit if limit.isascii() and limit.isdecimal() else _MOST_MB)

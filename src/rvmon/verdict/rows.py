@@ -118,21 +118,21 @@ def text_row(recording: str, requirement: str, text: str) -> VerdictRow:
         requirement: the id.
         text: as `rvmon.verdict.attempt_json.attempt_text` writes it.
     """
-    told = _decoder.decode(text)
+    fields = _decoder.decode(text)
     return VerdictRow(
         recording,
         requirement,
-        f"{requirement}{'?' if told.in_doubt else '#'}{told.number}",
-        told.number,
-        told.verdict,
-        told.decision,
-        told.in_doubt,
-        told.triggered,
-        told.decided,
-        told.deadline,
-        told.triggered_s,
-        told.decided_s,
-        told.robustness,
-        bytes(told.captured).decode(),
-        told.reason,
+        f"{requirement}{'?' if fields.in_doubt else '#'}{fields.number}",
+        fields.number,
+        fields.verdict,
+        fields.decision,
+        fields.in_doubt,
+        fields.triggered,
+        fields.decided,
+        fields.deadline,
+        fields.triggered_s,
+        fields.decided_s,
+        fields.robustness,
+        bytes(fields.captured).decode(),
+        fields.reason,
     )

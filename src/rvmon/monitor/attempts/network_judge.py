@@ -190,7 +190,7 @@ class NetworkJudge(AttemptJudge):
             journal = self._journals[index] = Journal(network)
         return journal
 
-    def told(self, verdict: bool) -> tuple[Journal, int] | None:
+    def journal_now(self, verdict: bool) -> tuple[Journal, int] | None:
         """The journal of the network that brings a verdict now, and how far that has come."""
         journal = self._journals[not verdict and self.better is not None]
         return None if journal is None else (journal, len(journal))

@@ -170,7 +170,7 @@ class LendingMonitor(GeneratedMonitor):
             self._kept.bound(self._unit_evaluators)
         finally:
             self._core.free()
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         if self._is_lent:

@@ -93,7 +93,7 @@ class CompiledMonitor(Monitor):
         if self._intake is not None:
             return super()._take(t_ns, values)
         decided = self._core.step_ns(t_ns, values)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return decided
 
     def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:

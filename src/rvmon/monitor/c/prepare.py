@@ -73,8 +73,8 @@ def prepare(
         try:
             path = make()
         except NotPlainError as error:
-            told = f"{error}: leave out RVMON_CACHE=off, and let no others write to its folder"
-            raise RvmonError(told) from None
+            message = f"{error}: leave out RVMON_CACHE=off, and let no others write to its folder"
+            raise RvmonError(message) from None
         if path is None:
             continue
         seconds = time.perf_counter() - started

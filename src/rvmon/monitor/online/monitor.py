@@ -123,7 +123,7 @@ class Monitor:
     def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample by the way of every monitor."""
         decided = self.one_call(self._step, t_ns, values)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return decided
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
@@ -216,7 +216,7 @@ class Monitor:
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
         decided = self.one_call(self._advance, t_ns)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return decided
 
     def _advance(self, t_ns: int) -> Sequence[Attempt]:
@@ -250,7 +250,7 @@ class Monitor:
             The report; the same again if the run was finished before.
         """
         report, decided = self.one_call(self._finish, t_ns)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return report
 
     def _finish(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:

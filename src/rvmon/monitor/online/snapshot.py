@@ -184,8 +184,8 @@ def _machine(compiled: CompiledRequirement, engine: str) -> str:
         return compiled.engine(engine)
     tables = (automaton.initial, automaton.bases, automaton.strides, automaton.targets)
     cuts = tuple(location.cuts for location in automaton.locations)
-    said = repr((tables, automaton.edges.tolist(), automaton.sources, cuts))
-    return hashlib.sha256(said.encode()).hexdigest()
+    content = repr((tables, automaton.edges.tolist(), automaton.sources, cuts))
+    return hashlib.sha256(content.encode()).hexdigest()
 
 
 def _plans(compiled: CompiledSpec) -> Mapping[str, NetworkPlan]:

@@ -275,8 +275,8 @@ class MarginJudge(AttemptJudge):
 
     def _letters(self, last: int) -> tuple[list[Letter], list[Letter]]:
         """What the gauges do not know yet of the leaves, up to an integer."""
-        told = [letters for letters in self._waiting if letters[0][0] <= last]
-        return [low for low, _ in told], [high for _, high in told]
+        ready = [letters for letters in self._waiting if letters[0][0] <= last]
+        return [low for low, _ in ready], [high for _, high in ready]
 
     def figures(self, end: int, reached: int) -> dict[int, Robustness]:
         """The robustness at each instant that is asked for, if the trace has ended.
