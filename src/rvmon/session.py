@@ -58,7 +58,7 @@ class Spec:
         return self.checked.requirements
 
     def reading(self, **options: Unpack[SchemaArguments]) -> Spec:
-        r"""The same specification, for recordings that tell things otherwise.
+        r"""The same specification, for recordings that name things otherwise.
 
         Args:
             **options: `time`: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with

@@ -55,7 +55,7 @@ class VerdictRow(NamedTuple):
 def broken_rows(recording: str, error: str, before: Iterable[Attempt]) -> Iterator[VerdictRow]:
     """The rows of a recording that broke off: that it did, then what was decided before.
 
-    Its attempts have no seconds, as these are counted from an origin that is told at the end.
+    Its attempts have no seconds, as these are counted from an origin that is known at the end only.
     """
     yield VerdictRow(recording, error=error)
     for attempt in before:

@@ -183,7 +183,7 @@ class NetworkJudge(AttemptJudge):
             self._hear(limit)
 
     def _journal(self, network: Network) -> Journal:
-        """What a network is to be told by."""
+        """What brings a network its input."""
         index = int(network is not self.worse)
         journal = self._journals[index]
         if journal is None or journal.is_over:
@@ -251,7 +251,7 @@ class NetworkJudge(AttemptJudge):
             self._go_on(noted, limit)
 
     def _go_on(self, noted: Sequence[Noted], limit: int) -> None:
-        """Have a network know what letters tell."""
+        """Have a network know what letters report."""
         journal = journal_of(self.plan, self.flow.gap, noted, position_of(self.attempts[0]))
         journal.grow(None, limit)
         self.worse = journal.after(len(journal)).copy()

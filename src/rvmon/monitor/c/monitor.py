@@ -97,7 +97,7 @@ class CompiledMonitor(Monitor):
         return decided
 
     def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample by the way of every monitor; who asked for that tells what it decides."""
+        """Take a sample by the way of every monitor; who asked for that reports what it decides."""
         return self.one_call(self._step, t_ns, values)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:

@@ -53,7 +53,7 @@ def prepare(
     Args:
         compiled: the specification.
         only: ids of the requirements; `None`: all.
-        ready: told each file when it is there.
+        ready: called with each file when it is there.
         robustness: whether that will be measured as well.
 
     Raises:

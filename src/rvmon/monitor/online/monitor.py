@@ -45,7 +45,7 @@ class Monitor:
         step_ns: the same at ticks, later than all samples before; it returns the attempts that the
             sample decided. The values are what was updated or occurred: signals by value, `None` or
             NaN if it became unknown; events `True`, or their payload. It raises `TimeOrderError` if
-            the time is not later, or an `advance` said that nothing would come; `TraceError` for a
+            the time is not later, or an `advance` ruled it out; `TraceError` for a
             name or a value that the specification does not know, or a time that is no whole number;
             `OverlapError` if another call is under way. In all cases the monitor is as it was.
             Where a monitor runs generated code, this is a function of it.
@@ -103,7 +103,7 @@ class Monitor:
         self._attend()
 
     def _attend(self) -> None:
-        """Have what is decided heard of, if it is to be told or bounded."""
+        """Have what is decided heard of, if it is to be reported or bounded."""
 
     def _make_evaluators(self) -> Evaluators:
         return Evaluators(
