@@ -19,7 +19,7 @@ from pathlib import Path
 from rvmon.writing import PREFIX, SUFFIX, place_whole
 
 _MOST_MB = 256
-"""Megabytes that are kept, if nothing else is said."""
+"""Megabytes that are kept, if nothing else is set."""
 
 _IN_USE_S = 60.0
 """Seconds in which a file that was used is not deleted: a process may be about to load it."""
@@ -64,7 +64,7 @@ def made_folder() -> Path:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether it is a file or folder that nobody else can change, as far as the system can tell.
+    """Whether it is a file or folder that nobody else can change, as far as the system shows.
 
     Raises:
         OSError: there is none.
@@ -79,7 +79,7 @@ def is_ours(path: Path) -> bool:
 
 
 def file_stamps(folder: str) -> Iterator[tuple[str, int, int]]:
-    """What tells the files of a folder of sources from others: path, bytes and time of change."""
+    """What distinguishes the files of a folder of sources: path, bytes and time of change."""
     for entry in _files(folder):
         found = entry.stat()
         yield entry.path, found.st_size, found.st_mtime_ns
@@ -209,5 +209,5 @@ def _tidy(folder: Path) -> None:
 
 def _most() -> int:
     """Bytes that are kept; what `RVMON_CACHE_MB` says is passed over if it is no number."""
-    said = os.environ.get("RVMON_CACHE_MB", "")
-    return 1_000_000 * int(said if said.isascii() and said.isdecimal() else _MOST_MB)
+    limit = os.environ.get("RVMON_CACHE_MB", "")
+    return 1_000_000 * int(limit if limit.isascii() and limit.isdecimal() else _MOST_MB)

@@ -218,8 +218,8 @@ class SpecFile(pytest.File):
 class RequirementItem(pytest.Item):
     """A requirement on a recording."""
 
-    def __init__(self, *, judge: Judge, recording: Path, **told: Any) -> None:
-        super().__init__(**told)
+    def __init__(self, *, judge: Judge, recording: Path, **options: Any) -> None:
+        super().__init__(**options)
         self._judge = judge
         self._recording = recording
 

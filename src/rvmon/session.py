@@ -57,11 +57,11 @@ class Spec:
         """The requirements by id, in order of the file."""
         return self.checked.requirements
 
-    def reading(self, **told: Unpack[SchemaArguments]) -> Spec:
-        r"""The same specification, for recordings that tell things otherwise.
+    def reading(self, **options: Unpack[SchemaArguments]) -> Spec:
+        r"""The same specification, for recordings that name things otherwise.
 
         Args:
-            **told: `time`: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with
+            **options: `time`: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with
                 `s`, `ms`, `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name
                 ends in `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
                 `columns`: by declared name, of a payload's field `event.field`, the column; of
@@ -86,7 +86,7 @@ class Spec:
         from rvmon.binding.told import schema_told
 
         other = copy(self)
-        other.schema = schema_told(self.checked, self.schema, **told)
+        other.schema = schema_told(self.checked, self.schema, **options)
         return other
 
     @cached_property
@@ -279,8 +279,8 @@ class Spec:
         from rvmon.readers.reading import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
-        told = (self.reading(**schema) if schema else self).schema
-        return Reading(told, sources_asked(self.checked, sources), allowed)
+        read_as = (self.reading(**schema) if schema else self).schema
+        return Reading(read_as, sources_asked(self.checked, sources), allowed)
 
     def evaluate_many(
         self,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
 
-Told = Callable[[int, "Attempt"], object]
+Report = Callable[[int, "Attempt"], object]
 
 
 class DurableMonitor:
@@ -33,7 +33,7 @@ class DurableMonitor:
     Args:
         spec: what is judged.
         path: of the file; if it is there, the run in it goes on.
-        told: called with the number, from 1, and the record of each attempt that passes or fails.
+        report: called with the number, from 1, and the record of each attempt that passes or fails.
             What it raises comes out of the call that decided; the verdict counts as reported.
         every: so many samples are kept beside a snapshot.
         **options: as for `Spec.monitor`, for a new run; an old one goes on as it began.
@@ -61,12 +61,12 @@ class DurableMonitor:
     """
 
     def __init__(
-        self, spec: Spec, path: str | Path, told: Told, *, every: int = 1000, **options: Any
+        self, spec: Spec, path: str | Path, report: Report, *, every: int = 1000, **options: Any
     ) -> None:
         if type(every) is not int or every < 1:
             raise RvmonError(f"every={every!r}: expected a whole number from 1 on")
         self._path = Path(path)
-        self._told = told
+        self._report = report
         self._every = every
         self._number = 0
         self.taken = 0
@@ -76,7 +76,7 @@ class DurableMonitor:
         self.monitor.on_decided(self._hear)
         for line in [] if found is None else found[1:]:
             self._again(line)
-        # What these samples decided was told: they need not be judged once more.
+        # What these samples decided was reported: they need not be judged once more.
         self.save()
 
     def _taken_up(self, spec: Spec, found: list[bytes]) -> Monitor:
@@ -129,7 +129,7 @@ class DurableMonitor:
 
     def _hear(self, attempt: Attempt) -> None:
         self._number += 1
-        self._told(self._number, attempt)
+        self._report(self._number, attempt)
 
     def save(self) -> None:
         """Keep the run as it is: what was reported so far is not reported again.

@@ -194,7 +194,7 @@ class Robot:
         self.restart(HealthKind.DROPPED, "so much was lost that a new run began")
 
     def _lose_one(self, t: int, values: Values, *, is_late: bool) -> None:
-        """What a sample said is unknown, from its instant on or, if that is over, from now on."""
+        """What a sample held is unknown, from its instant on or, if that is over, from now on."""
         self._lost += 1
         kind = HealthKind.LATE if is_late else HealthKind.DROPPED
         self._note(kind, 1, t, "left out" if is_late else f"refused, as {self._refusal}")

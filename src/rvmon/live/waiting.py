@@ -36,7 +36,7 @@ class Names:
         signals: the signals.
         momentary: what says something of an instant only: events; `None`: all, as each sample is a
             position.
-        ignoring: signals that cannot be said to be unknown, as they `ignore NaN`.
+        ignoring: signals that cannot be declared unknown, as they `ignore NaN`.
     """
 
     signals: tuple[str, ...]
@@ -55,7 +55,7 @@ class Lost:
         names: what they spoke of.
         moments: the instants at which there may be something, with the names of what: occurrences
             of events, positions; `None` if there were too many to be kept, or what was lost cannot
-            be said to be unknown.
+            be declared unknown.
     """
 
     robot: str
@@ -128,7 +128,7 @@ class Waiting:
         return self._unborn.keys()
 
     def put(self, sample: Offered) -> bool:
-        """Have a sample wait; tell whether there was room."""
+        """Have a sample wait; return whether there was room."""
         unborn = self._unborn.get(sample.robot)
         if unborn is None:
             unborn = self._unborn[sample.robot] = Counter(dict.fromkeys(self._names.signals, 2))

@@ -198,7 +198,7 @@ def _library(compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]
 
 
 def _types(*, streams: bool) -> tuple[Any, ...]:
-    """What `OnlineLibrary.core` is told of figures."""
+    """What `OnlineLibrary.core` is given of figures."""
     return (streams, *(part for one in (Measured, Robustness) for part in (one, _slots(one))))
 
 

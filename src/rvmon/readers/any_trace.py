@@ -22,7 +22,7 @@ def recording_of(
     Args:
         trace: a path, a table (columns by name, an Arrow table, a data frame), a recording, or an
             iterable of `(t, values)` with t in seconds.
-        schema: the declared names, and how the trace tells them; a recording says so itself.
+        schema: the declared names, and how the trace gives them; a recording says so itself.
         ordered: whether a stamp that is before the one above it is an error.
         sources: the names that can arrive; default those that the trace has.
 

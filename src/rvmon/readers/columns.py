@@ -50,7 +50,7 @@ class TableRecording:
         Args:
             columns: by name; undeclared ones are passed over, and so is a signal or event by the
                 name of the time column, as in files.
-            schema: the declared names, and how the table tells them.
+            schema: the declared names, and how the table gives them.
             ordered: whether a stamp before the one above it is an error; not so under `max delay`.
 
         Raises:
@@ -96,7 +96,7 @@ class TableRecording:
     def stamp_doubts(self) -> list[Health]:
         """Whether its first stamps look like milliseconds; of a table that was read."""
         stamps = self.layout.stamps
-        if stamps.is_said or stamps.unit != "s":
+        if stamps.is_stated or stamps.unit != "s":
             return []
         column = self.columns[stamps.column]
         first = cells_of(stamps.column, getattr(column, "iloc", column)[:LOOKED_AT])

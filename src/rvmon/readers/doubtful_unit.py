@@ -16,7 +16,7 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
     """A remark if stamps look like milliseconds.
 
     They do if their median step would be 5 s or more, and either all are whole numbers or a
-    thousand of them would take 10,000 s or more. Nothing is said where a person has named the unit.
+    thousand of them would take 10,000 s or more. A unit that a person has named is not doubted.
 
     Args:
         times: the first `LOOKED_AT` instants of a recording in ticks, or all.
@@ -25,7 +25,7 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
     >>> doubt_unit([20 * TICKS_PER_SECOND * k for k in range(10)], Stamps("t", "s"))[0].remark
     'from stamp to stamp it is 20 s: are these milliseconds? `--time t:ms` (if not: `--time t:s`)'
     """
-    if stamps.is_said or stamps.unit != "s" or len(times) < FEWEST:
+    if stamps.is_stated or stamps.unit != "s" or len(times) < FEWEST:
         return []
     step = median_step(times)
     whole = all(t % TICKS_PER_SECOND == 0 for t in times)

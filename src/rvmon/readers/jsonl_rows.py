@@ -85,7 +85,7 @@ def decoded(line: Line, decode: Callable[[Line], Any]) -> Any:
                 return json.loads(line, parse_float=double_of)
             except TraceError:
                 raise
-            except ValueError:  # what was wrong with it first is told
+            except ValueError:  # what was wrong with it first is reported
                 pass
         raise
 

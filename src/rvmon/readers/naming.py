@@ -28,7 +28,7 @@ def read_as(
     binding: Binding | None,
     clock: str | None,
 ) -> Schema:
-    """A schema for recordings that tell things otherwise; see `rvmon.session.Spec.reading`.
+    """A schema for recordings that name things otherwise; see `rvmon.session.Spec.reading`.
 
     Raises:
         UnknownNameError: `columns` names what is not declared, or there is no such reading of NaN,
@@ -70,7 +70,7 @@ def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> St
     if stamps is not None:
         if stamps.column in names:
             return stamps
-        units = "" if stamps.is_said else _units_listed(stamps.column)
+        units = "" if stamps.is_stated else _units_listed(stamps.column)
         meant = did_you_mean(stamps.column, names, f"there are {listed}")
         raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}{remark}")
     times = [name for name in DEFAULT_COLUMNS if name in names]

@@ -30,10 +30,10 @@ class ReadingArguments(SchemaArguments, total=False):
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What `Spec.evaluate` and its kin are told of a trace.
+    """What `Spec.evaluate` and its kin are given about a trace.
 
     Attributes:
-        schema: the declared names, and how the trace tells them.
+        schema: the declared names, and how the trace gives them.
         sources: the signals and events that can arrive; `None`: those that the trace has.
         allowed: the names that a trace in columns may lack though requirements read them; whether
             all.

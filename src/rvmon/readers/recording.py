@@ -66,7 +66,7 @@ class FileRecording:
         Args:
             path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`; text may be packed
                 (`.csv.gz`, `.jsonl.zst`), and any may be an address.
-            schema: the names that the spec declares, and how the recording tells them.
+            schema: the names that the spec declares, and how the recording gives them.
             ordered: whether a stamp before the one above it is an error; not so under `max delay`.
 
         Raises:
@@ -156,7 +156,7 @@ class FileRecording:
 
     @property
     def is_configured(self) -> bool:
-        """Whether somebody has said how columns are called, or what cells and stamps mean."""
+        """Whether somebody has stated how columns are called, or what cells and stamps mean."""
         schema = self._schema
         return bool(schema.columns or schema.gaps or schema.stamps is not None)
 

@@ -9,7 +9,7 @@ LOOKED_AT = 1_000
 """So many of the first stamps of a recording are looked at."""
 
 FEWEST = 10
-"""Of fewer stamps nothing is said."""
+"""Of fewer stamps nothing is reported."""
 
 LONG_STEP = 5
 """Seconds of a median step from which on seconds may be milliseconds."""

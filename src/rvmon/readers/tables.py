@@ -29,7 +29,7 @@ def columns_by_name(table: Any) -> dict[str, Any] | None:
         return _distinct(table.column_names, table.columns)
     if not (hasattr(table, "__arrow_c_stream__") or hasattr(table, "__dataframe__")):
         return None
-    # As Arrow, the NaN of a frame of pandas would be absent: its own columns tell them apart.
+    # As Arrow, the NaN of a frame of pandas would be absent: its own columns distinguish them.
     if hasattr(table, "columns") and hasattr(table, "shape"):
         return _frame_columns(table)
     imported = _imported(table)
@@ -85,7 +85,7 @@ def cells_of(name: str, column: Any) -> list[Any]:
 
     Returns:
         Values as Python has them; `None` where there is none: null, masked, missing in a column of
-        pandas that tells that from NaN by its type.
+        pandas that distinguishes that from NaN by its type.
 
     Raises:
         TraceError: it is no column.

@@ -23,7 +23,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 
 
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
-    """The names that the failed part of a requirement reads; if it cannot be told, all it owed."""
+    """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
     parts = subformulas(requirement.consequent)
     owed = [part for part in parts if not isinstance(part, Unary | Binary)]
     failed = [

@@ -40,7 +40,7 @@ def groups_sections(summary: Summary) -> list[ET.Element]:
             lists.append(
                 e(
                     "details",
-                    {"id": f"g{number}", "open": _is_telling(summary, group)},
+                    {"id": f"g{number}", "open": _is_open(summary, group)},
                     e("summary", None, e("h3", None, *title)),
                     _list(summary, group),
                 )
@@ -56,7 +56,7 @@ def groups_sections(summary: Summary) -> list[ET.Element]:
     return sections
 
 
-def _is_telling(summary: Summary, group: Group) -> bool:
+def _is_open(summary: Summary, group: Group) -> bool:
     """Whether a list is short, or something in it is to be seen."""
     if len(group.items) <= SHORT:
         return True

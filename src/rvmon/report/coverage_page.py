@@ -127,8 +127,8 @@ def _overview(summary: Summary) -> ET.Element:
     if len(rows) + len(whole) <= OPEN:
         rows += whole
     elif whole:
-        said = e("summary", None, f"{counted(len(whole), 'group')} covered")
-        parts.append(e("details", None, said, _groups(whole)))
+        heading = e("summary", None, f"{counted(len(whole), 'group')} covered")
+        parts.append(e("details", None, heading, _groups(whole)))
     parts.insert(1, _groups([total, *rows]))
     return e("section", None, *parts)
 

@@ -12,10 +12,10 @@ from rvmon.report.markup import Child, e, scroll
 from rvmon.verdict.verdict import Verdict
 
 MOST = 2_000
-"""Lines of tests; of more tests, those have one that something is to be said of."""
+"""Lines of tests; of more tests, those have one that something is to be reported of."""
 
 NAMED = 4
-"""Items that a test is said to have added; the rest is counted."""
+"""Items that a test is listed as having added; the rest is counted."""
 
 
 def letter(verdict: Verdict) -> ET.Element:

@@ -28,12 +28,12 @@ def engines_text(choices: Mapping[str, EngineChoice]) -> str:
         (shown_line(name), choice.online, choice.recording, _why(choice))
         for name, choice in choices.items()
     ]
-    told = []
+    notes = []
     if not any("prepared" in choice.refused for choice in choices.values()):
-        told.append(_OF_PREPARED)
+        notes.append(_OF_PREPARED)
     if not all("c" in choice.refused for choice in choices.values()):
-        told.append(_OF_C)
-    return plain_table([_HEAD, *rows]) + "\n".join(told)
+        notes.append(_OF_C)
+    return plain_table([_HEAD, *rows]) + "\n".join(notes)
 
 
 def _why(choice: EngineChoice) -> str:

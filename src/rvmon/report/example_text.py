@@ -64,17 +64,17 @@ def _instants(example: Example) -> list[int]:
 
 def _cells(name: str, example: Example, spec: CheckedSpec, instants: Sequence[int]) -> list[str]:
     """What stands in each column: a text, or one character that fills it."""
-    said = {sample.t: sample.values[name] for sample in example.samples if name in sample.values}
+    given = {sample.t: sample.values[name] for sample in example.samples if name in sample.values}
     if name in spec.events:
-        return [_occurrence(said.get(t, False)) for t in instants]
+        return [_occurrence(given.get(t, False)) for t in instants]
     stale_after = spec.signals[name].stale_after
     cells: list[str] = []
     before = ""
     value: Value = None
     at = 0
     for t in instants:
-        if t in said:
-            value, at = said[t], t
+        if t in given:
+            value, at = given[t], t
         stale = stale_after is not None and t - at > stale_after
         shown = _scalar(None if stale or isinstance(value, Mapping | tuple) else value)
         unit = spec.signals[name].type.unit

@@ -65,10 +65,10 @@ def _add_case(
     suite: ET.Element, report: Report, name: str, verdict: Verdict, requirement: Requirement
 ) -> ET.Element:
     case = ET.SubElement(suite, "testcase", name=shown(name), classname=suite.get("name", ""))
-    said = [("requirement", requirement.text), ("severity", requirement.severity)]
-    said = [one for one in (*said, *(("tag", tag) for tag in requirement.tags)) if one[1]]
-    properties = ET.SubElement(case, "properties") if said else case
-    for kind, value in said:
+    entries = [("requirement", requirement.text), ("severity", requirement.severity)]
+    entries = [one for one in (*entries, *(("tag", tag) for tag in requirement.tags)) if one[1]]
+    properties = ET.SubElement(case, "properties") if entries else case
+    for kind, value in entries:
         ET.SubElement(properties, "property", name=kind, value=shown(value))
     if verdict is Verdict.PASS:
         return case

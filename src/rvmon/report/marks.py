@@ -11,7 +11,7 @@ from rvmon.report.view import View
 from rvmon.trace.sample import Scalar
 
 PLACES = 400
-"""Places of a track that can be told apart; what is denser is summed up at its place."""
+"""Places of a track that can be distinguished; what is denser is summed up at its place."""
 
 Point = tuple[float, float]
 """x and y as fractions of a track, y downwards."""

@@ -48,8 +48,8 @@ def overview(content: RunPage, panels: Sequence[Panel], view: View) -> ET.Elemen
         for name, counts in report.counts.items()
         if any(count > MOST_DRAWN for count in counts.values())
     ]
-    said = f"Of {', '.join(cut)} the first {MOST_DRAWN:,} attempts of each verdict are drawn."
-    note = e("p", {"class": "soft"}, said) if cut else None
+    sentence = f"Of {', '.join(cut)} the first {MOST_DRAWN:,} attempts of each verdict are drawn."
+    note = e("p", {"class": "soft"}, sentence) if cut else None
     box = e("div", {"class": "all"}, timeline)
     return e("nav", {"aria-label": "requirements"}, back, box, note)
 

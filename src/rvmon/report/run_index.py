@@ -56,7 +56,7 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
     rows = [(_group(one, known), one) for one in recordings]
     rows.sort(key=lambda row: (places.index(row[0]), -len(_failed(row[1]))))
     counts = Counter(group for group, _ in rows)
-    told = [f"{counts[group]:,} {words}" for group, words in _GROUPS.items() if counts[group]]
+    totals = [f"{counts[group]:,} {words}" for group, words in _GROUPS.items() if counts[group]]
     ids = next((list(one.report.verdicts) for one in recordings if one.report is not None), [])
     folder = _folder([one.name for one in recordings])
     titles = (
@@ -67,7 +67,7 @@ def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailu
     table = e("table", {"class": "verdicts"}, e("thead", None, head), body)
     title = f"{len(recordings):,} recordings, checked against {spec.name}"
     where = e("p", {"class": "soft"}, "in ", e("code", None, folder)) if folder else None
-    header = e("header", None, e("h1", None, title), e("p", None, ", ".join(told)), where)
+    header = e("header", None, e("h1", None, title), e("p", None, ", ".join(totals)), where)
     return page(
         title,
         [
@@ -156,9 +156,9 @@ def _row(
     first = e("th", {"scope": "row"}, name)
     if one.report is None:
         width = str(max(1, len(ids)))
-        told = in_short(one.error.removeprefix(f"{one.name}: "))
+        message = in_short(one.error.removeprefix(f"{one.name}: "))
         place = {"class": "text", "colspan": width, "title": one.error}
-        why = e("td", place, *with_code(f"{_BROKEN}: {told}"))
+        why = e("td", place, *with_code(f"{_BROKEN}: {message}"))
         return e("tr", attributes, first, why)
     failures = known.failures(one.report)
     expected = known.expected(one.report)

@@ -17,7 +17,7 @@ class Mark:
 
     Attributes:
         word: for sentences ("R2 failed").
-        sign: a shape that tells it apart without colour.
+        sign: a shape that distinguishes it without colour.
         terminal: a style of rich.
         light: CSS colour on a light page.
         dark: CSS colour on a dark page.

@@ -58,7 +58,7 @@ def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
     if late is not None and late - last <= last - first:
         last = max(last, late)
     margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 2)
-    # Outside the run there is nothing to see: a little is shown, to tell where it begins and ends.
+    # Outside the run there is nothing to see: a little is shown, to mark where it begins and ends.
     little = margin // 4
     start = max(first - margin, min(report.origin, first) - little)
     if report.end is None:

@@ -163,8 +163,8 @@ def _runs(rows: Iterable[Kept]) -> dict[str, _Run]:
         verdict = Verdict(row.verdict)
         run.verdicts.setdefault(row.requirement, []).append(verdict)
         if verdict is Verdict.FAIL:
-            told = f"{row.attempt}: {row.reason}" if row.reason else str(row.attempt)
-            run.failures.setdefault(row.requirement, []).append(told)
+            failure = f"{row.attempt}: {row.reason}" if row.reason else str(row.attempt)
+            run.failures.setdefault(row.requirement, []).append(failure)
     return runs
 
 

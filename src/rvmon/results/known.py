@@ -78,7 +78,7 @@ class KnownFailures:
         return {name: f"{one.reason} (until {one.until})" for name, one in found if one is not None}
 
     def remarks(self, reports: Sequence[Report]) -> Iterator[str]:
-        """What has to be said of the file: what is over, and what is needed no more."""
+        """What has to be reported of the file: what is over, and what is needed no more."""
         for one in self.known:
             about = [
                 (report.trace, report.verdicts[one.requirement])

@@ -50,8 +50,8 @@ def read_results(path: str | Path) -> list[Kept]:
     except OSError as error:
         raise RvmonError(f"cannot read {path}: {error.strerror or error}") from None
     except _FAULTS as error:
-        told = (str(error).splitlines() or [type(error).__name__])[0]
-        raise RvmonError(f"{path} holds no verdicts of rvmon: {told}") from None
+        cause = (str(error).splitlines() or [type(error).__name__])[0]
+        raise RvmonError(f"{path} holds no verdicts of rvmon: {cause}") from None
 
 
 def _checked(values: Iterable[Any]) -> Kept:

@@ -60,8 +60,8 @@ def csv_bytes(rows: Iterable[VerdictRow], _: Mapping[str, str] | None = None) ->
     """Verdicts as a file in CSV."""
     place = VerdictRow._fields.index("in_doubt")
     truths = ("false", "true")
-    told = ([*row[:place], truths[row.in_doubt], *row[place + 1 :]] for row in rows)
-    return csv_table(VerdictRow._fields, told)
+    shown = ([*row[:place], truths[row.in_doubt], *row[place + 1 :]] for row in rows)
+    return csv_table(VerdictRow._fields, shown)
 
 
 def csv_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:

@@ -286,7 +286,7 @@ class BulkRule(Rule):
                 self.settle_runs(position, min(following - 1, last))
             if following > last or not self.runs:
                 return min(following, self.next_cut(last)) if self.runs else NEVER
-            # Records of decisions tell from where time alone has gone on.
+            # Records of decisions show from where time alone has gone on.
             position = self.position = following
             if not self.step_runs(position):
                 cut = self.next_cut(position)

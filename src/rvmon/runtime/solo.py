@@ -110,7 +110,7 @@ class SoloRule(Rule):
         self.clerk.decided_in_run(self, number, triggered, seen, verdict, t, before)
 
     def _part(self, worse: int, better: int) -> bool:
-        """Whether the automaton tells these letters apart."""
+        """Whether the automaton distinguishes these letters."""
         kinds = self.machine.class_of
         return bool(kinds[worse] != kinds[better])
 

@@ -79,7 +79,7 @@ class Unit(Nodes, Schedule):
         """Begin a run.
 
         Args:
-            clerk: takes samples that need a closer look, and tells of decisions.
+            clerk: takes samples that need a closer look, and reports decisions.
             clerks: per requirement, who makes attempts and hears of decisions.
         """
         self.clear()

@@ -35,8 +35,8 @@ def compile_cached(
     folder = None if "import" in text else cache_folder()
     if folder is None:
         return _compiled(text, name, constants, directory)
-    said = json.dumps([*file_stamps(str(_HERE)), name, text, sorted((constants or {}).items())])
-    path = folder / f"spec-{hashlib.sha256(said.encode()).hexdigest()}.json"
+    content = json.dumps([*file_stamps(str(_HERE)), name, text, sorted((constants or {}).items())])
+    path = folder / f"spec-{hashlib.sha256(content.encode()).hexdigest()}.json"
     found = _read(path)
     if found is None:
         found = _compiled(text, name, constants, directory)

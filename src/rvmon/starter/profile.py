@@ -135,7 +135,7 @@ class _Followed:
     def _looks_like_event(self) -> bool:
         if self.shape.kind is not Kind.BOOL or not self.trues:
             return False
-        if not self.falses:  # only ever said when true
+        if not self.falses:  # only ever reported when true
             return self.silent > self.trues
         return self.runs_are_single and self.trues <= EVENT_SHARE * (self.trues + self.falses)
 

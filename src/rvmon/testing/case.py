@@ -14,8 +14,8 @@ class Case:
 
     Attributes:
         spec: what to judge by.
-        actions: what a monitor is told, in order: a sample, or the instant of an `advance`.
-        end: what it is told by `finish`, ticks.
+        actions: what a monitor is given, in order: a sample, or the instant of an `advance`.
+        end: what it is given by `finish`, ticks.
         names: the names that have a source; `None`: all.
     """
 

@@ -34,7 +34,7 @@ Key = tuple[str, bool, int]
 
 
 def key_of(attempt: Attempt) -> Key:
-    """What tells an attempt apart from all others."""
+    """What distinguishes an attempt from all others."""
     return attempt.requirement, attempt.in_doubt, attempt.number
 
 

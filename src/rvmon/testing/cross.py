@@ -36,7 +36,7 @@ MOST_WORK = 60_000
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What one way said of one requirement.
+    """What one way reported of one requirement.
 
     Attributes:
         skipped: why it was not asked, or could not answer; empty if it did.
@@ -63,7 +63,7 @@ class Crossing:
 
     @property
     def agrees(self) -> bool:
-        """Whether all that answered said the same."""
+        """Whether all that answered agree."""
         return not any(answer.differences for answer in self.answers.values())
 
 

@@ -170,5 +170,5 @@ def _refuse_double_payloads(requirements: Iterable[Requirement], samples: Sequen
             if isinstance(value, tuple) and len(value) > 1:
                 raise TraceError(
                     f"sample at {sample.t} ns holds {len(value)} payloads of `{name}`: "
-                    "only a requirement `for each` can tell them apart"
+                    "only a requirement `for each` can distinguish them"
                 )

@@ -12,7 +12,7 @@ from rvmon.trace.schema import Kind
 
 
 def show_case(case: Case) -> str:
-    """The specification as `.rv` text, then what the monitor is told, line by line."""
+    """The specification as `.rv` text, then what the monitor is given, line by line."""
     lines = [show_spec(case.spec), ""]
     if case.names is not None:
         lines.append(f"sources: {', '.join(sorted(case.names)) or 'none'}")

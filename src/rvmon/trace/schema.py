@@ -26,17 +26,17 @@ class Stamps:
     Attributes:
         column: the name of the column, in JSON lines of the field.
         unit: `s`, `ms`, `us`, `ns`, or `iso` for dates and times of ISO 8601.
-        is_said: whether a person named the unit, or it is what goes without saying.
+        is_stated: whether a person named the unit, or it is what goes without saying.
     """
 
     column: str
     unit: str
-    is_said: bool = False
+    is_stated: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Schema:
-    """The declared names with their kinds, and how recordings tell them.
+    """The declared names with their kinds, and how recordings give them.
 
     Attributes:
         signals: kind by name.

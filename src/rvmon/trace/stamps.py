@@ -24,7 +24,7 @@ from rvmon.trace.time import (
 )
 
 UNITS = (*UNIT_WORDS, "iso")
-"""What stamps may be told in."""
+"""What stamps may be counted in."""
 
 _ISO = re.compile(
     r"(?P<date>\d{4}-?\d\d-?\d\d)"
@@ -46,13 +46,13 @@ def stamps_of(text: str) -> Stamps:
     """Read `COLUMN` or `COLUMN:UNIT`; without a unit, a column `…_ns` holds nanoseconds.
 
     >>> stamps_of("stamp:ms")
-    Stamps(column='stamp', unit='ms', is_said=True)
+    Stamps(column='stamp', unit='ms', is_stated=True)
     >>> stamps_of("t_ns")
-    Stamps(column='t_ns', unit='ns', is_said=False)
+    Stamps(column='t_ns', unit='ns', is_stated=False)
     """
     column, colon, unit = text.rpartition(":")
     if colon and unit in UNITS:
-        return Stamps(column, unit, is_said=True)
+        return Stamps(column, unit, is_stated=True)
     return Stamps(text, "ns" if text.endswith("_ns") else "s")
 
 
@@ -165,7 +165,7 @@ def ticks_of_iso(text: str) -> int:
 
 def _other_unit(stamp: object, stamps: Stamps) -> str:
     """A question after the unit that was probably meant, where it went without saying."""
-    if stamps.is_said:
+    if stamps.is_stated:
         return ""
     if _ISO.fullmatch(str(stamp).strip()) and not str(stamp).isdigit():
         return f": is this ISO 8601? `--time {stamps.column}:iso`"

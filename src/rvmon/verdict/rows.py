@@ -55,7 +55,7 @@ class VerdictRow(NamedTuple):
 def broken_rows(recording: str, error: str, before: Iterable[Attempt]) -> Iterator[VerdictRow]:
     """The rows of a recording that broke off: that it did, then what was decided before.
 
-    Its attempts have no seconds, as these are counted from an origin that is told at the end.
+    Its attempts have no seconds, as these are counted from an origin that is known at the end only.
     """
     yield VerdictRow(recording, error=error)
     for attempt in before:
@@ -118,21 +118,21 @@ def text_row(recording: str, requirement: str, text: str) -> VerdictRow:
         requirement: the id.
         text: as `rvmon.verdict.attempt_json.attempt_text` writes it.
     """
-    told = _decoder.decode(text)
+    fields = _decoder.decode(text)
     return VerdictRow(
         recording,
         requirement,
-        f"{requirement}{'?' if told.in_doubt else '#'}{told.number}",
-        told.number,
-        told.verdict,
-        told.decision,
-        told.in_doubt,
-        told.triggered,
-        told.decided,
-        told.deadline,
-        told.triggered_s,
-        told.decided_s,
-        told.robustness,
-        bytes(told.captured).decode(),
-        told.reason,
+        f"{requirement}{'?' if fields.in_doubt else '#'}{fields.number}",
+        fields.number,
+        fields.verdict,
+        fields.decision,
+        fields.in_doubt,
+        fields.triggered,
+        fields.decided,
+        fields.deadline,
+        fields.triggered_s,
+        fields.decided_s,
+        fields.robustness,
+        bytes(fields.captured).decode(),
+        fields.reason,
     )

@@ -121,7 +121,7 @@ class Evaluator(Nodes, Schedule):
         for rule in rules:
             self.note(rule)
 
-    # What judges are told.
+    # What judges are given.
 
     @property
     def values(self) -> list[int]:
@@ -173,7 +173,7 @@ class Evaluator(Nodes, Schedule):
         Args:
             made: has seen nothing.
             varying: the nodes that depend on captured values; none of them remembers anything.
-            own: the nodes of which nothing is told that was before.
+            own: the nodes of which nothing is reported that was before.
         """
         take_all(made, self)
         made.begun = self.position

@@ -20,7 +20,7 @@ it, and whether it is still seen to whether its values stay known."""
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """One value of a `for each`, or whatever value those occurrences have that do not tell it.
+    """One value of a `for each`, or whatever value those occurrences have that do not report it.
 
     Attributes:
         rank: from 1, in order of first occurrence; 0 where the value is not known.

@@ -183,14 +183,14 @@ class NetworkJudge(AttemptJudge):
             self._hear(limit)
 
     def _journal(self, network: Network) -> Journal:
-        """What a network is to be told by."""
+        """What brings a network its input."""
         index = int(network is not self.worse)
         journal = self._journals[index]
         if journal is None or journal.is_over:
             journal = self._journals[index] = Journal(network)
         return journal
 
-    def told(self, verdict: bool) -> tuple[Journal, int] | None:
+    def journal_now(self, verdict: bool) -> tuple[Journal, int] | None:
         """The journal of the network that brings a verdict now, and how far that has come."""
         journal = self._journals[not verdict and self.better is not None]
         return None if journal is None else (journal, len(journal))
@@ -251,7 +251,7 @@ class NetworkJudge(AttemptJudge):
             self._go_on(noted, limit)
 
     def _go_on(self, noted: Sequence[Noted], limit: int) -> None:
-        """Have a network know what letters tell."""
+        """Have a network know what letters report."""
         journal = journal_of(self.plan, self.flow.gap, noted, position_of(self.attempts[0]))
         journal.grow(None, limit)
         self.worse = journal.after(len(journal)).copy()

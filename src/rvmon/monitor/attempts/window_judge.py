@@ -1,7 +1,7 @@
 """Open attempts whose windows are followed by generated code, and by a network when need be.
 
-The code tells when which attempt is decided. All else (what is owed and why, what may become of it,
-snapshots, what is unknown) is told by the network that it stands for, which is told of the same
+The code finds when which attempt is decided. All else (what is owed and why, what may become of it,
+snapshots, what is unknown) comes from the network that it stands for, which is given the same
 positions when somebody asks.
 """
 
@@ -141,7 +141,7 @@ class WindowJudge(NetworkJudge):
         self._ahead = None
 
     def _recover(self) -> None:
-        """Go on by networks behind an interrupt: those are told of whole positions."""
+        """Go on by networks behind an interrupt: those are given whole positions."""
         if self._windows is not None:
             self._fall_back()
         self._torn = False

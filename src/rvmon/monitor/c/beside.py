@@ -2,7 +2,7 @@
 
 C takes the samples that say nothing but plain values, and notes with each decision what its reason
 is worked out from. For all else (unknown values, what is wrong, questions, the end) Python takes
-the state back: so nobody can tell the two apart but by the time they take.
+the state back: so the two differ in nothing but the time they take.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ time that it had it back soon."""
 
 
 def plan_beside(plan: Plan) -> Plan:
-    """What is compiled to stand beside generated Python: all but what tells of the unknown.
+    """What is compiled to stand beside generated Python: all but what reports the unknown.
 
     Args:
         plan: of the generated Python.
@@ -170,7 +170,7 @@ class LendingMonitor(GeneratedMonitor):
             self._kept.bound(self._unit_evaluators)
         finally:
             self._core.free()
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         if self._is_lent:

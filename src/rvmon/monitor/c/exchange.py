@@ -1,8 +1,9 @@
 """The state of generated Python as numbers that its compiled counterpart goes on from, and back.
 
 The two evaluate the same state formulas and step the same automata. What is lent is known, and
-without attempts in doubt: so one reading of each operator is enough, and nothing is to be told of
-what was not known. `pass_state` of `rvmon/codegen/c/beside.c.in` has the order of the numbers.
+without attempts in doubt: so one reading of each operator is enough, and nothing is to be
+reported of what was not known. `pass_state` of `rvmon/codegen/c/beside.c.in` has the
+order of the numbers.
 """
 
 from __future__ import annotations

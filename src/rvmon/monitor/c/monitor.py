@@ -93,11 +93,11 @@ class CompiledMonitor(Monitor):
         if self._intake is not None:
             return super()._take(t_ns, values)
         decided = self._core.step_ns(t_ns, values)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return decided
 
     def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample by the way of every monitor; who asked for that tells what it decides."""
+        """Take a sample by the way of every monitor; who asked for that reports what it decides."""
         return self.one_call(self._step, t_ns, values)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:

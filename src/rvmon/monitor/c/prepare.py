@@ -53,7 +53,7 @@ def prepare(
     Args:
         compiled: the specification.
         only: ids of the requirements; `None`: all.
-        ready: told each file when it is there.
+        ready: called with each file when it is there.
         robustness: whether that will be measured as well.
 
     Raises:
@@ -73,8 +73,8 @@ def prepare(
         try:
             path = make()
         except NotPlainError as error:
-            told = f"{error}: leave out RVMON_CACHE=off, and let no others write to its folder"
-            raise RvmonError(told) from None
+            message = f"{error}: leave out RVMON_CACHE=off, and let no others write to its folder"
+            raise RvmonError(message) from None
         if path is None:
             continue
         seconds = time.perf_counter() - started

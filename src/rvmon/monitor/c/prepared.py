@@ -157,12 +157,12 @@ def _note(
     use: str, folder: Path, compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
 ) -> Path:
     """Where it stands which file was made of some requirements."""
-    said = (digest_of(compiled), [one.requirement.id for one in chosen])
-    return folder / f"{use}-{hashlib.sha256(repr(said).encode()).hexdigest()[:40]}.json"
+    key = (digest_of(compiled), [one.requirement.id for one in chosen])
+    return folder / f"{use}-{hashlib.sha256(repr(key).encode()).hexdigest()[:40]}.json"
 
 
 @cache
 def _maker() -> str:
     """What else a file depends on: this package, this Python, this processor."""
-    said = (list(file_stamps(str(_PACKAGE))), sys.version, processor())
-    return hashlib.sha256(repr(said).encode()).hexdigest()
+    key = (list(file_stamps(str(_PACKAGE))), sys.version, processor())
+    return hashlib.sha256(repr(key).encode()).hexdigest()

@@ -70,8 +70,8 @@ def program_of(compiled: CompiledSpec, only: Sequence[str] | None) -> Path:
     if folder is None:
         raise NotPlainError("there is no cache to keep a program in")
     package = Path(__file__).parents[2]
-    said = [*file_stamps(str(package)), to_plain(compiled.checked), only]
-    key = hashlib.sha256(json.dumps([said, os.environ.get("CC", "")]).encode()).hexdigest()
+    content = [*file_stamps(str(package)), to_plain(compiled.checked), only]
+    key = hashlib.sha256(json.dumps([content, os.environ.get("CC", "")]).encode()).hexdigest()
     record = folder / f"run-{key}.json"
     program = folder / (read_kept(record) or b"none").decode()
     if not is_whole(program):

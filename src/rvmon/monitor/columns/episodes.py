@@ -73,7 +73,7 @@ class Episodes:
             judging: of the piece.
             axis: of the piece.
             truths: of the trigger; of what is false where an episode does not go on after a
-                failure; of what tells that something is not born.
+                failure; of what shows that something is not born.
 
         Returns:
             All of them by their starts, with what became of them.

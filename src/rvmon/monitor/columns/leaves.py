@@ -106,7 +106,7 @@ def distance(leaf: Compare, columns: Columns, rows: int) -> NDArray[np.float64]:
 
 
 def _unknown(values: Any) -> Any:
-    """Where numbers are NaN; mostly one sum tells that none is."""
+    """Where numbers are NaN; mostly one sum shows that none is."""
     if not isinstance(values, np.ndarray) or values.dtype.kind != "f":
         return values != values
     if not np.isnan(np.add.reduce(values)):

@@ -71,7 +71,7 @@ def rows_that_matter(
         matters |= _refreshing(times[before:stop], shortest)
     for column in own.values():
         if column.dtype.kind == "f":
-            # From when to when a signal was not known is told, whatever is made of it.
+            # From when to when a signal was not known is reported, whatever is made of it.
             lost = np.isnan(column)
             matters[1:] |= lost[1:] != lost[:-1]
     if before < start:

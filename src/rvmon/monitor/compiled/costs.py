@@ -1,4 +1,4 @@
-"""What judging a requirement costs, as far as its compiled form tells."""
+"""What judging a requirement costs, as far as its compiled form shows."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class CompileReport:
     Attributes:
         engine: `automaton`, or `network` where that does not close, or would be slower.
         why: why no automaton judges it; empty if one does.
-        letters: what its propositions can be, as its formula tells them apart.
+        letters: what its propositions can be, as its formula distinguishes them.
         horizon: ticks from the trigger within which an attempt is decided; `None` if unbounded.
         locations: of the automaton, both verdicts included; 0 if none judges. So are the others.
         clocks: the largest number that an attempt has.

@@ -34,7 +34,7 @@ class Refusal:
     """Why an engine does not judge a requirement.
 
     Attributes:
-        reason: said of the requirement, such as "uses `let`".
+        reason: why the requirement is refused, such as "uses `let`".
         fix: what to do.
         engine: the one that takes it.
     """

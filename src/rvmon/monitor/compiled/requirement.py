@@ -98,7 +98,7 @@ class CompiledRequirement:
 
     @cached_property
     def slim(self) -> Automaton | None:
-        """Its automaton for those who are told verdicts only: what is owed may be merged."""
+        """Its automaton for those who are given verdicts only: what is owed may be merged."""
         return None if self.automaton is None else reduce(self.automaton)
 
     @property

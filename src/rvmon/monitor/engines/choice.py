@@ -29,7 +29,7 @@ class EngineChoice:
 def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineChoice]:
     """What `auto` takes, by id.
 
-    Never `c`, which gives no reasons: what refuses it is told for those who may ask for it.
+    Never `c`, which gives no reasons: what refuses it is reported for those who may ask for it.
 
     Args:
         requirements: that are judged together.

@@ -149,7 +149,7 @@ def holds_nan(column: NDArray[Any]) -> bool:
 
     if column.dtype.kind != "f":
         return False
-    # Mostly one sum tells that there is none; that of infinities may be NaN, too.
+    # Mostly one sum shows that there is none; that of infinities may be NaN, too.
     with np.errstate(invalid="ignore", over="ignore"):
         total = np.add.reduce(column)
     return bool(np.isnan(total) and np.isnan(column).any())

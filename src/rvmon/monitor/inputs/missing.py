@@ -67,7 +67,7 @@ def expect_names(
         The names that it lacks, all of which it may.
 
     Raises:
-        MissingNameError: it lacks others, too; each is told with the column that is most like it.
+        MissingNameError: it lacks others, too; each is shown with the column that is most like it.
         UnknownNameError: a name that it may lack is not declared.
     """
     some = None if isinstance(allowed, bool) else sources_asked(spec, allowed)

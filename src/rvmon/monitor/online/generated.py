@@ -312,7 +312,7 @@ class GeneratedMonitor(Monitor):
         self._last = self._reached = t
         decided = self._flush()
         self._unit.after = self._floor = t
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return decided
 
     def _flush(self) -> Sequence[Attempt]:

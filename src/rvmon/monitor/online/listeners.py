@@ -43,7 +43,7 @@ class Listeners:
 
         return stop
 
-    def tell(self, decided: Sequence[Attempt]) -> None:
+    def call(self, decided: Sequence[Attempt]) -> None:
         """Call the callbacks, which may call the monitor: the call that decided is over.
 
         Raises:

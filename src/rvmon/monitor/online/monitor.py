@@ -45,7 +45,7 @@ class Monitor:
         step_ns: the same at ticks, later than all samples before; it returns the attempts that the
             sample decided. The values are what was updated or occurred: signals by value, `None` or
             NaN if it became unknown; events `True`, or their payload. It raises `TimeOrderError` if
-            the time is not later, or an `advance` said that nothing would come; `TraceError` for a
+            the time is not later, or an `advance` ruled it out; `TraceError` for a
             name or a value that the specification does not know, or a time that is no whole number;
             `OverlapError` if another call is under way. In all cases the monitor is as it was.
             Where a monitor runs generated code, this is a function of it.
@@ -103,7 +103,7 @@ class Monitor:
         self._attend()
 
     def _attend(self) -> None:
-        """Have what is decided heard of, if it is to be told or bounded."""
+        """Have what is decided heard of, if it is to be reported or bounded."""
 
     def _make_evaluators(self) -> Evaluators:
         return Evaluators(
@@ -123,7 +123,7 @@ class Monitor:
     def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample by the way of every monitor."""
         decided = self.one_call(self._step, t_ns, values)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return decided
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
@@ -216,7 +216,7 @@ class Monitor:
         A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
         """
         decided = self.one_call(self._advance, t_ns)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return decided
 
     def _advance(self, t_ns: int) -> Sequence[Attempt]:
@@ -250,7 +250,7 @@ class Monitor:
             The report; the same again if the run was finished before.
         """
         report, decided = self.one_call(self._finish, t_ns)
-        self._listeners.tell(decided)
+        self._listeners.call(decided)
         return report
 
     def _finish(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:

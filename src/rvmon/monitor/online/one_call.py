@@ -51,7 +51,7 @@ class OneCall:
         """
         # An interrupt strikes where a call begins or ends. So that none can come between taking the
         # turn and seeing that it is given back, one call takes it within the `try`, and none is
-        # needed to tell whose it is, or to give it back.
+        # needed to know whose it is, or to give it back.
         own = object()
         try:
             if self._turn.setdefault(None, own) is not own:

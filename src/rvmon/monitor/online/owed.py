@@ -16,7 +16,7 @@ def owed_now(
 ) -> tuple[Counter[str], Sequence[Attempt]]:
     """How many attempts of each requirement are open, and records.
 
-    A record costs a tenth of a millisecond, as it tells in words what is owed, and what is certain.
+    A record costs a tenth of a millisecond, as it words what is owed, and what is certain.
 
     Args:
         evaluators: of a monitor, taken along to now.

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _KIND = b"rvmon snapshot 2"
 
-_UNSAID = ("span", "source", "text", "title", "doc")
+_LEFT_OUT = ("span", "source", "text", "title", "doc")
 """Fields of a specification that do not change what is judged."""
 
 
@@ -135,27 +135,27 @@ def digest_of(compiled: CompiledSpec) -> str:
 
 def digest(checked: CheckedSpec) -> str:
     """A hash of what a specification judges; its layout and its comments are no part of it."""
-    return hashlib.sha256("\n".join(_said(checked)).encode()).hexdigest()
+    return hashlib.sha256("\n".join(_fingerprint(checked)).encode()).hexdigest()
 
 
-def _said(value: Any) -> Iterator[str]:
+def _fingerprint(value: Any) -> Iterator[str]:
     """A specification in a form that is the same in every process."""
     if is_dataclass(value):
         yield type(value).__name__
         for field in fields(value):
-            if field.name not in _UNSAID:
-                yield from _said(getattr(value, field.name))
+            if field.name not in _LEFT_OUT:
+                yield from _fingerprint(getattr(value, field.name))
     elif isinstance(value, Enum):
         yield f"{type(value).__name__}.{value.name}"
     elif isinstance(value, Mapping):
         yield f"{{{len(value)}"
         for key, one in value.items():
             yield repr(key)
-            yield from _said(one)
+            yield from _fingerprint(one)
     elif isinstance(value, tuple | list):
         yield f"[{len(value)}"
         for one in value:
-            yield from _said(one)
+            yield from _fingerprint(one)
     elif isinstance(value, frozenset):
         yield from sorted(repr(one) for one in value)
     else:
@@ -184,8 +184,8 @@ def _machine(compiled: CompiledRequirement, engine: str) -> str:
         return compiled.engine(engine)
     tables = (automaton.initial, automaton.bases, automaton.strides, automaton.targets)
     cuts = tuple(location.cuts for location in automaton.locations)
-    said = repr((tables, automaton.edges.tolist(), automaton.sources, cuts))
-    return hashlib.sha256(said.encode()).hexdigest()
+    content = repr((tables, automaton.edges.tolist(), automaton.sources, cuts))
+    return hashlib.sha256(content.encode()).hexdigest()
 
 
 def _plans(compiled: CompiledSpec) -> Mapping[str, NetworkPlan]:

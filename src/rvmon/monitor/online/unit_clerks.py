@@ -104,7 +104,7 @@ class UnitClerk(DeferredReasons):
         self._ledger = ledger
         self._unit = unit
         self._standing = standing
-        self._tell = ledger.recorded.append
+        self._record = ledger.recorded.append
         self._counts = counts
         self._seen_of = _picking(self.leaves)
         self._noted = noted
@@ -200,7 +200,7 @@ class UnitClerk(DeferredReasons):
         record = decided_attempt(
             self.id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
         )
-        self._tell((decided, self._rank, number, record))
+        self._record((decided, self._rank, number, record))
 
 
 def reopened(number: int, triggered: int, token: Token, seen: tuple[int, ...]) -> Open:

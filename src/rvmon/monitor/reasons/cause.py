@@ -33,7 +33,7 @@ class Cause:
 
     Attributes:
         node: the obligation, or the literal if none lies above it.
-        start: what tells when the obligation was instantiated: of a run of a machine the number of
+        start: what shows when the obligation was instantiated: of a run of a machine the number of
             a clock, `NO_CLOCK` if that was at the trigger, `AT_DECISION` if then; of a network
             the instant.
         over: whether its window passed; else `literal` decided it at the instant of decision.

@@ -36,7 +36,7 @@ class Noted(NamedTuple):
     Attributes:
         compiled: the requirement.
         journal: of the network that decided; `None` if there was none.
-        told: how far it had come.
+        reached: how far it had come.
         position: the instant of the position whose value was waited for, ticks.
         seen_then: the values of what is read of the input at the trigger.
         seen: the same at the decision.
@@ -48,7 +48,7 @@ class Noted(NamedTuple):
 
     compiled: CompiledRequirement
     journal: Journal | None
-    told: int
+    reached: int
     position: int
     seen_then: tuple[int, ...]
     seen: tuple[int, ...]
@@ -60,12 +60,12 @@ class Noted(NamedTuple):
 
 def note_decision(judge: NetworkJudge, attempt: Open, verdict: bool, t: int) -> Noted:
     """Note what the reason for a decision at `t` is worked out from, when someone asks for it."""
-    journal, told = judge.told(verdict) or (None, 0)
+    journal, reached = judge.journal_now(verdict) or (None, 0)
     seen, flow = judge.stood
     return Noted(
         judge.compiled,
         journal,
-        told,
+        reached,
         attempt.token[1][0],
         attempt.seen,
         seen,
@@ -93,7 +93,7 @@ def network_details(record: Attempt, noted: Noted) -> Mapping[str, Any]:
 
 
 def _why_decided(noted: Noted, verdict: bool, triggered: int) -> Explanation:
-    network = None if noted.journal is None else noted.journal.after(noted.told)
+    network = None if noted.journal is None else noted.journal.after(noted.reached)
     found = None if network is None else network.truth(noted.position)
     if network is None or found is None:
         return Explanation()

@@ -17,7 +17,7 @@ MOST_ATTEMPTS = 32
 
 
 def forecast_of(judge: AttemptJudge, attempt: Open, now: int) -> Verdict | None:
-    """What every continuation brings an open attempt to, where that can be said.
+    """What every continuation brings an open attempt to, where that is known.
 
     Args:
         judge: of the attempt.

@@ -49,7 +49,7 @@ def measuring_forms(
     key = (MarginJudge, tuple(one.requirement.id for one in requirements), sources)
     if key not in compiled.forms:
         by_unit = [one for one in requirements if _is_for_unit(one)]
-        # What is owed at the end is told of whenever one of the others is asked.
+        # What is owed at the end is reported whenever one of the others is asked.
         waits = any(one.obligation.trigger is None for one in requirements)
         if waits or len(requirements) > MOST_GENERATED:
             by_unit = []

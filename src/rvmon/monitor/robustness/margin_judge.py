@@ -162,7 +162,7 @@ class MarginJudge(AttemptJudge):
             self._ask(position)
 
     def follow(self, t: int) -> None:
-        """Note what all leaves are at a sample, the flow being at `t`, and tell what is settled."""
+        """Note what all leaves are at a sample, the flow being at `t`; report what is settled."""
         if self.position < t:
             if self._least is None and not (self.every or self._plan.looks_back):
                 self.position = t
@@ -188,7 +188,7 @@ class MarginJudge(AttemptJudge):
         found = gauge.step(t, values, t, t)
         if found:
             for position, value in found:
-                self._tell(position, self._figure(value, value, value))
+                self._report(position, self._figure(value, value, value))
             self._rest()
         return True
 
@@ -249,7 +249,7 @@ class MarginJudge(AttemptJudge):
         self._waiting = self._waiting[len(lows) :]
         if self._greatest is None and not self._lows:
             for position, value in found:
-                self._tell(position * self._gap, self._figure(value, value, value))
+                self._report(position * self._gap, self._figure(value, value, value))
         else:
             self._lows.update(found)
             self._highs.update(
@@ -257,7 +257,7 @@ class MarginJudge(AttemptJudge):
             )
             for position in sorted(self._lows.keys() & self._highs.keys()):
                 low, high = self._lows.pop(position), self._highs.pop(position)
-                self._tell(position * self._gap, self._figure(low, high, low))
+                self._report(position * self._gap, self._figure(low, high, low))
         self._rest()
 
     def _rest(self) -> None:
@@ -265,7 +265,7 @@ class MarginJudge(AttemptJudge):
         if not (self.attempts or self.every or self._plan.looks_back):
             self._least = self._greatest = None
 
-    def _tell(self, t: int, found: Robustness) -> None:
+    def _report(self, t: int, found: Robustness) -> None:
         while self.attempts and self.positions[self.attempts[0]] == t:
             attempt = self.attempts.pop(0)
             del self.positions[attempt]
@@ -275,8 +275,8 @@ class MarginJudge(AttemptJudge):
 
     def _letters(self, last: int) -> tuple[list[Letter], list[Letter]]:
         """What the gauges do not know yet of the leaves, up to an integer."""
-        told = [letters for letters in self._waiting if letters[0][0] <= last]
-        return [low for low, _ in told], [high for _, high in told]
+        ready = [letters for letters in self._waiting if letters[0][0] <= last]
+        return [low for low, _ in ready], [high for _, high in ready]
 
     def figures(self, end: int, reached: int) -> dict[int, Robustness]:
         """The robustness at each instant that is asked for, if the trace has ended.

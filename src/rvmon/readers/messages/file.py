@@ -52,7 +52,7 @@ class MessageFile:
     Args:
         path: of it.
         form: a value of `MESSAGE_FORMATS`.
-        schema: the declared names, and how the recording tells them.
+        schema: the declared names, and how the recording gives them.
 
     Attributes:
         topics: by name.

@@ -129,7 +129,7 @@ class _OtherMessages:
         return Topic(name, type_name, {}, fault), bytes
 
     def _json_leaves(self, schema: Any, topic: str) -> Iterator[tuple[str, Kind]]:
-        """The fields that the first message has, and those that the schema tells.
+        """The fields that the first message has, and those that the schema declares.
 
         What is wrong with them does not matter unless the topic is read.
         """

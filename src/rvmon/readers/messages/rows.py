@@ -145,13 +145,13 @@ def _event(name: str, bound: Bound, schema: Schema, mappings: bool) -> Take:
         if happened and fields:
             payload = {field: read(content) for field, read in fields.items()}
             payload = {field: one for field, one in payload.items() if one is not _ABSENT}
-        said = payload or happened
+        value = payload or happened
         if bound.on_change:
-            if _is_same(before[0], said):
-                said = False
+            if _is_same(before[0], value):
+                value = False
             else:
-                before[0] = said
-        values[name] = said
+                before[0] = value
+        values[name] = value
 
     return take
 

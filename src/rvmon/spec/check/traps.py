@@ -38,10 +38,10 @@ def traps_at_trigger(
         time: the time model.
         span: of the requirement, for what has no place of its own.
     """
-    said = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
+    facts = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
     for part in _owed_at_once(consequent):
         if truth_at(part, {}) is None:
-            yield from _at_trigger(part, said, time, part.span or span)
+            yield from _at_trigger(part, facts, time, part.span or span)
 
 
 def traps_at_start(
@@ -103,16 +103,16 @@ def _owed_at_once(formula: Formula) -> Iterator[Formula]:
             yield formula
 
 
-def _at_trigger(part: Formula, said: Facts, time: TimeModel, place: Span) -> Iterator[Diagnostic]:
+def _at_trigger(part: Formula, facts: Facts, time: TimeModel, place: Span) -> Iterator[Diagnostic]:
     """A part of what is owed that is false by what the trigger says."""
     if isinstance(part, Binary) and part.op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
-        left, right = truth_at(part.left, said), truth_at(part.right, said)
+        left, right = truth_at(part.left, facts), truth_at(part.right, facts)
         late = part.interval is not None and part.interval.low > 0
         if left is False and (late or right is not True) and truth_at(part.left, {}) is None:
             escape = "" if late or right is False else format_formula(part.right)
             shown = format_formula(part.left)
             yield rules.false_at_trigger(place, shown, escape, _from_later_on(part, time))
-    elif truth_at(part, said) is False:
+    elif truth_at(part, facts) is False:
         fix = "let the consequent begin a tick later: `always[1 ns, …] …`"
         if time is not TimeModel.HELD:
             fix = "let the consequent begin at the next position: `next (…)`"

@@ -1,6 +1,6 @@
 """The operators of formulas: one entry for each, which all readers of formulas use.
 
-What an operator means is told by its entry in terms of those of `Reading`, so that whoever reads
+What an operator means is defined by its entry in terms of those of `Reading`, so that whoever reads
 formulas gives a meaning to these few and has all others. A new operator that is made of known ones
 is one entry here. `rise`, `fall` and `held` mean a little more where something is not born yet: see
 `formula/four.py`. The oracle has readings of its own, of which this is to be found right.
@@ -92,7 +92,7 @@ class Operator:
         level: how tightly it binds, from 0.
         meaning: in a `Reading`, of that, its operands and the interval.
         said: it as an English clause; `{left}` and `{right}` (`{it}`) are its operands,
-            `{no_left}` and so on what they are if they do not hold; `{some}` and `{all}` tell of
+            `{no_left}` and so on what they are if they do not hold; `{some}` and `{all}` name
             its interval. Empty: `explain/words.py` says it in a way of its own.
         denied: its negation; empty: "not so" before `said`.
         doc: its value in a few words.

@@ -71,7 +71,7 @@ class Formulas:
 
 
 def rewritten(formula: Unary | Binary) -> Formula:
-    """The formula with its outermost operator told in `not and or X U Y S`.
+    """The formula with its outermost operator expressed in `not and or X U Y S`.
 
     >>> from rvmon.spec.checked.formula import EventAtom
     >>> e = EventAtom("e")

@@ -77,7 +77,7 @@ def index_page(rules: Mapping[str, Rule]) -> str:
 
 
 def message_about(found: Sequence[Diagnostic]) -> str:
-    """What is said about an example; of a long list the beginning and the end."""
+    """What is written about an example; of a long list the beginning and the end."""
     if len(found) <= MOST_FINDINGS:
         return render_full(found)
     return f"{render_full(found[:1])}\n\n…\n\n{render_full(found[-1:])}"

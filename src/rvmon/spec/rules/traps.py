@@ -145,10 +145,10 @@ def false_at_first(span: Span, when: str, fix: str) -> Diagnostic:
 def captured_once(span: Span, trigger: str) -> Diagnostic:
     """A capture under `whenever`; `trigger` is its condition, empty if that always holds."""
     when = f"of each stretch of `{short(trigger)}`" if trigger else "of the run"
-    said = f"`upon {short(trigger)} then …`" if trigger else "`upon … then …`"
+    instead = f"`upon {short(trigger)} then …`" if trigger else "`upon … then …`"
     return finding(
         ONCE_CAPTURED,
         f"`{short(span.text)}` is captured once, at the first instant {when}",
         span,
-        fix=f"write {said}, which starts there and captures then",
+        fix=f"write {instead}, which starts there and captures then",
     )

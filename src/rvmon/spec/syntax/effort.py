@@ -50,7 +50,7 @@ class Effort:
 
         Raises:
             Refusal: there are too many, or they are nested too deeply.
-            Reported: that has been said of this formula or file.
+            Reported: that has been reported of this formula or file.
         """
         self._depth += 1
         self._deepest = max(self._deepest, self._depth)
@@ -91,7 +91,7 @@ class Effort:
 
         Raises:
             Refusal: it is too much.
-            Reported: that has been said of this formula.
+            Reported: that has been reported of this formula.
         """
         self._size += cost.size
         if self._refused:

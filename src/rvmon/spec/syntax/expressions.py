@@ -95,7 +95,7 @@ class Prefix:
 
 @dataclass(frozen=True, slots=True)
 class Immediately:
-    """`immediately φ`: φ itself, said on purpose."""
+    """`immediately φ`: φ itself, stated on purpose."""
 
     operand: Expression
     span: Span

@@ -31,8 +31,8 @@ def parser_of(grammar: str, options: Mapping[str, Any]) -> lark.Lark:
     folder = cache_folder()
     if folder is None:
         return lark.Lark(grammar, **options)
-    said = json.dumps([_FORMAT, lark.__version__, grammar, dict(options)], sort_keys=True)
-    path = folder / f"grammar-{hashlib.sha256(said.encode()).hexdigest()}.json"
+    content = json.dumps([_FORMAT, lark.__version__, grammar, dict(options)], sort_keys=True)
+    path = folder / f"grammar-{hashlib.sha256(content.encode()).hexdigest()}.json"
     known = _read(path)
     if known is not None:
         return known

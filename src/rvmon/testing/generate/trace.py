@@ -35,7 +35,7 @@ class TraceProfile:
 
 
 def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
-    """A random trace for a specification, with what else a monitor is told.
+    """A random trace for a specification, with what else a monitor is given.
 
     Gaps between samples are often a bound of the spec, or one tick more; numbers lie at and
     beside its literals.

@@ -71,7 +71,7 @@ def held(
 ) -> Truth:
     """All positions of the window had it, which has to lie behind its birth whole.
 
-    What is unknown may not be born either: it tells nothing of where the birth was.
+    What is unknown may not be born either: it shows nothing of where the birth was.
     """
     start, now = letters[0].instant, letters[i].instant
     window = [k for k in range(i + 1) if is_within(now - letters[k].instant, interval)]

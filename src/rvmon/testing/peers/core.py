@@ -1,4 +1,4 @@
-"""The common fragment: the few operators in which every formula of ours is said to a peer."""
+"""The common fragment: the few operators in which every formula of ours is given to a peer."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Formulas of the common fragment in each peer's own language.
 
-A translation keeps the truth at every tick: what a peer reads otherwise than SEMANTICS 2 is said to
+A translation keeps the truth at every tick: what a peer reads otherwise than SEMANTICS 2 is put to
 it in other words, and what it cannot say is refused. Bounds are in ticks, the peer's unit of time
 is one tick; a proposition is a column of the trace (`spelling`), `true` a column that is always 1.
 """
@@ -54,8 +54,8 @@ class Dialect:
         unbounded: whether intervals from above 0 to infinity can be written.
         ever: whether operators without an interval can be written.
         point: whether `[0, 0]` can be written.
-        split: whether `U` and `S` from above 0 are to be said by those from 0 on.
-        weakened: whether `U` and `S` from 0 on are to be said with the right operand or-ed to the
+        split: whether `U` and `S` from above 0 are to be expressed by those from 0 on.
+        weakened: whether `U` and `S` from 0 on are written with the right operand or-ed to the
             left, as the peer wants the left one also at the instant of the right one.
     """
 

@@ -81,7 +81,7 @@ def _owed(requirement: Requirement) -> Formula:
 def _grain(case: Case, formula: Formula) -> int:
     """The tick of the peer: one in which the recording is what it is tick for tick.
 
-    In held time what signals are is constant between multiples of it, and so is all that is said
+    In held time what signals are is constant between multiples of it, and so is all that is derived
     of them by windows whose ends are such multiples.
     """
     spec, first = case.spec, case.samples[0].t

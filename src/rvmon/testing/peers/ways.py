@@ -26,7 +26,7 @@ class Way:
         name: of peer, time model and semantics.
         package: its name in the package index.
         worker: of the module that asks it.
-        kind: what the worker is told of time and semantics.
+        kind: what the worker is given of time and semantics.
         dialect: the language.
         time: the time model of ours that it stands for.
         sign: whether it answers with a robustness, whose sign counts; 0 says nothing.

@@ -19,7 +19,7 @@ class Peer:
     def judge(self, formula: str, kind: str, columns: dict[str, list[Any]]) -> dict[str, Any]:
         """The verdict, or with `robustness` in the kind the robustness, at every tick.
 
-        `dense sparse` tells reelay of changes only.
+        `dense sparse` gives reelay changes only.
         """
         time_model, _, semantics = kind.partition(" ")
         sparse = semantics == "sparse"

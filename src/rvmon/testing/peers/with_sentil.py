@@ -49,7 +49,7 @@ class Peer:
         return {"cpu_ns": spent, "violated": firsts}
 
     def _pass_of(self, formula: str) -> tuple[Any, list[tuple[float, list[float]]]]:
-        """How a monitor is told of a row, and the rows in the order of its names."""
+        """How a monitor is given a row, and the rows in the order of its names."""
         monitor = self._sentil.OnlineMonitor(self._sentil.parse(formula))
         named = {monitor.symbol_index(name): column for name, column in self._columns.items()}
         own = [named[index] for index in range(monitor.variable_count)]

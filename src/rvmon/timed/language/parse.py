@@ -174,7 +174,7 @@ MOST = 20
 """Behind so many, nothing more is looked for: the text is read again for each."""
 
 LONGEST = 100_000
-"""Of a longer text the first mistake is told: reading it again and again takes too long."""
+"""Of a longer text the first mistake is reported: reading it again and again takes too long."""
 
 _ALONE = r"(?:(?:urgent|committed)[ \t]+)?location|edge|start|query|signal"
 _OTHERS = "automaton|clock|broadcast|chan|int|bool|const|typedef|unit|system|network"

@@ -208,7 +208,7 @@ class Resolver:
                 if symbol is None and scope.names_automaton(name):
                     raise _no_value(span)
                 if symbol is None and scope.declares(name):
-                    raise refusal()  # why its declaration has no meaning is told there
+                    raise refusal()  # why its declaration has no meaning is reported there
                 if symbol is None:
                     candidates = [*scope.names(), *(n for n, _ in self.automata)]
                     raise model_error(

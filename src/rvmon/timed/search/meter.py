@@ -29,7 +29,7 @@ def paused_collector() -> Iterator[None]:
 
 
 class Meter:
-    """Counts states against a budget and tells a watcher how far the search is.
+    """Counts states against a budget and reports to a watcher how far the search is.
 
     Attributes:
         visited: states so far.
@@ -82,7 +82,7 @@ def _is_full(limit: int) -> bool:
 
 
 def _megabytes() -> float:
-    """What the process holds now; at its highest, or 0, where the system tells no more."""
+    """What the process holds now; at its highest, or 0, where the system reports no more."""
     try:
         pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
         return pages * mmap.PAGESIZE / (1 << 20)

@@ -88,7 +88,7 @@ class _Site:
 
 
 class _Tour:
-    """Goes everywhere; `watched` is the automaton whose last edge tells sites apart."""
+    """Goes everywhere; `watched` is the automaton whose last edge distinguishes sites."""
 
     def __init__(self, network: Network, watched: int | None) -> None:
         self._steps = Steps(network, TRUE)
