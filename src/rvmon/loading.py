@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
 from rvmon.session import Spec
@@ -33,7 +34,7 @@ def load(
     try:
         text = text_of_file(path)
     except OSError as error:
-        raise SpecError((), f"error: {path}: {error.strerror or error}") from None
+        raise SpecError((), f"error: {cannot_read(path, error)}") from None
     except UnicodeDecodeError:
         raise SpecError((), f"error: {path}: not UTF-8 text: is this a binary file?") from None
     return _compile(text, str(path) if name is None else name, const, path.parent)

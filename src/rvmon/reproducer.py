@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 
 import msgspec
 
+from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.span import Source
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
@@ -189,7 +190,7 @@ def opened_case(path: str) -> Iterator[Case]:
                 case = _described(packed)
                 _unpack(packed, folder)
         except OSError as error:
-            raise RvmonError(f"{path}: {error.strerror or error}") from None
+            raise RvmonError(cannot_read(path, error)) from None
         except (
             zipfile.BadZipFile,
             zlib.error,

@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "explanation" / "architecture.md").read_text(encoding="utf-8")
-PASSES = re.findall(r"\| `(\S+)\.py` \| `(\w+)` \| `(\w+)` \| `(\w+)` \|", PAGE)
+PASSES = re.findall(r"\| `(\S+)\.py`<br>`(\w+)` \| `(\w+)` →<br>`(\w+)` \|", PAGE)
 
 
 def test_every_row_is_read():

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from rvmon.binding.expression import term_of
-from rvmon.diagnostics.nearest import did_you_mean
+from rvmon.diagnostics.nearest import cannot_read, did_you_mean
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.arithmetic import NumericOp
@@ -47,7 +47,7 @@ def load_binding(path: str | Path, spec: CheckedSpec) -> Binding:
     try:
         told = tomllib.loads(text_of_file(path))
     except OSError as error:
-        raise RvmonError(f"{path}: {error.strerror or error}") from None
+        raise RvmonError(cannot_read(path, error)) from None
     except UnicodeDecodeError:
         raise RvmonError(f"{path}: not UTF-8 text: is this a binary file?") from None
     except tomllib.TOMLDecodeError as error:

@@ -15,6 +15,7 @@ from rvmon.cli.options import add_const, constants_of
 from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_binding
 from rvmon.cli.say import rendered, say, say_json, warn
+from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
 if TYPE_CHECKING:
@@ -71,8 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             text = text_of_input() if name == "-" else text_of_file(name)
         except (OSError, UnicodeDecodeError) as error:
-            reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
-            warn(f"error: {name}: {reason}")
+            is_text = not isinstance(error, ValueError)
+            warn(f"error: {cannot_read(name, error) if is_text else f'{name}: not UTF-8 text'}")
             unreadable += 1
             continue
         checked, found = _checked(text, name, constants)

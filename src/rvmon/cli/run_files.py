@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import reading_words
+from rvmon.cli.say import say
 from rvmon.report.folder import write_file
 
 if TYPE_CHECKING:
@@ -87,7 +88,11 @@ def write_files(
             return shlex.join(["rvmon", "run", arguments.spec, trace, *reading_words(arguments)])
 
         folder = Path(arguments.report)
-        write_run_pages(folder, spec.checked, reports, read, command, broken=broken, known=known)
+        written = write_run_pages(
+            folder, spec.checked, reports, read, command, broken=broken, known=known
+        )
+        if written and arguments.format == "text":
+            say(f"wrote {written[-1]}")
 
 
 def _record_coverage(

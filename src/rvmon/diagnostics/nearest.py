@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import os
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from itertools import islice
+from pathlib import Path
 
 MOST_NAMES = 1_000
 """Names that a misspelt one is compared with."""
@@ -34,6 +37,21 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     """
     close = nearest(name, known)
     return f"did you mean `{close}`?" if close else otherwise
+
+
+def cannot_read(path: str | Path, error: OSError) -> str:
+    """Why a file cannot be read, and if there is none, the one in its folder most alike.
+
+    >>> cannot_read("nowhere/base.csv", FileNotFoundError(2, "No such file or directory"))
+    'nowhere/base.csv: No such file or directory'
+    """
+    why = f"{path}: {error.strerror or error}"
+    if isinstance(error, FileNotFoundError):
+        with suppress(OSError), os.scandir(Path(path).parent) as entries:
+            others = (entry.name for entry in entries if entry.name != Path(path).name)
+            if close := nearest(Path(path).name, others):
+                return f"{why}: did you mean `{Path(path).with_name(close)}`?"
+    return why
 
 
 _PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d{]+)`\Z")

@@ -13,6 +13,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TextIO
 
+from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
@@ -299,7 +300,7 @@ class FileRecording:
             placed = message if message.startswith(self.path) else f"{self.path}: {message}"
             raise type(error)(placed) from None
         except OSError as error:
-            raise TraceError(f"{self.path}: {error.strerror or error}") from None
+            raise TraceError(cannot_read(self.path, error)) from None
 
 
 def topics_of(path: str) -> Mapping[str, Topic]:

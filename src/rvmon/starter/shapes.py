@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
@@ -45,7 +46,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
             look = _of_csv if form == "csv" else _of_json
             return look(bounded_lines(text), path, stamps)
     except OSError as error:
-        raise TraceError(f"{path}: {error.strerror or error}") from None
+        raise TraceError(cannot_read(path, error)) from None
     except UnicodeDecodeError:
         raise TraceError(f"{path}: not UTF-8 text: is this a binary file?") from None
     except TraceError as error:

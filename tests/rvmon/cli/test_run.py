@@ -6,6 +6,7 @@ import multiprocessing
 import os
 import signal
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import pytest
 
@@ -158,6 +159,39 @@ def test_a_place_that_is_none_is_told_before_anything_is_judged(files, capsys):
     assert not told.out
     assert not (files / "rep").exists()
     assert not (files / "j.xml").exists()
+
+
+def test_a_report_names_the_page_to_open(files, capsys):
+    """As text, for one recording its page and for several the index; JSON stays JSON."""
+    for traces, page in (["P.csv"], "P.html"), (["P.csv", "F.csv"], "index.html"):
+        words = ["run", "door.rv", *traces, "--report", "rep"]
+        for more in [], ["--quiet"]:
+            main([*words, *more])
+            assert capsys.readouterr().out.endswith(f"wrote {Path('rep', page)}\n")
+        main([*words, "--format", "json"])
+        json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (["run", "dor.rv", "P.csv"], "dor.rv: No such file or directory: did you mean `door.rv`?"),
+        (["run", "door.rv", "PP.csv"], "did you mean `P.csv`?"),
+        (["run", "door.rv", "./NTT.csv"], "did you mean `NT.csv`?"),
+        (["check", "dor.rv"], "did you mean `door.rv`?"),
+    ],
+)
+def test_a_mistyped_file_is_answered_with_the_nearest(files, capsys, words, meant):
+    """The name in that folder that is most alike is proposed."""
+    assert main(words) == 2
+    assert meant in capsys.readouterr().err
+
+
+def test_a_file_like_no_other_is_not_guessed(files, capsys):
+    """Neither where nothing is alike, nor where the folder is missing too."""
+    for name in ("/".join((str(files), "quite-else.mcap")), "gone/P.csv"):
+        assert main(["run", "door.rv", name]) == 2
+        assert "did you mean" not in capsys.readouterr().err
 
 
 def test_help_names_the_engines(capsys):

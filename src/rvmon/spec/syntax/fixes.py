@@ -33,6 +33,11 @@ _FIX = {
 NEVER = "for `never` write `always not (…)`"
 NAMELESS = RESERVED - frozenset(ITEM_WORDS)
 """Words that are no name and may start what a requirement demands."""
+_CLAUSE = re.compile(
+    r'requirement\s+(?:[\w.]+|`[^`]+`)\s*(?:"[^"\n]*")?\s*'
+    r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
+    r'(?:\s+\w+(?:\s+in)?|\s+"[^"]*")?'
+)
 _TYPES = {
     "float": "real",
     "double": "real",
@@ -59,6 +64,7 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
         or _number_fix(found, before)
         or _never_fix(found, before.text)
         or _name_fix(found, before.text)
+        or _clause_fix(found, before.text)
         or _let_fix(found, before.text)
         or _ignore_fix(found, before.text)
         or _share_fix(found, accepted)
@@ -95,6 +101,12 @@ def _name_fix(found: str, before: str) -> str:
         return f"`{alone[1]}` is taken for its name; what it demands stands behind it"
     nameless = before.split() == ["requirement"] and found in NAMELESS
     return f"its name comes first: `requirement R1 {found} …`" if nameless else ""
+
+
+def _clause_fix(found: str, before: str) -> str:
+    """What fixes a clause above the formula, where the first word of most reads as a name."""
+    clause = _CLAUSE.fullmatch(f"{before.rstrip()} {found}")
+    return f"a clause, as `{clause[1]} …`, stands behind the formula" if clause else ""
 
 
 def _let_fix(found: str, before: str) -> str:

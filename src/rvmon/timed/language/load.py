@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.diagnostics import Source
+from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.timed.language.elaborate import elaborate
 from rvmon.timed.language.parse import parse_document
@@ -28,7 +29,7 @@ def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None
     try:
         text = text_of_file(path, "utf-8-sig")
     except OSError as error:
-        raise model_error("TA022", f"{path}: {error.strerror}", None) from None
+        raise model_error("TA022", cannot_read(path, error), None) from None
     except UnicodeDecodeError:
         fix = "save it as UTF-8 text"
         raise model_error("TA022", f"{path} is no text", None, fix) from None

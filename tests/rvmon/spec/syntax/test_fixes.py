@@ -70,6 +70,13 @@ def test_what_is_owed(owed, fix):
         ("requirement R upon asked let z = speed then released", "stands after the consequent"),
         ("requirement R upon asked then let z = speed released", "stands after the consequent"),
         ("event e(x)", "a field has a type"),
+        ('requirement R "t"\n severity high\n always released', "clause, as `severity …`, stands"),
+        ('requirement R "t" source "a b" released', "a clause, as `source …`, stands behind"),
+        ("requirement R scope after (asked) released", "a clause, as `scope …`, stands behind"),
+        ("requirement R at end inconclusive released", "a clause, as `at end …`, stands behind"),
+        ("requirement R for each k in ks released", "a clause, as `for each …`, stands behind"),
+        ("requirement R in at least 9 % of runs released", "a clause, as `in at …`, stands behind"),
+        ("requirement R property released", "a clause, as `property …`, stands behind"),
     ],
 )
 def test_items(item, fix):
