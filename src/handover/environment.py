@@ -99,7 +99,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         self._chosen: Action | None = None
         self._done: list[Action] = []
         self._steps = 0
-        self._said = 0
+        self._reported = 0
         self._informed = False
         self._played = begun(
             self.test, actions=self._acts(), robot=self._robot, mutation=self._mutation
@@ -132,8 +132,8 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         self._steps += 1
         world = self._played.world
         world.run(self._steps * _STEP_NS - 1)  # what comes at the instant itself, comes after it
-        samples = world.recorder.samples[self._said :]
-        self._said += len(samples)
+        samples = world.recorder.samples[self._reported :]
+        self._reported += len(samples)
         happened = {name for _, values in samples for name in values}
         self._informed |= "informed" in happened
         robot = self._played.process

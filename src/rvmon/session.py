@@ -83,10 +83,10 @@ class Spec:
         >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
         20000000
         """
-        from rvmon.binding.told import schema_told
+        from rvmon.binding.reading_schema import reading_schema
 
         other = copy(self)
-        other.schema = schema_told(self.checked, self.schema, **options)
+        other.schema = reading_schema(self.checked, self.schema, **options)
         return other
 
     @cached_property

@@ -57,12 +57,12 @@ def _box(label: str, state: str, top: float, coverage: BlockCoverage) -> ET.Elem
     if coverage.covered == 0:
         kind += " never"
     missing = ", ".join(coverage.missing)
-    told = f"{coverage.covered} of {coverage.statements} statements ran"
+    share_text = f"{coverage.covered} of {coverage.statements} statements ran"
     frame = {"x": LEFT, "y": top, "width": BOX_WIDTH, "height": BOX_HEIGHT, "rx": 6}
     return e(
         "g",
         {"class": kind},
-        e("title", None, f"{told}; not run: lines {missing}" if missing else told),
+        e("title", None, f"{share_text}; not run: lines {missing}" if missing else share_text),
         e("rect", {"class": "frame", **frame}),
         e("rect", {"class": "filled", **frame, "width": f"{BOX_WIDTH * share:.1f}"}),
         e("rect", {"class": "edge", **frame}),

@@ -42,17 +42,19 @@ def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
     """
     from rvmon.timed.conformance.outcome import Recorded
 
-    told = {name: [t for t, values in run.samples if name in values] for name in (*OBSERVED, READY)}
-    ready = told.pop(READY)
-    informed = told["informed"][:1]
+    found = {
+        name: [t for t, values in run.samples if name in values] for name in (*OBSERVED, READY)
+    }
+    ready = found.pop(READY)
+    informed = found["informed"][:1]
     observed = set(OBSERVED)
     if informed and ready:
         low, high = (informed[0] + after for after in READY_AFTER_NS)
         if low + TOLERANCE_NS <= ready[0] <= high - TOLERANCE_NS:
-            told[READY] = ready[:1]
-    if told.get(READY) or not ready:
+            found[READY] = ready[:1]
+    if found.get(READY) or not ready:
         observed.add(READY)
-    actions = (Recorded(t, name) for name, instants in told.items() for t in instants)
+    actions = (Recorded(t, name) for name, instants in found.items() for t in instants)
     return sorted(actions, key=lambda action: action.t), frozenset(observed)
 
 

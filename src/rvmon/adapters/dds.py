@@ -66,7 +66,7 @@ class DdsSource:
         self._writer: Any = None
         self._readers: dict[str, tuple[Any, Topic]] = {}
         self._found: dict[str, str] = {}
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._stops = False
         # To be called for each message would hold up the thread of DDS that receives them, until
         # the socket drops some and nobody is told; a loss is rare.
@@ -152,8 +152,8 @@ class DdsSource:
         kind = wire_type.replace("::dds_::", "/").replace("::", "/").removesuffix("_")
         topic, _ = ros_topic(self._wanted[name], kind, ("msg", ""), False, dict(self._definitions))
         if topic.fault:
-            if name not in self._told:
-                self._told.add(name)
+            if name not in self._reported:
+                self._reported.add(name)
                 self._feed.lose(topic.name, f"{kind}: {topic.fault}")
             return
         # A history that keeps the last messages would replace others and tell nobody.

@@ -113,10 +113,10 @@ class Judged(
         return observation, float(reward) + added, terminated, truncated, {**info, "rv": judged}
 
     def _judge(
-        self, said: Values | Iterable[tuple[int, Values]], *, over: bool
+        self, observed: Values | Iterable[tuple[int, Values]], *, over: bool
     ) -> tuple[dict[str, Any], float]:
         """What `info["rv"]` holds, and what is added to the reward."""
-        samples = [(self._t, said)] if isinstance(said, Mapping) else [*said]
+        samples = [(self._t, observed)] if isinstance(observed, Mapping) else [*observed]
         self._decided.clear()
         for t, values in samples:
             self._monitor.step_ns(t, values)

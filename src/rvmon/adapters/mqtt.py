@@ -166,10 +166,10 @@ class MqttSource:
         place = self._address.robot
         robot = "" if place is None else levels[place]
         try:
-            said = decoded_object(payload)
+            content = decoded_object(payload)
             for name in reversed(levels[self._address.prefix :]):
-                said = {name: said}
-            self._objects.take(said, robot)
+                content = {name: content}
+            self._objects.take(content, robot)
         except TraceError as error:
             self._objects.lose(f"a message of {topic}", error, robot)
 
@@ -186,8 +186,8 @@ class MqttSource:
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
         if self._verdicts is not None:
-            said = msgspec.json.encode(judgement.to_dict())
-            self._client.publish(f"{self._verdicts}/{judgement.attempt.requirement}", said, qos=1)
+            text = msgspec.json.encode(judgement.to_dict())
+            self._client.publish(f"{self._verdicts}/{judgement.attempt.requirement}", text, qos=1)
 
     def __exit__(
         self,

@@ -138,8 +138,8 @@ class Ros2Source:
         if self._publisher is not None:
             from std_msgs.msg import String
 
-            said = msgspec.json.encode(judgement.to_dict()).decode()
-            self._publisher.publish(String(data=said))
+            text = msgspec.json.encode(judgement.to_dict()).decode()
+            self._publisher.publish(String(data=text))
 
     def __exit__(
         self,
@@ -160,11 +160,11 @@ def _leaves(kind: Any, prefix: str = "") -> Iterator[tuple[str, Kind]]:
     """The fields of a class of messages that are no messages themselves, as in `Topic`."""
     from rosidl_runtime_py.utilities import get_message
 
-    for name, said in kind.get_fields_and_field_types().items():
-        path, array = f"{prefix}{name}", _ARRAY.fullmatch(said)
+    for name, type_name in kind.get_fields_and_field_types().items():
+        path, array = f"{prefix}{name}", _ARRAY.fullmatch(type_name)
         if array is not None:
-            path, said = f"{path}[]", array["of"] or array["of_fixed"]
-        if "/" in said:
-            yield from _leaves(get_message(said.replace("/", "/msg/")), f"{path}.")
+            path, type_name = f"{path}[]", array["of"] or array["of_fixed"]
+        if "/" in type_name:
+            yield from _leaves(get_message(type_name.replace("/", "/msg/")), f"{path}.")
         else:
-            yield path, Kind.LABEL if "string" in said else _KINDS.get(said, Kind.INT)
+            yield path, Kind.LABEL if "string" in type_name else _KINDS.get(type_name, Kind.INT)

@@ -45,7 +45,7 @@ def load_binding(path: str | Path, spec: CheckedSpec) -> Binding:
         RvmonError: it cannot be read, or does not fit the specification.
     """
     try:
-        told = tomllib.loads(text_of_file(path))
+        content = tomllib.loads(text_of_file(path))
     except OSError as error:
         raise RvmonError(cannot_read(path, error)) from None
     except UnicodeDecodeError:
@@ -53,29 +53,29 @@ def load_binding(path: str | Path, spec: CheckedSpec) -> Binding:
     except tomllib.TOMLDecodeError as error:
         raise RvmonError(f"{path}: no TOML: {error}") from None
     try:
-        return _binding(told, spec, Path(path).parent)
+        return _binding(content, spec, Path(path).parent)
     except RvmonError as error:
         raise RvmonError(f"{path}: {error}") from None
 
 
-def _binding(told: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Binding:
-    _expect_keys(told, _TOP, "")
+def _binding(content: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Binding:
+    _expect_keys(content, _TOP, "")
     bounds: dict[str, Bound] = {}
-    for name, table in _tables(_table(told, "bind", ""), ""):
+    for name, table in _tables(_table(content, "bind", ""), ""):
         try:
             bounds[name] = _bound(name, table, spec)
         except RvmonError as error:
             raise RvmonError(f"[bind.{name}]: {error}") from None
-    listed = told.get("definitions", [])
+    listed = content.get("definitions", [])
     if not isinstance(listed, list) or not all(isinstance(one, str) for one in listed):
         raise RvmonError('`definitions` is a list of files: ["shop_msgs/msg/Pick.msg"]')
-    clock = _choice(told, "clock", Clock) or Clock.LOG
+    clock = _choice(content, "clock", Clock) or Clock.LOG
     return Binding(bounds, clock, dict(_definition(folder / one) for one in listed))
 
 
-def _tables(told: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+def _tables(content: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """The table of each name; `[bind.robot.state]` is of `robot.state`, as with quotes."""
-    for key, value in told.items():
+    for key, value in content.items():
         name = prefix + key
         if not isinstance(value, dict):
             raise RvmonError(f'[bind] `{name}`: expected a table: {name} = {{topic = "/…"}}')
@@ -172,31 +172,31 @@ def _definition(path: Path) -> tuple[str, str]:
     return "/".join((*path.parts[-3:-1], path.stem)), text
 
 
-def _table(told: Mapping[str, Any], key: str, what: str) -> Mapping[str, Any]:
-    table = told.get(key, {})
+def _table(content: Mapping[str, Any], key: str, what: str) -> Mapping[str, Any]:
+    table = content.get(key, {})
     if not isinstance(table, dict):
         raise RvmonError(f'`{key}` is a table: {key} = {{name = "{what}"}}')
     return table
 
 
-def _choice(told: Mapping[str, Any], key: str, choices: type[_Choice]) -> _Choice | None:
-    value = told.get(key)
+def _choice(content: Mapping[str, Any], key: str, choices: type[_Choice]) -> _Choice | None:
+    value = content.get(key)
     if value is not None and value not in list(choices):
         raise RvmonError(f"{key} = {value!r}: there is {' and '.join(choices)}")
     return None if value is None else choices(value)
 
 
-def _expect_keys(told: Mapping[str, Any], known: Iterable[str], what: str) -> None:
+def _expect_keys(content: Mapping[str, Any], known: Iterable[str], what: str) -> None:
     names = list(known)
-    for key in told:
+    for key in content:
         if key not in names:
             of = f" of {what}" if what else ""
             meant = did_you_mean(key, names, f"there are {', '.join(names)}")
             raise RvmonError(f"no key `{key}`{of}: {meant}")
 
 
-def _expect_known(told: Mapping[str, Any], known: Mapping[str, Any], what: str) -> None:
-    for key in told:
+def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any], what: str) -> None:
+    for key in content:
         if key not in known:
             listed = f"there are {', '.join(known)}" if known else "it has none"
             raise RvmonError(f"no {what} `{key}` is declared: {did_you_mean(key, known, listed)}")

@@ -145,8 +145,8 @@ def _covered(summary: CampaignSummary, coverage: Mapping[str, CoverageFigures]) 
         link = e("a", {"href": found.page}, f"{share_text(found.share)} covered")
         rest: list[Child] = [f", {counted(found.holes, 'hole')}"]
         if found.illegal:
-            told = f", {counted(len(found.illegal), 'illegal item')} hit"
-            rest.append(e("b", {"data-verdict": "F"}, told))
+            hits = f", {counted(len(found.illegal), 'illegal item')} hit"
+            rest.append(e("b", {"data-verdict": "F"}, hits))
         lines.append(e("li", None, f"{summary.robots[robot].title}: ", link, *rest))
     return e("section", None, e("h2", None, "Coverage"), e("ul", None, *lines))
 

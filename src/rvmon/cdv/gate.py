@@ -197,11 +197,11 @@ def _expected_failures(
         ]
         if verdicts:
             missing = "" if Verdict.FAIL in verdicts else f"it did not, in {len(verdicts)} tests"
-            checks[f"{_told(why)} is expected to fail ({why.reason})"] = missing
+            checks[f"{_named(why)} is expected to fail ({why.reason})"] = missing
     return checks
 
 
-def _told(why: ExpectedFailure) -> str:
+def _named(why: ExpectedFailure) -> str:
     places = {"strategy": why.strategy, "test": why.test, "robot": why.robot}
     named = [f"{kind} {name}" for kind, name in places.items() if name]
     return " of ".join([why.requirement, *named])

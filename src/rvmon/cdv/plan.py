@@ -122,8 +122,8 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
     except RvmonError:
         raise
     except Exception as error:
-        told = f"{type(error).__name__}: {error}"
-        raise TestError(f"strategy `{strategy}` cannot make its tests: {told}") from error
+        cause = f"{type(error).__name__}: {error}"
+        raise TestError(f"strategy `{strategy}` cannot make its tests: {cause}") from error
     for test in made:
         if not isinstance(test, campaign.test):
             kind = campaign.test.__name__

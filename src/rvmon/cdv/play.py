@@ -53,8 +53,8 @@ def player(
         try:
             beside = None if control is None else control(job.test)
         except Exception as error:
-            told = f"test `{job.test.name}`: its control cannot be made: {_told(error)}"
-            raise TestError(told) from error
+            message = f"test `{job.test.name}`: its control cannot be made: {_error_text(error)}"
+            raise TestError(message) from error
         return outcome, None if beside is None else bench.play(beside)
 
     return played
@@ -103,7 +103,7 @@ def system_of(name: str, robot: Robot) -> System[Any]:
         raise
     except Exception as error:
         raise RvmonError(
-            f"robot `{name}`: what plays its tests cannot be made: {_told(error)}"
+            f"robot `{name}`: what plays its tests cannot be made: {_error_text(error)}"
         ) from error
 
 
@@ -118,12 +118,12 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
     except TestError:
         raise
     except Exception as error:  # noqa: BLE001 - of whatever kind those of the system are
-        return Run(observer.last_ns, error=_told(error))
+        return Run(observer.last_ns, error=_error_text(error))
     if not isinstance(run, Run):
         return Run(observer.last_ns, error=f"`play` returned {run!r}, which is no Run")
     if run.end_ns < observer.last_ns:
-        told = f"it ended at {run.end_ns} ns, before its last sample, at {observer.last_ns} ns"
-        return replace(run, end_ns=observer.last_ns, error=run.error or told)
+        message = f"it ended at {run.end_ns} ns, before its last sample, at {observer.last_ns} ns"
+        return replace(run, end_ns=observer.last_ns, error=run.error or message)
     return run
 
 
@@ -164,5 +164,5 @@ def _reasons(report: Report) -> dict[str, str]:
     return {name: shown_line(str(attempt)) for name, attempt in first.items() if attempt}
 
 
-def _told(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"

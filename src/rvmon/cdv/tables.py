@@ -111,10 +111,10 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
         )
     for strategy, one in figures.strategies.items():
         for name, decision in one.shares.items():
-            told = (
+            result = (
                 f"{decision}, {errors_text(decision)}" if decision.holds is not None else decision
             )
-            notes.append(f"{name} {decision.share}: under {strategy} {told}.")
+            notes.append(f"{name} {decision.share}: under {strategy} {result}.")
     strategies = figures.strategies.values()
     if crashed := sum(len(one.crashes) for one in strategies):
         notes.append(

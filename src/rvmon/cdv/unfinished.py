@@ -150,29 +150,29 @@ def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None
     try:
         found = msgspec.json.decode(b"".join(heading), type=_Heading)
     except msgspec.DecodeError:
-        told = "no campaign: move it away"
+        content = "no campaign: move it away"
     else:
         if found.inputs == own.inputs:
             return
-        told = f"another campaign, which `{found.command}` finishes: remove it to give that up"
+        content = f"another campaign, which `{found.command}` finishes: remove it to give that up"
         if found.command == own.command:
-            told = (
+            content = (
                 "this campaign before its tests, requirements or programs changed: remove it to "
                 "start again"
             )
-    raise RvmonError(f"{path} holds {told}, or name another --out")
+    raise RvmonError(f"{path} holds {content}, or name another --out")
 
 
 def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
     """A checksum of all that outcomes depend on."""
     campaign = plan.campaign
-    said = [
+    inputs = [
         [(job.robot, msgspec.to_builtins(job.test)) for job in plan.jobs()],
         {robot: to_plain(spec.checked) for robot, spec in specs.items()},
         [list(contents(path)) for path in (Path(rvmon.__file__).parent, *sources_of(campaign))],
         [sys.version, *map(_version, (*_PACKAGES, *campaign.packages))],
     ]
-    return hashlib.sha256(json.dumps(said).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(inputs).encode()).hexdigest()
 
 
 def sources_of(campaign: Campaign) -> list[Path]:

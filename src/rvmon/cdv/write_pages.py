@@ -45,7 +45,7 @@ def write_pages(
     *,
     examples: Examples,
     jobs: int | None,
-    tell: Callable[[float], None],
+    progress: Callable[[float], None],
     shrinks: bool = False,
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and what was covered.
@@ -58,7 +58,7 @@ def write_pages(
         command: runs the campaign again.
         examples: the tests that get a page.
         jobs: processes that write pages; default: one per core.
-        tell: called with how many pages are written.
+        progress: called with how many pages are written.
         shrinks: tests with a page that fail, and are not made to, are shrunk to `smallest/`.
 
     Returns:
@@ -91,7 +91,7 @@ def write_pages(
                 save_regression(campaign, small, made(folder / SMALLEST))
             if verdicts != one.outcome.verdicts:
                 otherwise.append(test)
-            tell(number)
+            progress(number)
     cells = {
         cell: f"{addresses[job.robot, job.test.name]}#{cell[2]}"
         for cell, job in examples.by_cell.items()

@@ -50,7 +50,7 @@ def conduct_closing(
     folder = made(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}
     specs = specs_of(campaign)
-    with bar("goals", 1.0) as tell:
+    with bar("goals", 1.0) as show:
         closed = close(
             campaign,
             robot,
@@ -58,7 +58,7 @@ def conduct_closing(
             strategies=strategies,
             budget=Budget(arguments.tests, arguments.seconds),
             jobs=arguments.dask or arguments.jobs,
-            progress=lambda met, goals: tell(met / goals),
+            progress=lambda met, goals: show(met / goals),
         )
     amount: list[object] = ["--tests", arguments.tests, "--seed", arguments.seed]
     amount += ["--strategy", ",".join(strategies)] if strategies else []

@@ -116,16 +116,16 @@ def _reported(
     spec = mutated_spec(campaign, robot)
     suites = {}
     for name, tests in _suites(campaign, strategies, arguments).items():
-        with bar(f"{name}: tests", len(tests)) as tell:
-            suite = record_suite(campaign, robot, tests, jobs=jobs, progress=tell)
-        with bar(f"{name}: mutants", len(found.code)) as tell:
+        with bar(f"{name}: tests", len(tests)) as show:
+            suite = record_suite(campaign, robot, tests, jobs=jobs, progress=show)
+        with bar(f"{name}: mutants", len(found.code)) as show:
             tried = play_mutants(
                 suite,
                 found.code,
                 jobs=jobs,
                 every=arguments.all,
                 keep=bool(found.spec),
-                progress=tell,
+                progress=show,
             )
         spec_tried = try_spec_mutants(spec, found.spec, {**suite.recorded, **failing_runs(tried)})
         suites[name] = SuiteTried(len(suite.tests), suite.left_out, tuple(tried), tuple(spec_tried))

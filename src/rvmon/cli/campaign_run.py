@@ -120,8 +120,8 @@ def conduct(
         planned = len(kept.jobs)
         if kept.known:
             warn(f"{len(kept.known)} of {planned} tests were played before")
-    with bar("tests", planned) as tell:
-        results = execute(chosen, jobs=arguments.dask or arguments.jobs, kept=kept, progress=tell)
+    with bar("tests", planned) as show:
+        results = execute(chosen, jobs=arguments.dask or arguments.jobs, kept=kept, progress=show)
     if kept is not None and kept.shard is not None and len(results.played) == planned:
         warn(f"{kept.path}: the same command without --shard joins what lies beside it")
         return written(results, specs, None, arguments, again)
@@ -191,7 +191,7 @@ def written(
         played = frozenset(one.job.test.strategy for one in results.played)
         campaign.presentation.write_more(folder, played)
     examples = choose_examples(results.played, every=arguments.pages == "all")
-    with bar("pages", len(examples.jobs)) as tell:
+    with bar("pages", len(examples.jobs)) as show:
         otherwise = write_pages(
             folder,
             summary,
@@ -200,7 +200,7 @@ def written(
             again,
             examples=examples,
             jobs=arguments.jobs,
-            tell=tell,
+            progress=show,
             shrinks=arguments.shrink,
         )
     if otherwise:

@@ -160,8 +160,8 @@ def _show(
 
     match form:
         case "json" if engines is not None:
-            said = json.dumps(engines, indent=1, ensure_ascii=False)
-            say_json(f'{{"findings": {render_json(findings)},\n"engines": {said}}}')
+            engines_text = json.dumps(engines, indent=1, ensure_ascii=False)
+            say_json(f'{{"findings": {render_json(findings)},\n"engines": {engines_text}}}')
         case "json":
             say_json(render_json(findings))
         case "concise" if findings:

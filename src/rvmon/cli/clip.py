@@ -209,8 +209,8 @@ def _begin(spec: Spec, attempt: Attempt) -> int:
 
 
 def _show(data: str, out: str, copied: Copied, piece: Piece) -> None:
-    said = f"{copied.count} {'entry' if copied.count == 1 else 'entries'} of {data}"
-    say(f"{out}: {said}, {format_ticks(copied.first)} to {format_ticks(copied.last)}")
+    size = f"{copied.count} {'entry' if copied.count == 1 else 'entries'} of {data}"
+    say(f"{out}: {size}, {format_ticks(copied.first)} to {format_ticks(copied.last)}")
     if piece.held:
         say(f"carried to its start: {', '.join(f'`{name}`' for name in piece.held)}")
 

@@ -113,9 +113,9 @@ def _expect_derived(kept: Kept) -> None:
 
 
 def _judged_again(kept: Kept, chosen: Sequence[str], jobs: int) -> Iterator[VerdictRow]:
-    told = msgspec.structs.asdict(kept.about.judging) if kept.about.judging else {}
-    told |= {"spec": kept.specs[""], "binding": kept.binding, "coverage": None}
-    spec, options = spec_and_options(argparse.Namespace(**told))
+    options_kept = msgspec.structs.asdict(kept.about.judging) if kept.about.judging else {}
+    options_kept |= {"spec": kept.specs[""], "binding": kept.binding, "coverage": None}
+    spec, options = spec_and_options(argparse.Namespace(**options_kept))
     return rows_of_judged(list(judge_all(spec, chosen, options, jobs)))
 
 

@@ -69,12 +69,12 @@ def judge_all(
     is_alone = len(traces) == 1
     begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
     try:
-        with bar("recordings", len(traces)) as tell:
+        with bar("recordings", len(traces)) as show:
             jobs = jobs if isinstance(jobs, str) else min(jobs, len(traces))
             for one in execute(traces, begin, jobs=jobs, what="recording"):
                 done += 1
                 if not is_alone:  # that one shows how far it is read
-                    tell(done)
+                    show(done)
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:

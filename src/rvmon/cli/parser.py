@@ -52,5 +52,5 @@ class Parser(argparse.ArgumentParser):
             message += meant and f": {meant}"
         formatter = self._get_formatter()
         formatter.add_text(self.epilog)
-        told = f"{self.prog}: error: {message}\n{formatter.format_help()}"
-        self.exit(2, f"{shown(told)}{self.prog} --help says more\n")
+        text = f"{self.prog}: error: {message}\n{formatter.format_help()}"
+        self.exit(2, f"{shown(text)}{self.prog} --help says more\n")

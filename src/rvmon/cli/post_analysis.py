@@ -191,7 +191,7 @@ def _changes(
     if judged.only_block is not None:  # a short file, which need not be read again
         found = changes_in_blocks([judged.only_block], graphs, spec.checked, end)
         return dict(zip(alike, found, strict=True))
-    told: Iterable[Sample]
+    recorded: Iterable[Sample]
     if spec.checked.max_delay is None:
         looked_at = frozenset(name for graph in graphs for name in graph.by_name)
         recording = opened(spec, judged.path, only=looked_at)
@@ -201,10 +201,10 @@ def _changes(
             blocks = recording.blocks(lambda: looked_at)
             found = changes_in_blocks(blocks, graphs, spec.checked, end)
             return dict(zip(alike, found, strict=True))
-        told = takewhile(lambda sample: sample.t <= end, recording)
+        recorded = takewhile(lambda sample: sample.t <= end, recording)
     else:
-        told = samples()
-    found = changes_in_samples(told, [graph.by_name for graph in graphs], spec.checked.events)
+        recorded = samples()
+    found = changes_in_samples(recorded, [graph.by_name for graph in graphs], spec.checked.events)
     return dict(zip(alike, found, strict=True))
 
 

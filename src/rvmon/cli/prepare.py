@@ -43,9 +43,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids, done = asked_ids(arguments, spec), count(1)
-    with bar("compiling", len(USES) - (not arguments.robustness)) as tell:
+    with bar("compiling", len(USES) - (not arguments.robustness)) as show:
         found = spec.prepare(
-            only=ids, ready=lambda _: tell(next(done)), robustness=arguments.robustness
+            only=ids, ready=lambda _: show(next(done)), robustness=arguments.robustness
         )
     if arguments.format == "json":
         import json

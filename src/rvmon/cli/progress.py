@@ -39,7 +39,7 @@ def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
     started = time.monotonic()
     progress: Progress | None = None
 
-    def tell(done: float) -> None:
+    def show(done: float) -> None:
         nonlocal progress
         if progress is None and time.monotonic() - started >= PATIENCE_S:
             from rich.progress import Progress
@@ -53,7 +53,7 @@ def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
             progress.update(progress.task_ids[0], completed=done)
 
     try:
-        yield tell
+        yield show
     finally:
         if progress is not None:
             progress.stop()
@@ -71,8 +71,8 @@ def busy(what: str) -> AbstractContextManager[object]:
 def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:
     """The recording's samples, and how far it is read."""
     samples = iter(recording)
-    with bar(recording.path, 1.0) as tell:
+    with bar(recording.path, 1.0) as show:
         for sample in samples:
             yield sample
             yield from islice(samples, SAMPLES_PER_LOOK)
-            tell(recording.fraction_read)
+            show(recording.fraction_read)

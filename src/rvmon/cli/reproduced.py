@@ -53,8 +53,8 @@ def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
         raise RvmonError(f"{arguments.spec} defines how it is read: leave out these options")
     with opened_case(arguments.spec) as case:
         if case.law != LAW:
-            told = f"made under law {case.law}, and this rvmon has law {LAW}"
-            warn(f"warning: {arguments.spec} was {told}: verdicts may differ")
+            laws = f"made under law {case.law}, and this rvmon has law {LAW}"
+            warn(f"warning: {arguments.spec} was {laws}: verdicts may differ")
         arguments.spec = case.spec
         arguments.const = list(case.const)
         arguments.time, arguments.map, arguments.nan = case.time, list(case.map), case.nan

@@ -177,14 +177,14 @@ def _stamp(trace: str) -> tuple[int, int] | None:
 
 def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
     """A checksum of all that verdicts depend on but the recordings."""
-    said = [
+    inputs = [
         to_plain(spec.checked),
         [*reading, pickle.dumps(spec.schema.binding).hex()],  # its file may be another one since
         asdict(options),
         list(contents(Path(rvmon.__file__).parent)),
         sys.version,
     ]
-    return hashlib.sha256(json.dumps(said).encode()).hexdigest().encode()
+    return hashlib.sha256(json.dumps(inputs).encode()).hexdigest().encode()
 
 
 def _cannot_write(path: Path, error: OSError) -> RvmonError:

@@ -155,8 +155,8 @@ def run(arguments: argparse.Namespace) -> int:
     with unpacked(arguments) as case:
         if case is not None:
             if arguments.traces or arguments.evidence:
-                told = "name no other, and keep no evidence of it"
-                raise RvmonError(f"{given} brings its recording along: {told}")
+                fix = "name no other, and keep no evidence of it"
+                raise RvmonError(f"{given} brings its recording along: {fix}")
             arguments.traces = [case.recording]
         return _run(arguments, case, given)
 

@@ -170,11 +170,11 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         with live, shown:
             feeding.start()
             _follow(arguments, live, shown, feeding)
-    _tell_ignored(objects)
+    _warn_ignored(objects)
     return live
 
 
-def _tell_ignored(objects: JsonObjects) -> None:
+def _warn_ignored(objects: JsonObjects) -> None:
     for name in objects.ignored:
         warn(f"ignored: {name} is not declared in the spec")
 
@@ -190,7 +190,7 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
     hear(source.publish)
     with live, source, shown:
         _follow(arguments, live, shown)
-    _tell_ignored(objects)
+    _warn_ignored(objects)
     return live
 
 

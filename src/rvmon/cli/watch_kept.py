@@ -62,20 +62,22 @@ def watch_kept(
     """
     from rvmon.live.durable import DurableMonitor
 
-    def told(number: int, attempt: Attempt) -> None:
+    def report(number: int, attempt: Attempt) -> None:
         if attempt.verdict is not Verdict.FAIL and arguments.failures:
             return
         if arguments.format == "json":
             from rvmon.live import Judgement
 
-            said = {"number": number, **Judgement("", 1, attempt).to_dict()}
-            say_json(msgspec.json.encode(said).decode())
+            record = {"number": number, **Judgement("", 1, attempt).to_dict()}
+            say_json(msgspec.json.encode(record).decode())
             sys.stdout.flush()
         else:
             say(f"{number}  {attempt}", flush=True)
 
     try:
-        monitor = DurableMonitor(spec, arguments.state, told, only=only, keep=_KEEP, settle="next")
+        monitor = DurableMonitor(
+            spec, arguments.state, report, only=only, keep=_KEEP, settle="next"
+        )
         if monitor.taken:
             warn(f"{arguments.state}: the run goes on behind {monitor.taken:,} lines")
         try:
@@ -96,8 +98,8 @@ def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes], *, skippe
     from rvmon.readers.jsonl_rows import read_object
 
     ignored: Counter[str] = Counter()
-    said = ((number, line) for number, line in enumerate(lines, 1) if line.strip())
-    for number, line in itertools.islice(said, skipped, None):
+    filled = ((number, line) for number, line in enumerate(lines, 1) if line.strip())
+    for number, line in itertools.islice(filled, skipped, None):
         try:
             t, values = read_object(decoded_object(line), spec.schema, ignored)
         except TraceError as error:

@@ -47,7 +47,7 @@ class Output(logging.Handler):
         super().__init__()
         self._failures_only = failures_only
         self._log = logging.getLogger("rvmon.live.input")
-        self._told = Counter[str]()
+        self._counts = Counter[str]()
         self.broken: OSError | None = None
 
     def __enter__(self) -> Output:
@@ -66,8 +66,8 @@ class Output(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Say what is wrong with the input: of many of a kind the first, and each tenfold."""
-        self._told[record.msg] += 1
-        count = self._told[record.msg]
+        self._counts[record.msg] += 1
+        count = self._counts[record.msg]
         if count <= _TOLD:
             self.note(record.getMessage())
         elif count == 10 ** (len(str(count)) - 1):
@@ -111,14 +111,14 @@ class JsonOutput(Output):
     def ended(self, driver: Driver) -> None:
         """Say what came of it."""
         for name, status in driver.status().items():
-            said = {
+            figures = {
                 "robot": name,
                 "runs": status.run,
                 "verdicts": status.verdicts,
                 "samples": status.samples,
                 "lost": status.lost,
             }
-            say_json(msgspec.json.encode(said).decode())
+            say_json(msgspec.json.encode(figures).decode())
 
 
 class View(Output):
@@ -227,8 +227,8 @@ def _need(verdict: Verdict) -> int:
 def _rest(verdicts: Sequence[Verdict], of: str) -> Sequence[str]:
     """What is not shown, in one line."""
     counts = Counter(verdicts)
-    said = ", ".join(f"{counts[one]} {one.value}" for one in Verdict if counts[one])
-    return [f"… and {len(verdicts)} more {of}: {said}"] if verdicts else []
+    listed = ", ".join(f"{counts[one]} {one.value}" for one in Verdict if counts[one])
+    return [f"… and {len(verdicts)} more {of}: {listed}"] if verdicts else []
 
 
 def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> RenderableType:

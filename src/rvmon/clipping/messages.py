@@ -150,8 +150,8 @@ def _clip_mcap(
 
         def read(topics: Collection[str] | None, start: int, stop: int) -> Iterator[_Raw]:
             wanted = None if topics is None else list(topics)
-            told = reader.iter_messages(wanted, starting_at=start, ending_before=stop)
-            for _, channel, message in told:
+            messages = reader.iter_messages(wanted, starting_at=start, ending_before=stop)
+            for _, channel, message in messages:
                 yield channel.topic, channel.id, message.log_time, message
 
         def write(t: int, raw: _Raw) -> None:

@@ -115,16 +115,16 @@ def built(build: Build) -> Path:
         RvmonError: there is no compiler, or no header; it failed, or the cache takes no files.
     """
     machine = processor() if NATIVE in build.flags else sys.platform
-    said = (sorted(build.texts.items()), *FLAGS, *build.flags, machine)
+    inputs = (sorted(build.texts.items()), *FLAGS, *build.flags, machine)
     folder = cache_directory()
-    by_any = _record(folder, said)
+    by_any = _record(folder, inputs)
     try:
         command = [*compiler(), *FLAGS, *build.flags]
     except RvmonError:
         if found := _recorded(by_any):
             return found
         raise
-    record = _record(folder, (*said, command))
+    record = _record(folder, (*inputs, command))
     if found := _recorded(record):
         return found
     if build.headers is not None:
@@ -139,9 +139,9 @@ def built(build: Build) -> Path:
     return path
 
 
-def _record(folder: Path, said: object) -> Path:
+def _record(folder: Path, inputs: object) -> Path:
     """Where it stands which file was made of something."""
-    return folder / f"built-{hashlib.sha256(repr(said).encode()).hexdigest()[:40]}.json"
+    return folder / f"built-{hashlib.sha256(repr(inputs).encode()).hexdigest()[:40]}.json"
 
 
 def _recorded(record: Path) -> Path | None:

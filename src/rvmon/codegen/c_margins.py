@@ -114,15 +114,15 @@ class Measures:
         if core.sense is Sense.KNOWN_FALSE:
             return "unknown_value()", f"(({truth} == IS_FALSE) ? IS_TRUE : IS_FALSE)"
         positive = core.sense is Sense.TRUE
-        said = truth if positive else f"(uint8_t)(2U - {truth})"
+        text = truth if positive else f"(uint8_t)(2U - {truth})"
         if not isinstance(state.leaf, Compare) or any(
             map(self._is_label, (state.leaf.left, state.leaf.right))
         ):
-            return "unknown_value()", said
+            return "unknown_value()", text
         sides = (number_value(self._names, side) for side in (state.leaf.left, state.leaf.right))
         factor = real(base_factor(state.leaf, self._plan.spec))
         value = _SIGNED[state.leaf.op].format(f"apart({', '.join(sides)}, {factor})")
-        return (value if positive else f"-({value})"), said
+        return (value if positive else f"-({value})"), text
 
     def _is_label(self, side: Numeric) -> bool:
         """Whether a side is a label: two of them have no difference."""

@@ -337,8 +337,8 @@ def _noted(plan: Plan, names: Names) -> Iterator[str]:
     index = plan.graph.index
     leaves = [[index[leaf] for leaf in rule.noted or ()] for rule in plan.rules]
     yield from lists("seen_first", "seen_leaves", leaves)
-    told = [[index[state] for state in rule.alphabet.propositions] for rule in plan.rules]
-    yield from lists("told_first", "told_places", told)
+    places = [[index[state] for state in rule.alphabet.propositions] for rule in plan.rules]
+    yield from lists("told_first", "told_places", places)
     reaches = [reach_of(one) for one in Networks(plan).plans]
     yield array("int64_t", "reaches", [reach or 0 for reach in reaches])
     compared = [state.leaf for state in plan.graph.nodes if isinstance(state.leaf, Compare)]

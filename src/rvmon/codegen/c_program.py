@@ -132,8 +132,8 @@ def _entries(plan: Plan, names: Names) -> Iterator[str]:
         is_event = "true" if type_ is None else "false"
         ignores = "true" if name in spec.ignoring else "false"
         is_read = "true" if name in read else "false"
-        said = f"{number}, {event}, {kind}, {is_event}, {is_read}, {ignores}, {tables}, {most}"
-        yield f"    {{{c_string(name)}, {said}}},"
+        fields = f"{number}, {event}, {kind}, {is_event}, {is_read}, {ignores}, {tables}, {most}"
+        yield f"    {{{c_string(name)}, {fields}}},"
     if not things:
         yield '    {"", 0, -1, KIND_BOOL, false, false, false, NULL, NULL, 0.0},'
     yield "};"

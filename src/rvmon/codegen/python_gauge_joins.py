@@ -76,12 +76,12 @@ class JoinWriter(GaugeWriter):
         lines = ["value = c0"]
         for number in range(1, len(node.operands)):
             lines += [f"if c{number} {better} value:", f"    value = c{number}"]
-        tell = [f"n{place}.append((at, value))"]
+        report = [f"n{place}.append((at, value))"]
         if not self.sparse:
-            self.state[f"told{place}"] = "None"
-            tell.insert(0, f"self.told{place} = value")
-            tell = [f"if value != self.told{place}:", *indented(tell)]
-        yield from self._join(place, node, [*lines, *tell])
+            self.state[f"reported{place}"] = "None"
+            report.insert(0, f"self.reported{place} = value")
+            report = [f"if value != self.reported{place}:", *indented(report)]
+        yield from self._join(place, node, [*lines, *report])
 
     def _bounds(self, dual: bool) -> Sequence[str]:
         """Between which values an operator keeps that of its neighbour, from its two operands."""
@@ -110,9 +110,9 @@ class JoinWriter(GaugeWriter):
             self.state[f"starts{place}"] = "deque()"
             joined.append(f"self.starts{place}.append(at)")
         joined += [f"self.follow(parts, at, low, high, {thin})"]
-        tell = [f"n{place}.append((entry, value))"]
+        report = [f"n{place}.append((entry, value))"]
         if starts:
-            tell = [
+            report = [
                 f"starts = self.starts{place}",
                 "while starts and starts[0] <= right:",
                 f"    n{place}.append((starts.popleft(), value))",
@@ -122,10 +122,10 @@ class JoinWriter(GaugeWriter):
         yield "while parts and parts[0][3] == parts[0][4]:"
         yield "    entry, _, _, value, _ = parts.popleft()"
         yield f"    right = parts[0][0] - 1 if parts else self.k{place}"
-        yield from indented(list(tell))
+        yield from indented(list(report))
         if end:
             yield f"rest = self.ended(parts, end.behind({node.kept}), end.last)"
             yield "parts.clear()"
             yield "for entry, value, right in rest:"
-            yield from indented(list(tell))
+            yield from indented(list(report))
         yield f"k{place} = parts[0][0] - 1 if parts else self.k{place}"

@@ -17,7 +17,7 @@ class WindowWriter(GaugeWriter):
 
         `wedge` has the values that may be the extreme of a window to come, the best one first, and
         `exits` of each the last integer whose window holds it. `late` is what the operand is behind
-        that; `next` is the first integer whose value is not told.
+        that; `next` is the first integer whose value is not reported.
         """
         state = self.state
         state |= {f"{name}{place}": "deque()" for name in ("wedge", "exits", "late")}
@@ -39,8 +39,8 @@ class WindowWriter(GaugeWriter):
                 yield "if values is not None:"
                 yield "    at.append(start)"
         else:
-            state[f"told{place}"] = "None"
-            yield f"told = self.told{place}"
+            state[f"reported{place}"] = "None"
+            yield f"reported = self.reported{place}"
         lines = [*self._wedge(place, node.every, low, high)]
         if end:
             yield f"late.append((end.last + 1, {nothing}))"
@@ -56,7 +56,7 @@ class WindowWriter(GaugeWriter):
             yield from lines
         yield f"self.next{place} = next_"
         if not self.sparse:
-            yield f"self.told{place} = told"
+            yield f"self.reported{place} = reported"
         yield f"k{place} = next_ - 1"
 
     def _limit(self, node: Window) -> str:
@@ -68,14 +68,14 @@ class WindowWriter(GaugeWriter):
         )
 
     def _wedge(self, place: int, every: bool, low: int, high: int) -> Iterator[str]:
-        """Take in what is `late` and tell all values, up to where windows are known."""
+        """Take in what is `late` and report all values, up to where windows are known."""
         yield "while True:"
         yield f"    if late and late[0][0] <= until + {high + 1}:"
         yield "        entry, value = late.popleft()"
         yield f"        stop = entry - {high + 1}"
         yield "    else:"
         yield "        entry, stop = None, until"
-        yield from indented(self._told_sparsely(place) if self.sparse else self._told(place))
+        yield from indented(self._report_sparsely(place) if self.sparse else self._report(place))
         yield "    if entry is None:"
         yield "        break"
         if not self.sparse:
@@ -87,7 +87,7 @@ class WindowWriter(GaugeWriter):
         yield "    wedge.append(value)"
         yield f"    exits.append({f'entry - {low}' if self.sparse else 'FAR'})"
 
-    def _told(self, place: int) -> Iterator[str]:
+    def _report(self, place: int) -> Iterator[str]:
         yield "while next_ <= stop:"
         yield "    while exits and exits[0] < next_:"
         yield "        exits.popleft()"
@@ -97,12 +97,12 @@ class WindowWriter(GaugeWriter):
         yield "        best = wedge[0]"
         yield "        if exits[0] < stop:"
         yield "            right = exits[0]"
-        yield "    if best != told:"
-        yield "        told = best"
+        yield "    if best != reported:"
+        yield "        reported = best"
         yield f"        n{place}.append((next_, best))"
         yield "    next_ = right + 1"
 
-    def _told_sparsely(self, place: int) -> Iterator[str]:
+    def _report_sparsely(self, place: int) -> Iterator[str]:
         yield "while at and at[0] <= stop:"
         yield "    position = at.popleft()"
         yield "    while exits and exits[0] < position:"

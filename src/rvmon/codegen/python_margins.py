@@ -3,8 +3,8 @@
 What a node has is a step function over the integers, known up to one of them. A step of the class
 hands from node to node, operands first, what is new: from which integer on it has which value, and
 up to which integer that is known. Where only samples are positions, a step of the function belongs
-to the position at which it begins, and each position has one of its own. A value is told as soon as
-nothing that may still come can change it; what is kept is what is not settled.
+to the position at which it begins, and each position has one of its own. A value is reported as
+soon as nothing that may still come can change it; what is kept is what is not settled.
 
 Source: Lemire 2006 (the wedge); Donze, Ferrere and Maler 2013, Efficient robust monitoring for STL.
 """
@@ -109,7 +109,7 @@ class _Writer(WindowWriter, JoinWriter):
         yield "if self.asked:"
         yield f"    return self.answers(news, {known})"
         yield "if news:"
-        yield "    self.told = news[-1][1]"
+        yield "    self.reported = news[-1][1]"
         yield "return ()"
 
     def _node(self, place: int, node: Node, *, end: bool = False) -> Iterator[str]:

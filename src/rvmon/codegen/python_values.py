@@ -117,7 +117,7 @@ class ValueWriter:
         signal = self.plan.signals.index(name)
         yield f"if self.s[{signal}] is None:"
         yield f"    self.found({signal}, t)"
-        if self.tells_birth(name):
+        if self.shows_birth(name):
             known = "" if given else f" and {variable} is not None"
             yield f"    if not self.births[{signal}]{known}:"
             yield f"        self.births[{signal}] = 1"
@@ -135,7 +135,7 @@ class ValueWriter:
         yield f"self.last{signal} = {last}"
         yield f"self.s[{signal}] = {variable}"
 
-    def tells_birth(self, name: str) -> bool:
+    def shows_birth(self, name: str) -> bool:
         """Whether something depends on when a signal had its first value."""
         uses = self.plan.uses.get(name)
         return uses is not None and uses.birth

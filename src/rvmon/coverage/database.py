@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import Model
 from rvmon.coverage.record import Coverage, TestRecord
-from rvmon.coverage.schema import connect, damaged, name_of, told, transaction
+from rvmon.coverage.schema import connect, damaged, name_of, readable_errors, transaction
 from rvmon.coverage.stored_model import (
     Stored,
     model_from,
@@ -93,7 +93,7 @@ class Database:
         known = self._items.places
         if any((group, item) not in known for group, items in hits.items() for item in items):
             self._items = _Items(self._stored())  # declared since, perhaps by another process
-        with told(self._path):
+        with readable_errors(self._path):
             entry = entry_of(test, hits, self._items.places)
         with transaction(self._tables, self._path):
             write_entries(self._tables, [entry], self._items.ids)
@@ -151,7 +151,7 @@ class Database:
         return stored, Coverage(model_from(stored), names, entries, reasons)
 
     def _stored(self) -> Stored:
-        with told(self._path):
+        with readable_errors(self._path):
             return read_groups(self._tables, self._path)
 
     def _explain(self, items: _Items, reasons: Mapping[tuple[str, str], Iterable[str]]) -> None:
@@ -169,7 +169,7 @@ class Database:
 
     def close(self) -> None:
         """Close the file; what was written is there already."""
-        with told(self._path):
+        with readable_errors(self._path):
             self._tables.close()
 
     def __enter__(self) -> Self:

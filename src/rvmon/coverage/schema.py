@@ -54,7 +54,7 @@ def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
     """
     if path is not None:
         _refuse(Path(path), create=create)
-    with told(path):
+    with readable_errors(path):
         database = _opened(path, create=create)
         try:
             if create and _is_new(database):
@@ -71,8 +71,8 @@ def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
 
 
 @contextmanager
-def told(path: str | Path | None) -> Iterator[None]:
-    """Have errors of SQLite, and of what it cannot hold, told for people."""
+def readable_errors(path: str | Path | None) -> Iterator[None]:
+    """Have errors of SQLite, and of what it cannot hold, in words for people."""
     try:
         yield
     except sqlite3.ProgrammingError as error:
@@ -99,7 +99,7 @@ def transaction(
 
     Others that write wait for one that writes.
     """
-    with told(path):
+    with readable_errors(path):
         database.execute("BEGIN IMMEDIATE" if writes else "BEGIN")
         try:
             yield

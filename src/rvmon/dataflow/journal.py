@@ -27,7 +27,7 @@ class Journal:
         self._plan, self._gap = network.plan, network.positions.distance
         # Most networks live for an attempt alone.
         self._begun = None if network.grown == -FAR and not network.noted else network.copy()
-        self._told: list[tuple[int, Sequence[bool] | None, int | None]] = [
+        self._entries: list[tuple[int, Sequence[bool] | None, int | None]] = [
             (t, letter, None) for t, letter in noted
         ]
         size = sum(len(true) + len(false) for true, false in network.known)
@@ -37,20 +37,22 @@ class Journal:
 
     def __len__(self) -> int:
         """The number of entries."""
-        return len(self._told)
+        return len(self._entries)
 
     @property
     def is_over(self) -> bool:
         """Whether it is time for another one: it is full, or the network was interrupted."""
-        return self._telling or len(self._told) >= self._most
+        return self._telling or len(self._entries) >= self._most
 
     def is_at(self, limit: int) -> bool:
         """Whether the last that it told was that time came to a stamp."""
-        return bool(self._told) and self._told[-1][0] == limit and self._told[-1][1] is None
+        return (
+            bool(self._entries) and self._entries[-1][0] == limit and self._entries[-1][1] is None
+        )
 
     def noted_since(self, t: int) -> list[tuple[int, Sequence[bool]]]:
         """The positions that it was told of, from `t` on, at which the letter stood as well."""
-        noted = [(at, letter) for at, letter, _ in self._told if letter is not None]
+        noted = [(at, letter) for at, letter, _ in self._entries if letter is not None]
         count = max(bisect_right(noted, t, key=itemgetter(0)), 1)
         at, letter = noted[count - 1]
         return [(max(t, at), letter), *noted[count:]]
@@ -60,7 +62,7 @@ class Journal:
         self._telling = True
         if network is not None:
             network.note(t, letter)
-        self._told.append((t, letter, None))
+        self._entries.append((t, letter, None))
         self._telling = False
 
     def grow(self, network: Network | None, limit: int, wanted: int | None = None) -> None:
@@ -68,7 +70,7 @@ class Journal:
         self._telling = True
         if network is not None:
             network.grow(limit, wanted)
-        self._told.append((limit, None, wanted))
+        self._entries.append((limit, None, wanted))
         self._telling = False
 
     def after(self, count: int) -> Network:
@@ -77,7 +79,7 @@ class Journal:
         if network is None or done > count:
             begun = self._begun
             done, network = 0, begun.copy() if begun else Network(self._plan, self._gap)
-        for at, letter, wanted in self._told[done:count]:
+        for at, letter, wanted in self._entries[done:count]:
             if letter is None:
                 network.grow(at, wanted)
             else:

@@ -137,9 +137,9 @@ class Knowledge:
             for side in known
         )
 
-    def tell(self, place: int, side: int, pieces: Pieces) -> None:
-        """Add to what becomes known of a node; see `tell`."""
-        tell(self.news, 2 * place + side, self.known[place][side], pieces)
+    def add_news(self, place: int, side: int, pieces: Pieces) -> None:
+        """Add to what becomes known of a node; see `add_news`."""
+        add_news(self.news, 2 * place + side, self.known[place][side], pieces)
 
     # What is wanted.
 
@@ -237,7 +237,7 @@ class Knowledge:
                 add_to(self.known[place][not node.dual], -FAR, self.positions.first - 1)
 
 
-def tell(news: list[Pieces], index: int, ranges: Ranges, pieces: Pieces) -> None:
+def add_news(news: list[Pieces], index: int, ranges: Ranges, pieces: Pieces) -> None:
     """Add to what becomes known of a node, ascending; it is not known yet.
 
     Args:

@@ -130,8 +130,8 @@ class Network(Knowledge):
         for index, (place, _) in enumerate(self.plan.leaves):
             true = [cell for cell, letter in cells if letter[index]]
             false = [cell for cell, letter in cells if not letter[index]]
-            self.tell(place, 0, true)
-            self.tell(place, 1, false)
+            self.add_news(place, 0, true)
+            self.add_news(place, 1, false)
 
     def _read_held(self, before: Sequence[bool], noted: Noted, limit: int) -> None:
         """Tell the leaves of all positions up to a stamp, each with the letter that was last."""
@@ -149,8 +149,8 @@ class Network(Knowledge):
                     value = letter[index]
             if first <= end:
                 sides[not value].append((first, end, 1, slope))
-            self.tell(place, 0, sides[0])
-            self.tell(place, 1, sides[1])
+            self.add_news(place, 0, sides[0])
+            self.add_news(place, 1, sides[1])
 
     def soonest_news(self, wanted: int) -> int:
         """An instant before which nothing becomes known that is waited for, whatever letters come.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from rvmon.dataflow.knowledge import Knowledge, tell
+from rvmon.dataflow.knowledge import Knowledge, add_news
 from rvmon.dataflow.nodes import Junction, Shift
 from rvmon.dataflow.piecewise import EVER, Pieces, clip, latest, shift, soonest
 from rvmon.dataflow.ranges import merged, on_stretch, outside, within
@@ -32,17 +32,17 @@ def junction_work(network: Knowledge, place: int, node: Junction) -> Work:
             if found := news[index]:
                 pieces = soonest(pieces, found) if pieces else found
         if pieces:
-            tell(news, out_some, own_some, outside(pieces, own_some))
+            add_news(news, out_some, own_some, outside(pieces, own_some))
         changed = [index for index, _ in every_of if news[index]]
         if len(changed) == 1 or (len(changed) == 2 and _apart(*map(news.__getitem__, changed))):
             for index in changed:
-                tell(news, out_every, own_every, where_all(index))
+                add_news(news, out_every, own_every, where_all(index))
         elif changed:
             for on in merged(piece[:2] for index in changed for piece in news[index]):
                 pieces = clip(EVER, *on)
                 for index, ranges in every_of:
                     pieces = latest(pieces, on_stretch(ranges, news[index], on))
-                tell(news, out_every, own_every, pieces)
+                add_news(news, out_every, own_every, pieces)
 
     def where_all(index: int) -> Pieces:
         """Where the others are known, too, of what became known of one operand."""
@@ -74,6 +74,6 @@ def shift_work(network: Knowledge, place: int, node: Shift) -> Work:
         for given, out, own in sides:
             if news[given]:
                 found = positions.cells(shift(news[given], node.offset))
-                tell(news, out, own, outside(found, own))
+                add_news(news, out, own, outside(found, own))
 
     return work

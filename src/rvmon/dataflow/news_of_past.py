@@ -74,4 +74,4 @@ def _work_out(
     operands = [network.pieces(operand) for operand in operands_of(node)]
     found = evaluated(node, operands, network.positions, on, edge)
     for side, pieces in enumerate(found):
-        network.tell(place, side, network.positions.cells(up_to(pieces, limit)))
+        network.add_news(place, side, network.positions.cells(up_to(pieces, limit)))

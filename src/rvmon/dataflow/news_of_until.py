@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from operator import itemgetter
 
-from rvmon.dataflow.knowledge import Knowledge, tell
+from rvmon.dataflow.knowledge import Knowledge, add_news
 from rvmon.dataflow.news import Work
 from rvmon.dataflow.nodes import Sweep
 from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, rises, stamp
@@ -74,13 +74,13 @@ def until_work(network: Knowledge, place: int, node: Sweep) -> Work:
         met = on_stretch(right[side], news[in_right + side], on)
         if side == no and len(met) == 1 and met[0][:2] == on and met == stays:
             # Wherever the way ends at once, nothing further on is known sooner.
-            tell(news, out + side, own[side], met)
+            add_news(news, out + side, own[side], met)
             return
         if side == yes:
             found, _ = until((stays, ()), (met, ()), *on, beyond)
         else:
             _, found = until(((), stays), ((), met), *on, beyond)
-        tell(news, out + side, own[side], positions.cells(found))
+        add_news(news, out + side, own[side], positions.cells(found))
 
     def work(_before: int, _limit: int) -> None:
         bottom = max(swept[place], pending[place])
@@ -89,18 +89,18 @@ def until_work(network: Knowledge, place: int, node: Sweep) -> Work:
             last = max(met[-1][1] if met else -FAR, own[yes][-1][1] if own[yes] else -FAR)
             if last < stays[0][0]:
                 stays = ()  # there is nothing to lead to
-        told = False
+        shown = False
         if met and not stays and rises(met):
-            told = show_met(met, bottom)
+            shown = show_met(met, bottom)
         elif met or stays:
-            told = show_all(yes, met, meets, stays, leads_on, bottom)
+            shown = show_all(yes, met, meets, stays, leads_on, bottom)
         unmet, cut = news[in_right + no], news[in_left + no]
         if unmet and unmet == cut and end_at_once(unmet, bottom):
-            tell(news, out + no, own[no], unmet)
-            told = True
+            add_news(news, out + no, own[no], unmet)
+            shown = True
         elif unmet or cut:
-            told = show_all(no, unmet, misses, cut, ends, bottom) or told
-        if told and pending[place] < bottom:
+            shown = show_all(no, unmet, misses, cut, ends, bottom) or shown
+        if shown and pending[place] < bottom:
             lead(bottom)
 
     def end_at_once(pieces: Pieces, bottom: int) -> bool:
@@ -126,7 +126,7 @@ def until_work(network: Knowledge, place: int, node: Sweep) -> Work:
             append(found, start, min(first - 1, last), at + slope * first, 0)
             append(found, max(start, first), last, at, slope)
         fresh = outside(found, own[yes])
-        tell(news, out + yes, own[yes], positions.cells(fresh))
+        add_news(news, out + yes, own[yes], positions.cells(fresh))
         return bool(fresh)
 
     def show_all(
@@ -144,13 +144,13 @@ def until_work(network: Knowledge, place: int, node: Sweep) -> Work:
             changed.sort(key=_last_first, reverse=True)
         else:
             changed.reverse()
-        told = False
+        shown = False
         for last, first, spans_of in changed:
             for start, end in reversed(spans_of((first, last))):
                 for gap in reversed(gaps(own[side], (max(start, bottom), end))):
                     show(side, gap)
-                    told = True
-        return told
+                    shown = True
+        return shown
 
     def lead(bottom: int) -> None:
         """What lies before `bottom` only leads on to it."""
@@ -162,7 +162,7 @@ def until_work(network: Knowledge, place: int, node: Sweep) -> Work:
                 at = stamp(news[out + side], bottom)
                 before = gaps(own[side], (start, bottom - 1))
                 level = PAST if at is None else at
-                tell(news, out + side, own[side], [(a, b, level, 0) for a, b in before])
+                add_news(news, out + side, own[side], [(a, b, level, 0) for a, b in before])
 
     return work
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from operator import itemgetter
 
-from rvmon.dataflow.knowledge import Knowledge, tell
+from rvmon.dataflow.knowledge import Knowledge, add_news
 from rvmon.dataflow.news import Work
 from rvmon.dataflow.nodes import Window
 from rvmon.dataflow.piecewise import (
@@ -55,7 +55,7 @@ def window_work(network: Knowledge, place: int, node: Window) -> Work:
                         start = last + 1
                 if last >= start or not plain or right >= FAR:
                     found = clip(some_of_window(pieces[index:], low, high), floor)
-                    tell(news, out_some, own_some, outside(found, own_some))
+                    add_news(news, out_some, own_some, outside(found, own_some))
                     break
                 if start > end:
                     continue
@@ -115,7 +115,7 @@ def window_work(network: Knowledge, place: int, node: Window) -> Work:
                         whole = clip(all_of_window(whole, low, high), first, last)
                     line = latest(whole, line)
                     break
-            tell(news, out_every, own_every, line)
+            add_news(news, out_every, own_every, line)
 
     return work
 
@@ -135,7 +135,7 @@ def sampled_window_work(network: Knowledge, place: int, node: Window) -> Work:
         """Tell of the positions from one index to another, with the integers before them."""
         if index < end:
             start = stamps[index - 1] + 1 if index else stamps[0]
-            tell(news, out, own, outside(((start, stamps[end - 1], at, 0),), own))
+            add_news(news, out, own, outside(((start, stamps[end - 1], at, 0),), own))
 
     def work(before: int, limit: int) -> None:
         floor = pending[place]

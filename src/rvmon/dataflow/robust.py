@@ -36,17 +36,17 @@ class Gauge(ABC):
     Attributes:
         asked: the positions whose value is wanted, ascending; those that are answered are taken
             out.
-        told: the value that was told last.
+        reported: the value that was reported last.
 
     Memory: what is not settled.
     """
 
-    __slots__ = ("asked", "first", "told")
+    __slots__ = ("asked", "first", "reported")
 
     def __init__(self, first: int) -> None:
         self.first = first
         self.asked: list[int] = []
-        self.told = -float("inf")
+        self.reported = -float("inf")
 
     @abstractmethod
     def step(
@@ -107,12 +107,12 @@ class Gauge(ABC):
     def answers(self, news: Sequence[Value], known: int) -> Sequence[Value]:
         """What is asked for of a formula of which there is news, up to where it is known."""
         asked, found, index = self.asked, [], 0
-        for start, value in (*news, (known + 1, self.told)):
+        for start, value in (*news, (known + 1, self.reported)):
             while index < len(asked) and asked[index] < start:
-                found.append((asked[index], self.told))
+                found.append((asked[index], self.reported))
                 index += 1
             if start <= known:
-                self.told = value
+                self.reported = value
         del asked[:index]
         return found
 

@@ -78,6 +78,6 @@ def unpack(path: str) -> dict[str, bytes]:
     sums = entries.pop(SUMS, b"").decode("utf-8", "replace")
     if pack(entries) != data:
         other = [name for name, body in entries.items() if _sum(name, body) not in sums]
-        told = ", ".join(other) or "its form, or what it lacks"
-        raise TamperedError(f"{path} was changed since it was written: {told}")
+        names = ", ".join(other) or "its form, or what it lacks"
+        raise TamperedError(f"{path} was changed since it was written: {names}")
     return entries

@@ -200,9 +200,9 @@ def write_evidence(
     """
     verdicts = csv_bytes(rows)
     derived = derived_entries(about, specs, rows_by_item(verdicts))
-    told = msgspec.json.format(msgspec.json.encode(about))
+    about_text = msgspec.json.format(msgspec.json.encode(about))
     try:
-        write_whole(path, pack({**entries, **derived, ABOUT: told, VERDICTS: verdicts}))
+        write_whole(path, pack({**entries, **derived, ABOUT: about_text, VERDICTS: verdicts}))
     except OSError as error:
         raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
 

@@ -91,14 +91,16 @@ def trace_matrix(
         other = by_requirement.get("", {})
         broken = {item for item, rows in other.items() if not all(row["verdict"] for row in rows)}
         for name, requirement in spec.requirements.items():
-            told = (robot, name, requirement.text, requirement.source)
+            heading = (robot, name, requirement.text, requirement.source)
             shown = by_requirement.get(name, {})
             traced = [
-                Traced(*told, item, *_folded(shown.get(item, ()), item in broken, items[item][0]))
+                Traced(
+                    *heading, item, *_folded(shown.get(item, ()), item in broken, items[item][0])
+                )
                 for item in own
                 if item in broken or item in shown
             ]
-            matrix += traced or [Traced(*told)]
+            matrix += traced or [Traced(*heading)]
         for item, rows in other.items():
             hits = [row["reason"] for row in rows if row["verdict"]]
             matrix += [Traced(robot, "illegal", "", "", item, "F", hit) for hit in hits]
@@ -125,9 +127,9 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
         facts: that it says first; one that is empty is left out.
         matrix: what it shows.
     """
-    told: list[Child] = []
+    listed: list[Child] = []
     for name, fact in facts.items():
-        told += [e("dt", None, name), e("dd", None, fact)] if fact else []
+        listed += [e("dt", None, name), e("dd", None, fact)] if fact else []
     sections: list[Child] = []
     words = ("requirement", *(verdict.value for verdict in Verdict), "shown by")
     for robot, own in groupby(matrix, key=lambda one: one.robot):
@@ -137,7 +139,7 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
             "table", {"class": "verdicts folds"}, e("thead", None, head), e("tbody", None, *rows)
         )
         sections.append(e("section", None, e("h2", None, robot) if robot else None, scroll(table)))
-    header = e("header", None, e("h1", None, title), e("dl", {"class": "facts"}, *told))
+    header = e("header", None, e("h1", None, title), e("dl", {"class": "facts"}, *listed))
     footer = e("footer", None, legend("Recordings, or tests, without a planted fault"))
     styles = ["base.css", "report.css"]
     return page(title, [header, *sections, footer], styles=styles, scripts=[]).encode("utf-8")

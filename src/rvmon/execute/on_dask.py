@@ -72,9 +72,9 @@ def execute_on_dask(
     try:
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:
-        told = str(error).splitlines()[0]
+        cause = str(error).splitlines()[0]
         raise RvmonError(
-            f"no scheduler of Dask answers at {address} ({told}): begin one by `dask scheduler`, "
+            f"no scheduler of Dask answers at {address} ({cause}): begin one by `dask scheduler`, "
             f"and workers by `dask worker {address} --nthreads 1`"
         ) from None
     with client:
@@ -207,8 +207,8 @@ def program() -> str:
     """What tells a program whose results can be mixed with these from others."""
     import hashlib
 
-    said = [sys.version, *contents(Path(__file__).parents[1])]
-    return hashlib.sha256(repr(said).encode()).hexdigest()
+    inputs = [sys.version, *contents(Path(__file__).parents[1])]
+    return hashlib.sha256(repr(inputs).encode()).hexdigest()
 
 
 _ONE_AT_A_TIME = threading.Lock()

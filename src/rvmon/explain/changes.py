@@ -71,7 +71,7 @@ def changes_in_samples(
             if differs:
                 new[name] = value
         for names, own in zip(read, found, strict=True):
-            told = {name: value for name, value in new.items() if name in names}
-            if told or not own:
-                own.append(Sample(sample.t, told))
+            changed = {name: value for name, value in new.items() if name in names}
+            if changed or not own:
+                own.append(Sample(sample.t, changed))
     return found

@@ -149,8 +149,8 @@ def _apart(
         groups.setdefault(word, []).append(part)
     for word, own in groups.items():
         yield f"{_listed(own)} {word}"
-    said = {part.name for part in parts if isinstance(part, SignalAtom)}
-    for name in sorted(unborn.keys() - said):
+    signals = {part.name for part in parts if isinstance(part, SignalAtom)}
+    for name in sorted(unborn.keys() - signals):
         yield f"`{name}` {unborn[name]}"
 
 

@@ -136,7 +136,7 @@ class _Search:
         """The runs of one sample; signals have a value from the start."""
         for valuation in self.choices.valuations:
             if SILENT not in valuation.values():
-                yield _Node((Sample(0, self._said(valuation, {})),), 0, valuation)
+                yield _Node((Sample(0, self._changes(valuation, {})),), 0, valuation)
 
     def after(self, node: _Node, cut: int) -> Iterator[_Node]:
         """The runs that go on from one: by waiting, or by a sample."""
@@ -144,27 +144,27 @@ class _Search:
         if len(node.samples) < self.most:
             t = end + (self.gap if node.at_cut else self.step)
             for valuation in self.choices.valuations:
-                said = self._said(valuation, node.held)
-                if said:
+                changes = self._changes(valuation, node.held)
+                if changes:
                     held = {**node.held, **{n: v for n, v in valuation.items() if v is not SILENT}}
-                    yield _Node((*node.samples, Sample(t, said)), t, held)
+                    yield _Node((*node.samples, Sample(t, changes)), t, held)
         soon = cut - end <= self.gap and not node.at_cut
         for t in {end + self.step} if soon else {cut - 1, cut}:
             if end < t < TIME_LIMIT:
                 yield _Node(node.samples, t, node.held, at_cut=True, waits=node.waits + 1)
 
-    def _said(self, valuation: Valuation, held: Valuation) -> dict[str, Value]:
+    def _changes(self, valuation: Valuation, held: Valuation) -> dict[str, Value]:
         """What a sample has to say: new values, all updates that matter, occurrences."""
-        said: dict[str, Value] = {}
+        changes: dict[str, Value] = {}
         for name, value in valuation.items():
             if isinstance(value, Silence):
                 continue
             if name in self.spec.events:
                 if value is not False:
-                    said[name] = value
+                    changes[name] = value
             elif name in self.choices.remembered or name not in held or held[name] != value:
-                said[name] = value
-        return said
+                changes[name] = value
+        return changes
 
 
 def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> Choices:

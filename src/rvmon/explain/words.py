@@ -123,8 +123,8 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
 def _by_entry(formula: Unary | Binary, positive: bool) -> str:
     """An operator in the words of its entry."""
     entry = formula.op.entry
-    said = entry.said if positive else entry.denied or f"not so: {entry.said}"
-    return said.format_map(_Parts(formula))
+    text = entry.said if positive else entry.denied or f"not so: {entry.said}"
+    return text.format_map(_Parts(formula))
 
 
 class _Parts(dict[str, str]):

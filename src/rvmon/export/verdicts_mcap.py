@@ -54,7 +54,7 @@ _ATTEMPT = {
     "decided": "integer",
 }
 
-_Said = tuple[int, str, Mapping[str, Any]]
+_Message = tuple[int, str, Mapping[str, Any]]
 """Ticks, topic, content."""
 
 
@@ -94,23 +94,23 @@ def write_verdicts(
     Raises:
         RvmonError: a file cannot be written, or an instant is before 1970.
     """
-    told = list(samples)
-    instants = [one.t for one in told[:1]] or [one.triggered for one in report.attempts]
+    recorded = list(samples)
+    instants = [one.t for one in recorded[:1]] or [one.triggered for one in report.attempts]
     begin = min(instants, default=report.end or 0)
     if begin < 0:
         raise RvmonError(f"cannot write {path}: MCAP has no instants before 0 s")
     names = {name for one in report.verdicts for name in concerned_names(spec.requirements[one])}
     states = sorted(_states(report, begin), key=itemgetter(0))
     frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]
-    values = _values(spec, told, names)
-    said = merge(states, _attempts(spec, report), values, frames, key=itemgetter(0))
-    schemas = {**_state_schemas(report), **(_value_schemas(spec, names) if told else {})}
+    values = _values(spec, recorded, names)
+    messages = merge(states, _attempts(spec, report), values, frames, key=itemgetter(0))
+    schemas = {**_state_schemas(report), **(_value_schemas(spec, names) if recorded else {})}
     if scene is not None:
         schemas[SCENE] = "foxglove.SceneUpdate", {"deletions": "array", "entities": "array"}
-    layout = foxglove_layout(spec, report.verdicts, names if told else (), scene)
+    layout = foxglove_layout(spec, report.verdicts, names if recorded else (), scene)
     try:
         with beside(path) as place:
-            _write(place, schemas, said)
+            _write(place, schemas, messages)
         write_whole(layout_path(path), msgspec.json.format(msgspec.json.encode(layout)))
     except OSError as error:
         raise RvmonError(f"cannot write {path}: {error.strerror or error}") from None
@@ -138,7 +138,7 @@ def _value_schemas(
     return found
 
 
-def _states(report: Report, begin: int) -> Iterator[_Said]:
+def _states(report: Report, begin: int) -> Iterator[_Message]:
     """What each requirement is: at the beginning, and whenever that changes."""
     changes: dict[str, dict[int, list[tuple[int, Verdict | None]]]] = {}
     end = report.end or 0
@@ -169,9 +169,9 @@ def _settled(attempt: Attempt, end: int) -> int:
     return max(attempt.triggered, end if attempt.decided is None else attempt.decided)
 
 
-def _attempts(spec: CheckedSpec, report: Report) -> list[_Said]:
+def _attempts(spec: CheckedSpec, report: Report) -> list[_Message]:
     """An entry of the log for each attempt, when it was decided."""
-    found: list[_Said] = []
+    found: list[_Message] = []
     for one in report.attempts:
         span = spec.requirements[one.requirement].span
         t = _settled(one, report.end or 0)
@@ -194,21 +194,21 @@ def _attempts(spec: CheckedSpec, report: Report) -> list[_Said]:
 
 def _values(
     spec: CheckedSpec, samples: Iterable[Sample], names: Collection[str]
-) -> Iterator[_Said]:
+) -> Iterator[_Message]:
     """The values of what requirements read."""
     for sample in samples:
         for name, value in sample.values.items():
             if name not in names:
                 continue
             if name in spec.signals:
-                yield sample.t, topic_of("signals", name), _told(value)
+                yield sample.t, topic_of("signals", name), _value_message(value)
             elif value:
                 for payload in value if isinstance(value, tuple) else (value,):
                     fields = payload if isinstance(payload, Mapping) else {}
                     yield sample.t, topic_of("events", name), {"occurs": True, **fields}
 
 
-def _told(value: object) -> dict[str, object]:
+def _value_message(value: object) -> dict[str, object]:
     """A value of a signal; JSON has no NaN, and no infinity."""
     if value is None or value != value:
         return {"known": False}
@@ -217,7 +217,7 @@ def _told(value: object) -> dict[str, object]:
 
 
 def _write(
-    path: Path, schemas: Mapping[str, tuple[str, Mapping[str, str]]], said: Iterable[_Said]
+    path: Path, schemas: Mapping[str, tuple[str, Mapping[str, str]]], messages: Iterable[_Message]
 ) -> None:
     from mcap.writer import Writer
 
@@ -228,7 +228,7 @@ def _write(
         for topic, (name, fields) in schemas.items():
             schema = writer.register_schema(name, "jsonschema", _json_schema(fields, name))
             channels[topic] = writer.register_channel(topic, "json", schema)
-        for t, topic, content in said:
+        for t, topic, content in messages:
             channel = channels[topic]
             writer.add_message(channel, t, msgspec.json.encode(content), t)
         writer.finish()

@@ -102,7 +102,7 @@ def close(
                         outcome = replace(outcome, hits={**outcome.hits, **shown})
                     played = Played(Job(proposal.test, robot), outcome)
                     added = goals.add(proposal.test.name, outcome.hits)
-                    proposer.tell(proposal, played, added=bool(added))
+                    proposer.learn(proposal, played, added=bool(added))
                     tests.append(Added(played, proposal.origin, added, goals.met))
                     if progress is not None:
                         progress(goals.met, goals.met + len(goals.open))

@@ -55,7 +55,7 @@ class Learned:
         share = (1 + self._gains[draw]) / (2 + self._tries[draw])
         return share + sum(draw in one for one in near) / max(1, len(near))
 
-    def tell(self, drawn: Iterable[Draw], *, paid: bool) -> None:
+    def learn(self, drawn: Iterable[Draw], *, paid: bool) -> None:
         """Learn whether a test that was made by these draws has paid."""
         for draw in dict.fromkeys(drawn):
             self._tries[draw] += 1

@@ -125,7 +125,7 @@ class Proposer:
                 made.append(proposal)
         return made
 
-    def tell(self, proposal: Proposal, played: Played, *, added: bool) -> None:
+    def learn(self, proposal: Proposal, played: Played, *, added: bool) -> None:
         """Learn what became of a test: one that came nearer to its goal than all before paid, too.
 
         Args:
@@ -138,7 +138,7 @@ class Proposer:
         self._nearness[proposal.goal] = max(near, self._nearness[proposal.goal])
         self._tests.append(played)
         self._draws[played.job.test.name] = proposal.drawn
-        self._learned.tell(proposal.drawn, paid=added or is_nearer)
+        self._learned.learn(proposal.drawn, paid=added or is_nearer)
 
     def _rank(self, goal: Goal) -> tuple[bool, int]:
         """What the model knows comes first, then what is specific: on the way much else is met."""
@@ -238,8 +238,8 @@ class Proposer:
         except RvmonError:
             raise
         except Exception as error:
-            told = f"{type(error).__name__}: {error}"
-            raise TestError(f"`{what}` of the campaign cannot make a test: {told}") from error
+            cause = f"{type(error).__name__}: {error}"
+            raise TestError(f"`{what}` of the campaign cannot make a test: {cause}") from error
         kind = self._campaign.test
         if not isinstance(made, kind):
             raise TestError(f"`{what}` of the campaign makes {made!r}, which is no {kind.__name__}")

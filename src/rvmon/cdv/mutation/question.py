@@ -76,10 +76,10 @@ def _differs(found: Difference, reading: Mapping[str, Sequence[str]]) -> str:
     if not found.name:
         return f"in `{found.test}` the run ends at {instant}, and no requirement fails"
     values = f"{found.was or 'none'} → {found.now or 'none'}"
-    told = f"in `{found.test}` the run differs at {instant} in `{found.name}` ({values}), which "
+    text = f"in `{found.test}` the run differs at {instant} in `{found.name}` ({values}), which "
     own = reading.get(found.name, ())
-    told += f"{', '.join(own)} read{'s' * (len(own) == 1)}" if own else "no requirement reads"
+    text += f"{', '.join(own)} read{'s' * (len(own) == 1)}" if own else "no requirement reads"
     if found.verdicts:
         changes = ", ".join(f"{name} {was} → {now}" for name, was, now in found.verdicts)
-        told += f"; verdicts differ, but none is a failure: {changes}"
-    return told
+        text += f"; verdicts differ, but none is a failure: {changes}"
+    return text

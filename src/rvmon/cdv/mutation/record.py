@@ -147,13 +147,13 @@ def _of_samples(
 
 def _first(t_ns: int, was: Values, now: Values) -> tuple[int, str, str, str] | None:
     for name in {**was, **now}:
-        before, after = _told(was, name), _told(now, name)
+        before, after = _as_text(was, name), _as_text(now, name)
         if before != after:
             return t_ns, name, before, after
     return None
 
 
-def _told(values: Values, name: str) -> str:
+def _as_text(values: Values, name: str) -> str:
     """A value as text, all digits of it; NaN is as NaN."""
     if name not in values:
         return ""

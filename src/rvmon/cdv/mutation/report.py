@@ -103,13 +103,13 @@ class MutationReport:
     def contradictions(self) -> list[str]:
         """Mutants that are declared equivalent, and are killed, or make a run differ."""
         return [
-            f"{one.mutant.identity} is declared equivalent, and {told}"
+            f"{one.mutant.identity} is declared equivalent, and {why}"
             for suite in self.suites.values()
             for one in suite.tried
-            if one.mutant.identity in self.equivalent and (told := self._told(one))
+            if one.mutant.identity in self.equivalent and (why := self._refuted(one))
         ]
 
-    def _told(self, one: Tried) -> str:
+    def _refuted(self, one: Tried) -> str:
         """What tells a mutant from the code as it is; empty: nothing does."""
         if one.killed:
             return f"{killer(one)} kills it"

@@ -105,13 +105,13 @@ def _killers(suite: SuiteTried) -> str:
         if one.killed:
             found = {finding.how for finding in one.findings}
             counts[next(how for how in How if how in found)] += 1
-    told = ", ".join(f"{count} {_SAID[how]}" for how, count in counts.items() if count)
+    kills = ", ".join(f"{count} {_HOW_TEXT[how]}" for how, count in counts.items() if count)
     invalid = sum(bool(one.invalid) for one in suite.tried)
     rest = f"; {invalid} cannot be planted" if invalid else ""
-    return f"{counted(suite.tests, 'test')}, {told or 'nothing killed'}{rest}"
+    return f"{counted(suite.tests, 'test')}, {kills or 'nothing killed'}{rest}"
 
 
-_SAID = {
+_HOW_TEXT = {
     How.REQUIREMENT: "killed by a requirement that fails",
     How.ANSWER: "by a known answer only",
     How.CRASHED: "by a crash",
@@ -136,5 +136,5 @@ def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:
     rows = [("third", "mutant", "change")]
     rows += [(one.third, one.identity, one.brief) for one in shown]
     hidden = len(mutants) - len(shown)
-    told = f", {hidden} of them held out and not listed" if hidden else ""
-    return plain_table(rows) + f"{len(mutants)} mutants{told}\n"
+    left = f", {hidden} of them held out and not listed" if hidden else ""
+    return plain_table(rows) + f"{len(mutants)} mutants{left}\n"

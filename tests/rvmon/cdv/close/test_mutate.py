@@ -118,6 +118,6 @@ def test_options_that_paid_are_drawn_more_often():
     assert 0.4 < share() < 0.6
     assert share(near=[[("way", "a")]]) > 0.65
     for _ in range(50):
-        learned.tell([("way", "a")], paid=True)
-        learned.tell([("way", "b")], paid=False)
+        learned.learn([("way", "a")], paid=True)
+        learned.learn([("way", "b")], paid=False)
     assert 0.9 < share() < 1
