@@ -72,8 +72,12 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             text = text_of_input() if name == "-" else text_of_file(name)
         except (OSError, UnicodeDecodeError) as error:
-            is_text = not isinstance(error, ValueError)
-            warn(f"error: {cannot_read(name, error) if is_text else f'{name}: not UTF-8 text'}")
+            why = (
+                cannot_read(name, error)
+                if isinstance(error, OSError)
+                else f"{name}: not UTF-8 text"
+            )
+            warn(f"error: {why}")
             unreadable += 1
             continue
         checked, found = _checked(text, name, constants)
