@@ -99,22 +99,21 @@ class NativeReelay:
         """Nothing is held."""
 
 
-_STEPS = (
+STEPS = (
     ("rvmon table", "step", "automaton"),
     ("rvmon step", "step", "python"),
     ("rvmon step, changes", "changes", "python"),
     ("rvmon step, prepared", "step", "prepared"),
     ("rvmon step, C", "step", "c"),
 )
-_COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evaluate", "c"))
+COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evaluate", "c"))
 
 
 def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
     """All that take part in a section, ours first: with columns in memory, or row by row."""
-    here = Path(sys.executable)
-    forms = {"batch": _COLUMNS, "many": _STEPS[1:], "bound": _STEPS[1:]}.get(section, _STEPS)
+    forms = {"batch": COLUMNS, "many": STEPS[1:], "bound": STEPS[1:]}.get(section, STEPS)
     for label, kind, engine in forms:
-        yield Worker(label, Peer(here, OURS), _ours(kind, engine))
+        yield our_worker(label, kind, engine)
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _up_to(100, _past(dialects.REELAY_DISCRETE))),
         ("rtamt", "rtamt", "rtamt", _up_to(10, _past(dialects.RTAMT_DISCRETE))),
@@ -126,6 +125,11 @@ def contenders(environment: Environment, native: Native, section: str) -> Iterat
             yield Worker(label, Peer(environment.python, worker), request)
     if native.binary is not None and section == "batch":
         yield NativeReelay(native.binary)
+
+
+def our_worker(label: str, kind: str, engine: str) -> Worker:
+    """One of `STEPS` or `COLUMNS`."""
+    return Worker(label, Peer(Path(sys.executable), OURS), _ours(kind, engine))
 
 
 def _ours(kind: str, engine: str) -> Request:

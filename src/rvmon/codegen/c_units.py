@@ -36,7 +36,7 @@ class Unit:
     @property
     def sizes(self) -> dict[str, int]:
         """What the header says of it."""
-        keeps_past = self.replays or (self._reach is not None and not self._reach.is_fresh)
+        keeps_past = self.replays or (self._reach is not None and not self._is_fresh)
         return {
             "APART": len(self.rule.captured),
             "EACH": int(self.requirement.for_each is not None),
@@ -65,6 +65,16 @@ class Unit:
         states = [state for _, rule in self.plan.judges for state in self._shared(rule)]
         looks_back = self._looks_back
         return reach_of(graph_of(states), each, self.rule.trigger, looks_back=looks_back)
+
+    @property
+    def _is_fresh(self) -> bool:
+        """Whether an instance can be made from what the first monitor stands at.
+
+        Between two ticks of a clock that has gone on to what the next tick sees: what its trigger
+        was at the last one, which an edge asks for, is gone.
+        """
+        reach = self._reach
+        return reach is not None and reach.is_fresh and (reach.begins or self.plan.gap in (None, 1))
 
     def _shared(self, rule: PlannedRule) -> Iterator[State]:
         """The state formulas of an instance."""
@@ -97,16 +107,16 @@ class Unit:
         yield f"#define ROOT_STARTERS {root}U"
         yield f"#define INSTANCE_STARTERS {instance}U"
         yield f"#define REPLAYS {int(self.replays)}"
-        yield f"#define FRESH {int(reach is not None and reach.is_fresh)}"
-        yield f"#define FORGETS {int(reach is not None and reach.is_fresh and reach.begins)}"
+        yield f"#define FRESH {int(self._is_fresh)}"
+        yield f"#define FORGETS {int(self._is_fresh and reach is not None and reach.begins)}"
         if self.requirement.for_each is not None:
             source = self.requirement.for_each.value
             yield f"#define EACH_EVENT {names.event(source.event)}"
             yield f"#define EACH_FIELD {names.field(source.event, source.field)}"
-        if reach is not None and reach.is_fresh and reach.begins:
+        if self._is_fresh and reach is not None and reach.begins:
             yield array("uint8_t", "varying", [int(n in vary) for n in range(len(graph.nodes))])
         forks = bool(self.requirement.captures) and not self.replays
-        if forks or (reach is not None and reach.is_fresh):
+        if forks or self._is_fresh:
             yield from varying_source(self.plan, names, vary - set(graph.stateful))
         if self.requirement.captures:
             yield from self._capturing()

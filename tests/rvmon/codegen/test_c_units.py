@@ -169,3 +169,31 @@ def test_values_at_the_end_of_a_clock_are_refused():
         spec.monitor(engine="c")
     report = spec.evaluate([(0, {"y": 1}), (1e-9, {"y": 2})])
     assert [one.captured for one in report.attempts] == [{"v": 1}]
+
+
+@pytest.mark.parametrize(
+    ("requirement", "samples"),
+    [
+        # What the trigger was at the last tick is not what came behind that.
+        ("upon p or g.k == key then true", [(0, {}), (2, {"g": None}), (3, {"g": {"k": 1}})]),
+        (
+            "upon p or g.k == key then true",
+            [(0, {"g": {"k": None}}), (1, {}), (3, {"g": {"k": 1}})],
+        ),
+        # What came since the last tick did not occur at it.
+        ("upon g then key >= h.m", [(0, {}), (4, {"h": {"m": 0}}), (5, {"g": {"k": 0}}), (7, {})]),
+    ],
+)
+def test_an_instance_that_begins_between_ticks_stands_as_at_the_last_one(requirement, samples):
+    """C and Python decide the same, of the same instances."""
+    spec = rvmon.loads(
+        "spec s\ntime sampled every 3 ns\nsignal p : bool\nevent g(k: int)\nevent h(m: real)\n"
+        f"requirement R\n  {requirement}\n  for each key in g.k\n"
+    )
+    found = []
+    for engine in ("auto", "c"):
+        monitor = spec.monitor(engine=engine)
+        for t, values in samples:
+            monitor.step_ns(t, values)
+        found.append(outcomes(monitor.finish()))
+    assert found[0] == found[1]
