@@ -24,6 +24,7 @@ from benchmarks.workload import Workload
 
 from rvmon import loads
 from rvmon.errors import RvmonError
+from rvmon.monitor.c.prepared import prepare_beside
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.law.walk import intervals
 from rvmon.testing.peers.client import Peer, PeerError
@@ -48,8 +49,8 @@ RTAMT_BOUND = 300
 
 MOST_ROWS = 4000
 
-COMPILED = "rvmon step, C"
-"""The form of ours that is compared with ours."""
+COMPILED = {"rvmon step, C": "c", "rvmon step, prepared": "auto"}
+"""The forms of ours that are compared with generated Python, by their engines."""
 
 MOST_DAMAGED = 40
 """So many damaged traces are tried until ours is FALSE on one."""
@@ -129,7 +130,7 @@ class Referee:
         except RvmonError as error:
             remark = str(error).splitlines()[0]
             return [Agreement("rvmon", workload.name, workload.form, remark=remark)]
-        found = [_compare_compiled(workload, cases)]
+        found = [_compare_compiled(workload, cases, *form) for form in COMPILED.items()]
         for label, peer in self._peers.items():
             if workload.form == "past" and label in STEPPED:
                 costs = [figure.median for figure in timed if figure.label == label]
@@ -220,37 +221,41 @@ def _case(question: Question) -> _Case:
 
 def _first_failure(question: Question) -> int | None:
     """The row at which the requirement `always φ` fails, as it is timed."""
-    decided = (attempt for row in _stepped(question, "auto") for attempt in row)
+    decided = (attempt for row in _stepped(question, "python") for attempt in row)
     return next((one.decided for one in decided if one.verdict is Verdict.FAIL), None)
 
 
 def _stepped(question: Question, engine: str) -> Iterator[Sequence[Attempt]]:
-    """What each row decides of the requirement `always φ`."""
+    """What each row decides of the requirement `always φ`; `auto` takes what is compiled ahead."""
     columns = {
         name: [cell for cell in column if cell is not None]
         for name, column in question.columns.items()
     }
     spec = loads(specification([always_text(question.formula)], columns))
+    if engine == "auto":
+        prepare_beside(spec._compiled, spec._compiled.chosen(None))
     monitor = spec.monitor(engine=engine)
     for row in range(question.ticks):
         yield monitor.step_ns(row, {name: column[row] for name, column in columns.items()})
 
 
-def _compare_compiled(workload: Workload, cases: Sequence[_Case]) -> Agreement:
-    """Whether the compiled monitor decides at each row what the one of the engine `auto` does."""
+def _compare_compiled(
+    workload: Workload, cases: Sequence[_Case], label: str, engine: str
+) -> Agreement:
+    """Whether a compiled monitor decides at each row what the one of generated Python does."""
     count: Counter[str] = Counter()
     try:
         for case in cases:
-            rows = (_stepped(case.question, engine) for engine in ("auto", "c"))
+            rows = (_stepped(case.question, one) for one in ("python", engine))
             for ours, compiled in zip(*(map(_outcomes, own) for own in rows), strict=True):
                 count["compared"] += 1
                 count["equal"] += ours == compiled
                 count["false"] += any(verdict is Verdict.FAIL for *_, verdict in ours)
     except RvmonError as error:
         remark = str(error).splitlines()[0]
-        return Agreement(COMPILED, workload.name, workload.form, remark=remark)
+        return Agreement(label, workload.name, workload.form, remark=remark)
     return Agreement(
-        COMPILED, workload.name, workload.form, count["equal"], count["compared"], count["false"]
+        label, workload.name, workload.form, count["equal"], count["compared"], count["false"]
     )
 
 

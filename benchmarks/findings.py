@@ -43,6 +43,14 @@ GOALS = (
     Goal("online, one step, generated C", "online", "rvmon step, C", "mstlo", "future", 5),
     Goal("online, only what changed", "online", "rvmon step, changes", "reelay", "past", 5),
     Goal("values that change at every row", "unsteady", "rvmon step", "sentil", "future", 0.8),
+    Goal(
+        "values that change at every row, prepared",
+        "unsteady",
+        "rvmon step, prepared",
+        "sentil",
+        "future",
+        3,
+    ),
     Goal("values that change at every row, C", "unsteady", "rvmon step, C", "sentil", "future", 4),
     Goal("values that change at every row", "unsteady", "rvmon step", "mstlo", "future", 5),
     Goal("values that change at every row, C", "unsteady", "rvmon step, C", "mstlo", "future", 5),
@@ -71,6 +79,7 @@ GOALS = (
         50,
         ("100 monitors",),
     ),
+    Goal("10 to 1,000 monitors", "many", "rvmon step, prepared", "sentil", "future", 3),
     Goal(
         "batch in memory, no compiler, at most 10 % of rows change",
         "batch",
@@ -117,13 +126,6 @@ class Quoted:
 
 
 QUOTED = (
-    *(
-        Quoted(
-            f"{many} monitors", "many", form, "R2U2 C", (figure, figure), 5, (f"{many} monitors",)
-        )
-        for many, figure in ((10, 550), (100, 5_100), (1000, 48_700))
-        for form in ("rvmon step", "rvmon step, C")
-    ),
     Quoted("batch in memory", "batch", "rvmon evaluate, C", "R2U2 C", (37, 195), 10),
     Quoted("whole process, CSV", "process", "rvmon build, csv", "R2U2 C", (107, 179), 2),
     Quoted("whole process, CSV", "process", "rvmon run, csv", "R2U2 C", (107, 179), 0.5),
@@ -152,6 +154,7 @@ class Findings:
         agreements: by contender and workload.
         differences: lines of the table of readings.
         files: lines of the table of whole files.
+        r2u2: lines of the table of `benchmarks.r2u2`.
         absent: what was not measured, and why.
     """
 
@@ -163,4 +166,5 @@ class Findings:
     agreements: tuple[Agreement, ...] = ()
     differences: tuple[str, ...] = ()
     files: tuple[str, ...] = ()
+    r2u2: tuple[str, ...] = ()
     absent: dict[str, str] = field(default_factory=dict)

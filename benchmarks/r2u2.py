@@ -1,7 +1,7 @@
 """Many monitors beside R2U2, whose C monitor is built from its repository.
 
     git clone https://github.com/R2U2/r2u2 r2u2
-    python -m benchmarks.r2u2 r2u2 [--rows 25000]
+    python -m benchmarks.r2u2 r2u2 [--rows 25000]     (or, in the whole run: --r2u2 r2u2)
 
 Responses in their future form on one stream of 20 signals, of which one changes at each row, as in
 the section `many` of the whole run; C2PO compiles them as it does by itself, and R2U2's C gets the
@@ -172,6 +172,22 @@ def figures(workload: Workload, source: Path, plan: Plan, folder: Path) -> Itera
         yield f"| {workload.name} | {label} | {why} | |"
 
 
+def table(source: Path, rows: int, counts: Sequence[int]) -> Iterator[str]:
+    """The lines for so many monitors.
+
+    Args:
+        source: a clone of R2U2's repository.
+        rows: of the stream.
+        counts: of monitors.
+    """
+    yield "| workload | who | CPU per row | R2U2's over it |"
+    yield "|---|---|---|---|"
+    for workload in suite.many(rows, counts):
+        if workload.form == "future":
+            with tempfile.TemporaryDirectory() as folder:
+                yield from figures(workload, source, Plan(5, 1.0), Path(folder))
+
+
 def main(argv: Sequence[str]) -> int:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="Many monitors beside R2U2's C monitor.")
@@ -179,12 +195,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--rows", type=int, default=25_000)
     parser.add_argument("--counts", type=int, nargs="+", default=[10, 100, 1000])
     options = parser.parse_args(argv)
-    print("| workload | who | CPU per row | R2U2's over it |\n|---|---|---|---|")
-    for workload in suite.many(options.rows, options.counts):
-        if workload.form == "future":
-            with tempfile.TemporaryDirectory() as folder:
-                for line in figures(workload, options.source, Plan(5, 1.0), Path(folder)):
-                    print(line, flush=True)
+    for line in table(options.source, options.rows, options.counts):
+        print(line, flush=True)
     return 0
 
 

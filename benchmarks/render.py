@@ -46,6 +46,8 @@ def render(findings: Findings) -> str:
         results = [result for result in findings.results if result.section == section]
         if results:
             lines += ["", f"## {title}", "", *_results(results), *_refusals(results)]
+    if findings.r2u2:
+        lines += ["", "## Many monitors beside R2U2", "", *findings.r2u2]
     if findings.files:
         lines += ["", "## Whole files, on all cores", "", *findings.files]
     if findings.open_attempts:
@@ -119,7 +121,7 @@ def _alike(agreements: Sequence[Agreement], result: Result, ours: Figure, peer: 
     """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
     here = [a for a in agreements if a.form == result.form and a.name == result.name and a.compared]
     name = peer.label.split()[0].rstrip(",")
-    sides = [name, COMPILED] if ours.label == COMPILED else [name]
+    sides = [name, ours.label] if ours.label in COMPILED else [name]
     checked = [[a for a in here if a.label == side] for side in sides]
     whole = ours.rows == peer.rows == result.rows
     if whole and result.form == "past" and ours.violated != peer.violated:

@@ -45,7 +45,8 @@ def build(environment: Environment) -> Native:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         errors = [line for line in done.stderr.splitlines() if "error" in line]
-        return Native(None, (errors or ["g++ failed"])[0])
+        # Without the place where it was unpacked.
+        return Native(None, (errors or ["g++ failed"])[0].rpartition("fatal error: ")[2])
     return Native(BINARY)
 
 
