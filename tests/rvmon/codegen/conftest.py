@@ -42,11 +42,11 @@ class Program:
     spec: Path
     binary: Path
 
-    def judge(self, path: str, stdin: str | None = None) -> subprocess.CompletedProcess[str]:
-        """Run it on a recording, which may lack columns."""
+    def judge(self, *paths: str, stdin: str | None = None) -> subprocess.CompletedProcess[str]:
+        """Run it on recordings, which may lack columns."""
         # It leaves by `exit` where a recording is wrong: memory in use then is not lost.
         env = os.environ | {"ASAN_OPTIONS": "detect_leaks=0"}
-        words = [self.binary, "--allow-missing", path]
+        words = [self.binary, "--allow-missing", *paths]
         return subprocess.run(  # noqa: S603
             words, capture_output=True, text=True, check=False, input=stdin, env=env
         )

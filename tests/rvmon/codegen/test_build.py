@@ -174,8 +174,19 @@ def test_lines_that_say_what_earlier_ones_said(program, tmp_path, capsys):
 
 def test_standard_input_is_json_lines(program):
     """`-` reads JSON lines from standard input."""
-    done = program.judge("-", json_text(2))
+    done = program.judge("-", stdin=json_text(2))
     assert len(told(done.stdout)["R1"][2]) > 5
+
+
+def test_several_recordings_are_an_array_without_those_that_are_damaged(program, tmp_path):
+    """Each report is as by itself; the exit code is the highest, and the damaged one is named."""
+    good, damaged = str(tmp_path / "good.csv"), str(tmp_path / "damaged.csv")
+    (tmp_path / "good.csv").write_text(csv_text(0))
+    (tmp_path / "damaged.csv").write_text(csv_text(0) + "0,backwards\n")
+    done = program.judge(damaged, good, good, damaged)
+    assert json.loads(done.stdout) == 2 * [json.loads(program.judge(good).stdout)]
+    assert done.returncode == 2
+    assert done.stderr.count("damaged.csv") == 2
 
 
 def test_the_fixed_layout(program, tmp_path):

@@ -60,7 +60,7 @@ def test_wrong_recordings_are_refused_with_the_place(program, tmp_path, text, me
 )
 def test_wrong_json_is_refused(program, text, message):
     """No line of JSON that is cut off or of another shape passes; the cause is said."""
-    done = program.judge("-", text)
+    done = program.judge("-", stdin=text)
     assert (done.returncode, done.stdout) == (2, "")
     assert "line 1: " in done.stderr
     assert message in done.stderr
@@ -100,8 +100,8 @@ def test_json_that_rvmon_run_refuses(program, tmp_path, capsys, line):
 def test_a_repeated_line_has_a_time_of_json(program):
     """The time of a line that says what the line before said is read as strictly."""
     first = '{"t":1,"parts":2}\n'
-    assert program.judge("-", first + '{"t":2,"parts":2}\n').returncode in (0, 1)
-    done = program.judge("-", first + '{"t":02,"parts":2}\n')
+    assert program.judge("-", stdin=first + '{"t":2,"parts":2}\n').returncode in (0, 1)
+    done = program.judge("-", stdin=first + '{"t":02,"parts":2}\n')
     assert (done.returncode, done.stdout) == (2, "")
     assert (
         "line 2: `t`: expected seconds such as 1.5, less than 146 years, found `02`" in done.stderr
@@ -125,7 +125,7 @@ def test_a_repeated_line_has_a_time_of_json(program):
 )
 def test_json_that_only_rvmon_run_reads_is_refused(program, line):
     """What the program would count otherwise it does not judge at all."""
-    done = program.judge("-", line + "\n")
+    done = program.judge("-", stdin=line + "\n")
     assert (done.returncode, done.stdout) == (2, "")
     assert "line 1: " in done.stderr
 
