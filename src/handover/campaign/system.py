@@ -15,7 +15,7 @@ OUTCOMES = {
     "released": "the piece was released",
     "withheld": "the robot kept the piece",
 }
-"""What ends a handover, by the event that tells it."""
+"""What ends a handover, by the event that reports it."""
 
 
 class Handover:

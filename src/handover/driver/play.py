@@ -53,7 +53,7 @@ class Played:
     """A test that is being played.
 
     Attributes:
-        world: runs it, as far as it is told to.
+        world: runs it, as far as it is asked to.
         robot: `"correct"` or `"legacy"`.
         mutation: the change made to the robot, if any.
         process: the robot's.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rvmon.readers.messages.topic import Topic
 
 _DEPTH = 10_000
-"""Messages of a topic that wait at most within DDS; one more is rejected, and told to be lost."""
+"""Messages of a topic that wait at most within DDS; one more is rejected, and reported as lost."""
 
 _AT_ONCE = 1_000
 """Messages of a topic that are taken before another topic has its turn."""
@@ -69,7 +69,7 @@ class DdsSource:
         self._reported: set[str] = set()
         self._stops = False
         # To be called for each message would hold up the thread of DDS that receives them, until
-        # the socket drops some and nobody is told; a loss is rare.
+        # the socket drops some and nobody learns of it; a loss is rare.
         self._listener = Listener(on_sample_lost=self._lose, on_sample_rejected=self._lose)
 
     def __enter__(self) -> DdsSource:
@@ -156,7 +156,7 @@ class DdsSource:
                 self._reported.add(name)
                 self._feed.lose(topic.name, f"{kind}: {topic.fault}")
             return
-        # A history that keeps the last messages would replace others and tell nobody.
+        # A history that keeps the last messages would replace others and report nothing.
         limits = Policy.ResourceLimits(_DEPTH, -1, -1)
         qos = Qos(Policy.Reliability.BestEffort, Policy.History.KeepAll, limits)
         wire = DdsTopic(self._participant, _PREFIX + name, _idl_type(kind, self._definitions))

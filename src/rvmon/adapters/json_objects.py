@@ -27,7 +27,7 @@ class JsonObjects:
     """Offers what objects say, as recordings in JSON lines have them.
 
     Objects without a time are stamped as they arrive. Those with a time are judged at it. One that
-    cannot be read may have said anything: all names are unknown from there on.
+    cannot be read may have reported anything: all names are unknown from there on.
 
     Args:
         driver: gets the samples.
@@ -69,7 +69,7 @@ class JsonObjects:
         self._last[robot] = t_ns
 
     def lose(self, where: str, why: Exception, robot: str | None) -> None:
-        """Have everything unknown that something may have said which cannot be read.
+        """Have everything unknown that an unreadable object may have reported.
 
         Args:
             where: what it was, for the log.

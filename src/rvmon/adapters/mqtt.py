@@ -91,7 +91,7 @@ class MqttSource:
     until their next value: what was published meanwhile is not known.
 
     Args:
-        objects: get what is said.
+        objects: get what is published.
         address: where it is.
         verdicts: the topic under which verdicts are published, each as JSON under the name of its
             requirement; `None`: none are.

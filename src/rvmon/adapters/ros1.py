@@ -113,7 +113,7 @@ class Ros1Source:
 
 
 def uses_sim_time() -> bool:
-    """Whether nodes of ROS 1 are told to take the time of `/clock`, by the parameter of that name.
+    """Whether nodes of ROS 1 are set to take the time of `/clock`, by the parameter of that name.
 
     Raises:
         RvmonError: rospy is not there, or no master answers.

@@ -23,7 +23,7 @@ from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 MOST_COMBINATIONS = 1 << 12
-"""Of more combinations, of one group of formulas or of all together, nothing is said."""
+"""Of more combinations, of one group of formulas or of all together, nothing is reported."""
 
 T = TypeVar("T", bound=Hashable)
 Truths = tuple[bool, ...]

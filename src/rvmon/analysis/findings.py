@@ -117,7 +117,7 @@ def _can_pass(requirement: Requirement) -> str:
 
 
 def _has_trigger(requirement: Requirement) -> bool:
-    """Whether something was said about when it applies, other than always or at the start."""
+    """Whether something was specified about when it applies, other than always or at the start."""
     return not isinstance(requirement.trigger, Constant | BoundAtom)
 
 

@@ -30,7 +30,7 @@ def implications_among(
 
     Returns:
         The implications, and whether all requirements were looked at. Of requirements that imply
-        each other the later ones are said to be implied.
+        each other the later ones are reported as implied.
     """
     found: list[Implication] = []
     dropped: set[str] = set()

@@ -1,4 +1,4 @@
-"""Conflicts: minimal sets of requirements, triggered as said, that cannot all hold."""
+"""Conflicts: minimal sets of requirements, triggered as given, that cannot all hold."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class ConflictSearch:
         return time.monotonic() > self.deadline
 
     def _can_hold(self, members: Sequence[Member]) -> bool | None:
-        """Whether all can end well, triggered as said."""
+        """Whether all can end well, triggered as given."""
         subjects = [member.subject for member in members]
         offsets = [member.offset for member in members]
         return self.together.can_reach(subjects, offsets, Aim(frozenset(range(len(members)))))

@@ -21,7 +21,7 @@ def ltl3_monitor(automaton: Automaton, forecaster: Forecaster) -> Automaton:
 
     Args:
         automaton: without clocks.
-        forecaster: tells what is still possible.
+        forecaster: knows what is still possible.
 
     Raises:
         ValueError: it has clocks.

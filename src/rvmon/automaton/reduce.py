@@ -73,7 +73,7 @@ class _Draft:
     # Locations.
 
     def merge(self, label: Label | None) -> bool:
-        """Make equivalent locations one; tells whether there were any."""
+        """Make equivalent locations one; returns whether there were any."""
         blocks = self._numbered([self._look(index, label) for index in range(len(self.places))])
         while True:
             finer = self._numbered(
@@ -156,7 +156,7 @@ class _Draft:
     # Regions.
 
     def drop_cuts(self) -> bool:
-        """Make one region of two in which all is the same; tells whether there were any."""
+        """Make one region of two in which all is the same; returns whether there were any."""
         found = False
         for place in self.places:
             for clock in range(len(place.cuts)):
@@ -174,7 +174,7 @@ class _Draft:
     # Clocks.
 
     def drop_clocks(self) -> bool:
-        """Leave out the clocks that are not read again; tells whether there were any."""
+        """Leave out the clocks that are not read again; returns whether there were any."""
         live = self._live_clocks()
         kept = [
             [clock for clock in range(len(place.cuts)) if (index, clock) in live]

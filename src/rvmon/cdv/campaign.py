@@ -54,7 +54,7 @@ class Control:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedFailure:
-    """A failure that is known, and is not to fail a campaign; that it fails no more, is told.
+    """A failure that is known, and is not to fail a campaign; that it fails no more, is reported.
 
     Attributes:
         requirement: that fails.

@@ -26,7 +26,7 @@ class Outcome:
             far as it went; `hung` if it was ended; `lost` if its process was.
         error: why it did not complete.
         end_ns: up to which it was judged.
-        figures: what the system tells of the run, to be added up.
+        figures: what the system reports of the run, to be added up.
         seconds: wall time that it took.
     """
 

@@ -91,8 +91,8 @@ class Presentation:
         chart_legend: how to read it.
         sections: further ones of the page, from the tests that were played and the addresses of
             their pages.
-        robot_words: what `replay` is told so that it takes a robot.
-        write_more: writes further files to a campaign's folder, told the strategies of its tests.
+        robot_words: what `replay` is given so that it takes a robot.
+        write_more: writes further files to a campaign's folder, given the strategies of its tests.
     """
 
     title: str = ""

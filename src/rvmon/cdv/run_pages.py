@@ -26,7 +26,7 @@ class Replay:
     Attributes:
         test: that was played.
         run: what the system reported of it at its end.
-        samples: that it told before.
+        samples: that it reported before.
         report: the verdicts.
     """
 

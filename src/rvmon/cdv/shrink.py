@@ -222,7 +222,7 @@ def _sequence(test: Test, name: str) -> Sequence[object]:
 
 
 def _kind(outcome: Outcome) -> str:
-    """The kind of exception that code raised: what is told before the colon."""
+    """The kind of exception that code raised: what stands before the colon."""
     if outcome.ending is not Ending.CRASHED:
         return ""
     return (outcome.error or "").partition(":")[0]

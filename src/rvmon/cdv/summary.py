@@ -59,7 +59,7 @@ class StrategySummary:
         crashes: what the code under test raised, by test.
         hung: why, by test that was ended.
         lost: why, by test whose process was ended.
-        figures: the sums of what the system tells of its runs.
+        figures: the sums of what the system reports of its runs.
         simulated_s: simulated seconds.
         shares: by requirement that is to hold in a share of runs, what the tests say of it.
     """
@@ -155,7 +155,7 @@ class CampaignSummary:
         cut_short: why fewer; empty if all were.
         seconds: wall time.
         simulated_s: simulated seconds, in all tests.
-        figures: the sums of what the systems tell of all runs.
+        figures: the sums of what the systems report of all runs.
         kind: the word for a block of the measured code.
         control: the name of what was played beside tests.
     """

@@ -1,4 +1,4 @@
-"""What a system under test has to offer: it plays a test, and tells what happens."""
+"""What a system under test has to offer: it plays a test, and reports what happens."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Taker = Callable[[int, Values], None]
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What a system tells of a run when it is over; the samples went to the observer.
+    """What a system reports of a run when it is over; the samples went to the observer.
 
     Attributes:
         end_ns: the instant up to which the run is judged, not before its last sample.
@@ -39,7 +39,7 @@ class Run:
     scene: Scene | None = None
 
     def __post_init__(self) -> None:
-        """See that others can count on it: what is wrong is told in the test that brings it.
+        """See that others can count on it: what is wrong is reported in the test that brings it.
 
         Raises:
             TypeError: a number is none, or a state is no pair.

@@ -53,7 +53,7 @@ def replay(
     if under_test.spec is None:
         raise RvmonError(f"robot `{name}` has no requirements: name some by --spec")
     spec = load(under_test.spec)
-    # A folder that cannot be written to is told before anything is played.
+    # A folder that cannot be written to is reported before anything is played.
     folder = made(out) if out else None
     if mcap is not None:
         refuse_mcap(mcap)

@@ -99,7 +99,7 @@ def conduct(
             chosen = plan_of_folder(campaign, arguments.suite)
         else:
             chosen = plan(campaign, strategies, tests=arguments.tests, seed=arguments.seed)
-    # Wrong requirements, and coverage models, are told before anything is played.
+    # Wrong requirements, and coverage models, are reported before anything is played.
     specs = specs_of(campaign)
     for name in campaign.robots if folder is not None else ():
         coverage_model(campaign, name)

@@ -33,7 +33,7 @@ def shrink_file(
     """
     test = load_test(path, campaign.test)
     job = Job(test, robot_of(campaign, test, robot))
-    folder = made(out) if out else None  # told before anything is played
+    folder = made(out) if out else None  # reported before anything is played
     with busy("shrinking"):
         found = _found(campaign, job, requirement)
     if found is None:

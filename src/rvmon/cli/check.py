@@ -108,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _checked(
     text: str, name: str, constants: Mapping[str, str]
 ) -> tuple[CheckedSpec | None, Sequence[Diagnostic]]:
-    """The specification, or nothing if it is unfit for use, and what is to be said about it."""
+    """The specification, or nothing if it is unfit for use, and what is to be reported about it."""
     from rvmon.errors import SpecError
     from rvmon.spec.compiled_cache import compile_cached
 

@@ -44,7 +44,7 @@ def in_order(recording: Iterable[Sample]) -> list[Sample]:
 
 
 def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals: bool) -> Report:
-    """The report with the cover goals, and with what only the whole recording tells.
+    """The report with the cover goals, and with what only the whole recording shows.
 
     That is what the triggers lacked that never came true, and what came after its deadline.
 

@@ -45,7 +45,7 @@ def add_map(parser: argparse.ArgumentParser) -> None:
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
-    """Declare what says how recordings tell things."""
+    """Declare how recordings are read."""
     add_time(parser)
     add_map(parser)
     parser.add_argument(
@@ -167,12 +167,12 @@ def reading_arguments(arguments: argparse.Namespace) -> SchemaArguments:
 
 
 def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
-    """The specification for recordings that tell things as the command line says."""
+    """The specification for recordings read as the command line says."""
     return spec.reading(**reading_arguments(arguments))
 
 
 def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> FileRecording:
-    """The recording at a path, for a specification that knows how it tells things.
+    """The recording at a path, for a specification that knows how to read it.
 
     Args:
         spec: the specification.

@@ -32,7 +32,7 @@ def path_of(out: str) -> Path:
 
 
 class _Entry(msgspec.Struct, frozen=True):
-    """One recording that was judged, with what told its file from others."""
+    """One recording that was judged, with what distinguished its file from others."""
 
     trace: str
     stamp: tuple[int, int]
@@ -48,7 +48,7 @@ class Unfinished:
 
     Attributes:
         path: of its file.
-        stamps: what told the files of recordings from others when the run began, by path.
+        stamps: what distinguished the files of recordings from others when the run began, by path.
         known: the recordings that were judged before, by path.
         shards: files of shards, from which something is known.
     """
@@ -166,7 +166,7 @@ def _judged(one: _Entry) -> Judged:
 
 
 def _stamp(trace: str) -> tuple[int, int] | None:
-    """What tells the files of a recording from others; `None` if there are none."""
+    """What distinguishes the files of a recording from others; `None` if there are none."""
     try:
         files = list(os.scandir(trace)) if is_bag_folder(trace) else [Path(trace)]
         found = [file.stat() for file in files]

@@ -40,7 +40,7 @@ class Output(logging.Handler):
         failures_only: whether what passed is left out.
 
     Attributes:
-        broken: why verdicts cannot be said any more, as when their reader has left.
+        broken: why verdicts cannot be written any more, as when their reader has left.
     """
 
     def __init__(self, *, failures_only: bool) -> None:
@@ -252,7 +252,7 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
             until[one.requirement] = min(until.get(one.requirement, one.deadline), one.deadline)
     names = [*status.verdicts]
     if len(names) > rows:
-        rows = max(1, rows - 1)  # one line tells of the rest
+        rows = max(1, rows - 1)  # one line counts the rest
         names.sort(key=lambda name: (_need(status.verdicts[name]), until.get(name, NEVER)))
     for name in names[:rows]:
         left = ""

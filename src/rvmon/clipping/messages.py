@@ -30,7 +30,7 @@ _KEPT_FOR_LATE = re.compile(r"durability:\s*(1\b|transient_local)")
 
 
 def clip_messages(path: str, form: str, piece: Piece, out: Path) -> Copied:
-    """Write a piece of a recording of messages, and tell what is in it.
+    """Write a piece of a recording of messages, and report what is in it.
 
     Where the stamps of headers count, what is copied was recorded between the first and the last
     message that lie in the piece.

@@ -15,7 +15,7 @@ from rvmon.trace.stamps import ticks_of_stamp
 
 
 def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
-    """Write a piece of a file, and tell what is in it.
+    """Write a piece of a file, and report what is in it.
 
     Raises:
         RvmonError: there is no pyarrow.
@@ -64,7 +64,7 @@ def _start(piece: Piece, layout: Layout, schema: Any) -> Any:
 
 
 def _stamp(ticks: int, stamps: Stamps, kind: Any) -> Any:
-    """An instant, or the nearest one before it that the column can tell."""
+    """An instant, or the nearest one before it that the column can hold."""
     import pyarrow
 
     if pyarrow.types.is_timestamp(kind):

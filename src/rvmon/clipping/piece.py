@@ -17,7 +17,7 @@ class Piece:
     Attributes:
         start: its first instant, ticks.
         stop: its last one.
-        schema: the declared names, and how the recording tells them.
+        schema: the declared names, and how the recording names them.
         ordered: whether nothing comes late, so that what lies behind it is not read.
         held: the values that signals bring along from before its start, by name.
     """

@@ -1,4 +1,4 @@
-"""Instants as recordings tell them."""
+"""Instants as recordings write them."""
 
 from __future__ import annotations
 

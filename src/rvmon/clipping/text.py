@@ -40,7 +40,7 @@ class _Copied:
 
 
 def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
-    """Write a piece of a text, and tell what is in it.
+    """Write a piece of a text, and report what is in it.
 
     Raises:
         TraceError: a row up to the end of the piece cannot be read.
@@ -99,5 +99,5 @@ def _json_start(piece: Piece) -> str:
 
 
 def _stamps(schema: Schema) -> Stamps:
-    """How a line of its own says when: each may choose where nobody has said it."""
+    """How a line of its own says when: each may choose where it is not given."""
     return schema.stamps or stamps_of("t_ns")

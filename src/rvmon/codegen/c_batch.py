@@ -69,7 +69,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class RunRecords:
-    """What a compiled monitor said of a recording.
+    """What a compiled monitor found in a recording.
 
     Attributes:
         records: array of `record_type`, in the order in which they were made.

@@ -78,7 +78,7 @@ def _not_kept(folder: object, error: OSError) -> RvmonError:
 
 
 def processor() -> str:
-    """What tells this machine's processor from others that share the cache."""
+    """What distinguishes this machine's processor from others that share the cache."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
@@ -155,7 +155,7 @@ def _with_headers(folder: str) -> str:
     """The folder of Python's headers, if they are there.
 
     Raises:
-        RvmonError: they are not; how to get them is said.
+        RvmonError: they are not; the message names how to get them.
     """
     if not (Path(folder) / "Python.h").is_file():
         raise RvmonError(

@@ -16,7 +16,7 @@ _FARTHEST = (1 << 62) - 2
 """No two instants of a trace that need to be told apart are farther from each other."""
 
 _PAST = -1
-"""In the place of what tells when a window is over."""
+"""In the place of the deadline of a window."""
 
 _WORSE, _BETTER = 1, 2
 

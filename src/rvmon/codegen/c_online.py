@@ -246,7 +246,7 @@ def online_build(
         plan: of requirements that all have automata.
         optimised: whether it is to be fast; otherwise it is compiled sooner.
         beside: whether it stands beside a monitor in Python, which lends its state.
-        measured: whether it tells of robustness, and not of verdicts.
+        measured: whether it measures robustness, and not of verdicts.
 
     Raises:
         RvmonError: a number of the specification is no double.

@@ -24,9 +24,9 @@ class Source:
     Attributes:
         name: of the function.
         arguments: types and names of what it gets beside the instant.
-        signal: what is said of a signal.
+        signal: what is reported of a signal.
         value: its value, if one is given; of the C type `kind` in a column.
-        event: what is said of an event.
+        event: what is reported of an event.
         field: the value of a payload's field.
         chosen: whether the instant is one at which something is known to change.
     """
@@ -62,7 +62,7 @@ ROW = Source(
 
 
 def take_source(plan: Plan, names: Names, source: Source) -> Iterator[str]:
-    """A function that takes the updates of an instant and tells whether something may change."""
+    """A function that takes the updates of an instant and returns whether something may change."""
     arguments = ", ".join(
         kind.format(prefix=names.prefix) + name for kind, name in source.arguments
     )

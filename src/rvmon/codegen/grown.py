@@ -1,7 +1,7 @@
 """What state formulas come to once all signals were born: less is asked of them then.
 
 Where a signal may be unborn, a formula is read in two or three ways (SEMANTICS, section 1). From
-the birth of the signals on what tells of birth is a constant, and so is much that is made of it.
+the birth of the signals on what depends on birth is a constant, and so is much that is made of it.
 """
 
 from __future__ import annotations

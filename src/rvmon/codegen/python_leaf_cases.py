@@ -78,7 +78,7 @@ class ConeWriter:
     def followed(self, name: str, kept: Iterator[str]) -> Iterator[str]:
         """What a sample does whose only news is a value `x`.
 
-        Time has changed nothing, or as `dirty` tells, nothing that depends on the value.
+        Time has changed nothing, or as `dirty` shows, nothing that depends on the value.
 
         Args:
             name: of the signal.

@@ -50,7 +50,7 @@ def bits(places: tuple[int, ...]) -> int:
 
 
 def roles_alike(plan: Plan) -> Roles:
-    """All nodes have a value of their own; whom they concern is said elsewhere."""
+    """All nodes have a value of their own; whom they concern is decided elsewhere."""
     graph = plan.graph
     none = tuple(0 for _ in graph.nodes)
     return Roles(none, none, (1 << len(graph.nodes)) - 1, tuple(map(bits, graph.parents)))

@@ -276,12 +276,12 @@ class VisitWriter:
             yield f"    fading |= {1 << place}"
 
     def changed(self, place: int, value: str, onward: Iterable[str] = ()) -> Iterator[str]:
-        """A node has another value: tell whom it concerns.
+        """A node has another value: notify whom it concerns.
 
         Args:
             place: of the node.
             value: the new one.
-            onward: tells the nodes that depend on it.
+            onward: notifies the nodes that depend on it.
         """
         alone = len(self.plan.judged) == 1
         sign = "=" if alone else "|="

@@ -68,7 +68,7 @@ class Database:
         return cls(connect(None, create=True), None)
 
     def declare(self, model: Model) -> None:
-        """Say what is to be covered; what was said before stays.
+        """Say what is to be covered; what was declared before stays.
 
         Args:
             model: may be declared any number of times, and may have more than before.

@@ -19,7 +19,7 @@ MOST_TESTS = 1000
 def fewest(coverage: Coverage) -> Smallest:
     """The fewest tests known that reach the coverage of all.
 
-    Of many tests those of the ranking are taken, and it is not said how many are needed at least.
+    Of many tests those of the ranking are taken, and how many are needed at least is left open.
     """
     if len(coverage.entries) > MOST_TESTS:
         return Smallest(tuple(step.entry for step in ranking(coverage)), 0)

@@ -99,7 +99,7 @@ class Entry:
     """A test with what it hit.
 
     Attributes:
-        digest: tells tests apart by their content.
+        digest: distinguishes tests by their content.
         record: the test.
         row: what it hit.
     """

@@ -95,7 +95,7 @@ def readable_errors(path: str | Path | None) -> Iterator[None]:
 def transaction(
     database: sqlite3.Connection, path: str | Path | None, *, writes: bool = True
 ) -> Iterator[None]:
-    """Write all that is said within or nothing of it, or read what there is at one instant.
+    """Write all that is written within or nothing of it, or read what there is at one instant.
 
     Others that write wait for one that writes.
     """

@@ -141,7 +141,7 @@ def read_entries(
 
 
 def _digest(test: TestRecord, flat: list[tuple[str, str, int, int | None]]) -> str:
-    """What tells a test from others: all but where and when it was recorded, and how fast."""
+    """What identifies a test: all but where and when it was recorded, and how fast."""
     content = (
         test.campaign,
         test.name,

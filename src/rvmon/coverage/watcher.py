@@ -153,7 +153,7 @@ def _of_point(point: Coverpoint) -> Group:
 def _of_cross(cross: Cross, spec: CheckedSpec) -> Group:
     """A combination with a bin that counts for nothing does so itself, as with one that is illegal.
 
-    An illegal bin is told of by its coverpoint.
+    An illegal bin is reported by its coverpoint.
     """
     points = [spec.coverpoints[name] for name in cross.points]
     items = {}

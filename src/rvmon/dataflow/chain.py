@@ -1,4 +1,4 @@
-"""Windows within windows over what a letter tells: what is known of them is known in order.
+"""Windows within windows over what a letter decides: what is known of them is known in order.
 
 Of such a formula no position becomes known before one that lies further left: where one position of
 a window decides, it is the first such one; where all do, the last. So what is known ends at one
@@ -117,7 +117,7 @@ def _ends(plan: NetworkPlan, left: int, place: int) -> bool:
 
 
 def _is_read(plan: NetworkPlan, place: int) -> bool:
-    """Whether a letter tells a node."""
+    """Whether a letter decides a node."""
     node = plan.nodes[place]
     if isinstance(node, Junction):
         return all(_is_read(plan, operand) for operand in node.operands)

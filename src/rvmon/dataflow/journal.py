@@ -1,4 +1,4 @@
-"""What a network was told since it stood in some way, to see later how it stood in between."""
+"""What a network was given since it stood in some way, to see later how it stood in between."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _LEAST = 64
 
 
 class Journal:
-    """A network as it stood, and what it was told from then on.
+    """A network as it stood, and what it was given from then on.
 
     What it holds on to is a network without what had been dropped by then, and as many entries.
 
     Args:
         network: as it stands.
-        noted: the positions that it is to be told of next.
+        noted: the positions that it is to be given next.
     """
 
     def __init__(self, network: Network, noted: Sequence[tuple[int, Sequence[bool]]] = ()) -> None:
@@ -45,13 +45,13 @@ class Journal:
         return self._telling or len(self._entries) >= self._most
 
     def is_at(self, limit: int) -> bool:
-        """Whether the last that it told was that time came to a stamp."""
+        """Whether the last entry was that time came to a stamp."""
         return (
             bool(self._entries) and self._entries[-1][0] == limit and self._entries[-1][1] is None
         )
 
     def noted_since(self, t: int) -> list[tuple[int, Sequence[bool]]]:
-        """The positions that it was told of, from `t` on, at which the letter stood as well."""
+        """The positions that it was given, from `t` on, at which the letter stood as well."""
         noted = [(at, letter) for at, letter, _ in self._entries if letter is not None]
         count = max(bisect_right(noted, t, key=itemgetter(0)), 1)
         at, letter = noted[count - 1]
@@ -74,7 +74,7 @@ class Journal:
         self._telling = False
 
     def after(self, count: int) -> Network:
-        """The network as it stood after so many entries; it is not to be told anything."""
+        """The network as it stood after so many entries; it is not to be given anything."""
         done, network = self._played or (0, None)
         if network is None or done > count:
             begun = self._begun

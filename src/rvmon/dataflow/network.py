@@ -4,7 +4,7 @@ Each node keeps where it is known to be true, and where to be false, in ranges o
 became known last, also the stamp as of which it did. Time and letters only ever add to that, and
 each node takes from its operands what is new of them: a step costs what it makes known, however
 long windows are and however much happens within one. What time alone will make known is worked out
-by a copy that goes ahead; the network itself comes along when it is told to. Positions that nothing
+by a copy that goes ahead; the network itself follows when it is asked to. Positions that nothing
 above can ask for again are dropped.
 
 Source: AUTOMATA 4.

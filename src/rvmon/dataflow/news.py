@@ -1,7 +1,7 @@
 """What becomes known of a node of a network, from what became known of its operands.
 
 Each function binds a node of one network to the lists that hold what is known of it and of its
-operands, and returns what works out its news. A position is told of once.
+operands, and returns what works out its news. A position is reported once.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What becomes known of an `until` without bounds: where it is met, and where the way leads there.
 
-Of its dual all is said of the other values.
+Of its dual all holds of the other values.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ def until_work(network: Knowledge, place: int, node: Sweep) -> Work:
         return True
 
     def show_met(pieces: Pieces, bottom: int) -> bool:
-        """Tell of where it is met, each later than what lies further left, and of the way there."""
+        """Report where it is met, each later than what lies further left, and of the way there."""
         found: list[Piece] = []
         for first, last, at, slope in pieces:
             way = around(left[yes], first - 1)
@@ -137,7 +137,7 @@ def until_work(network: Knowledge, place: int, node: Sweep) -> Work:
         by_left: Spans,
         bottom: int,
     ) -> bool:
-        """Tell of all that has become known of a side, from the end; whether that is anything."""
+        """Report all that has become known of a side, from the end; whether that is anything."""
         changed = [(piece[1], piece[0], by_right) for piece in right_news]
         if left_news:
             changed += [(piece[1], piece[0], by_left) for piece in left_news]

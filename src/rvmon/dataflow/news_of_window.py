@@ -140,7 +140,7 @@ def sampled_window_work(network: Knowledge, place: int, node: Window) -> Work:
     def work(before: int, limit: int) -> None:
         floor = pending[place]
         pieces = news[given_some]
-        # What is told first stays: the soonest where one decides, the latest where all do.
+        # What is reported first stays: the soonest where one decides, the latest where all do.
         for left, right, at, _ in pieces if len(pieces) < 2 else sorted(pieces, key=_at):
             index, end = bisect_left(stamps, left), bisect_right(stamps, right)
             if low:

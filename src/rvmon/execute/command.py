@@ -35,7 +35,7 @@ def run(words: Sequence[str], **options: Any) -> subprocess.CompletedProcess[str
         options: for `subprocess.run`.
 
     Returns:
-        Its exit code, 128 and the signal's number if one ended it, and what it said.
+        Its exit code, 128 and the signal's number if one ended it, and what it printed.
 
     Raises:
         OSError: it cannot be run.

@@ -204,7 +204,7 @@ class _Work:
 
 @cache
 def program() -> str:
-    """What tells a program whose results can be mixed with these from others."""
+    """What distinguishes a program whose results can be mixed with these from others."""
     import hashlib
 
     inputs = [sys.version, *contents(Path(__file__).parents[1])]

@@ -39,7 +39,7 @@ def serve(
         connection: to who gives out the tasks.
         other: its other end, which only that process is to hold.
         begin: makes, before the first task, what does them.
-        parent: the process whose death Linux is to tell; `None`: nobody's.
+        parent: the process whose death Linux is to report; `None`: nobody's.
     """
     other.close()
     _leave_signals(parent)

@@ -27,7 +27,7 @@ class Analysis:
     Attributes:
         findings: as diagnostics.
         examination: the same as data, with what was not decided.
-        timelines: of the first conflicts, the shortest run that triggers them as said.
+        timelines: of the first conflicts, the shortest run that triggers them as given.
     """
 
     findings: tuple[Diagnostic, ...]

@@ -46,7 +46,7 @@ def changes_in_blocks(
 def changes_in_samples(
     samples: Iterable[Sample], read: Sequence[Container[str]], events: Container[str]
 ) -> list[list[Sample]]:
-    """For each choice of names the samples that tell of one of them what was not told before.
+    """For each choice of names the samples that report of one of them what was not reported before.
 
     The first sample is always given. Another value than the one before is new, and an event is.
 

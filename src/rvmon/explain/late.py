@@ -1,4 +1,4 @@
-"""What was awaited in vain and came too late: told from the whole recording."""
+"""What was awaited in vain and came too late: found in the whole recording."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ def _miss(parts: tuple[Formula, ...], seen: Mapping[Formula, Truth]) -> _Miss:
 
 
 def _sentence(miss: _Miss, seen: Mapping[Formula, Truth]) -> str:
-    """What is to be said if some part was true, or there is none."""
+    """What is to be reported if some part was true, or there is none."""
     at = miss.at
     if at is None or not miss.missing:
         when = "" if at is None else f" at {format_ticks(at)}"

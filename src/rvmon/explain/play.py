@@ -1,4 +1,4 @@
-"""Short runs, judged by the project's own monitor, with what tells one situation from another."""
+"""Short runs, judged by the project's own monitor, with what distinguishes situations."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def shortest_examples(
 ) -> Found:
     """Look for the shortest example of each kind.
 
-    All runs are judged by the monitor itself, so that an example shows what it is said to show.
+    All runs are judged by the monitor itself, so that an example shows what it claims to show.
     They are tried in order of the number of samples, then of their end; where waiting leads to ever
     new situations, each wait beyond a few counts as a sample. A sample takes one of the
     valuations between which the formulas tell; it follows at a short step, or where a window opens

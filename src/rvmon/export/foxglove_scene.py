@@ -53,7 +53,7 @@ def scene_updates(scene: Scene) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def seconds_and_rest(ticks: int) -> dict[str, int]:
-    """An instant as Foxglove's messages tell it.
+    """An instant as Foxglove's messages write it.
 
     >>> seconds_and_rest(1_500_000_000)
     {'sec': 1, 'nsec': 500000000}

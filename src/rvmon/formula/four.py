@@ -42,7 +42,7 @@ class Four:
             not born.
         mortal: whether there is a time before its birth.
         fades: whether it is born for good as soon as it is.
-        unborn: two-valued, that it is not born; default as `read` tells it.
+        unborn: two-valued, that it is not born; default as `read` gives it.
         parts: of a conjunction, its operands; of anything else, it alone.
 
     Attributes:
@@ -114,7 +114,7 @@ class Reader(Reading[Four]):
         A proposition is an atom or an operator of the past.
         """
         key = id(formula), unborn
-        if key not in self._literals:  # what `<->` is told in has each operand twice
+        if key not in self._literals:  # what `<->` is expressed by has each operand twice
             self._literals[key] = formula, self._literal(formula, unborn)
         return self._literals[key][1]
 

@@ -66,7 +66,7 @@ class Goals:
         return self._counts.get(goal, 0) >= self.wanted[goal]
 
     def _is_out(self, goal: Goal) -> bool:
-        """Whether an item cannot be hit, as it is proved or said."""
+        """Whether an item cannot be hit, as it is proved or declared."""
         return goal in self.proved or goal in self.argued
 
     def add(self, test: str, hits: Hits) -> list[Goal]:

@@ -40,7 +40,7 @@ class Closed:
         proved: goals that cannot be met, each with the query that the model answers so.
         argued: those of which the campaign says so, each with its reason.
         open: what no test met.
-        wrong: goals that cannot be met, as it is said, and that a test met, with its name.
+        wrong: goals that cannot be met, as it is declared, and that a test met, with its name.
         groups: what was measured beside what the campaign measures.
         seconds: that it took.
         ended: why it ended with open goals; empty if there is none.

@@ -72,7 +72,7 @@ class Proposer:
         robot: that is tested.
         goals: what is open.
         strategies: those that tests are drawn from.
-        seed: all follows from it, and from what was told.
+        seed: all follows from it, and from what was learnt.
         witnesses: of the campaign's model.
     """
 

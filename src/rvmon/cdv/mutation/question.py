@@ -54,7 +54,7 @@ def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
 
     Args:
         survivor: a mutant that is not killed.
-        reading: as `readers` tells it.
+        reading: as `readers` gives it.
 
     >>> from pathlib import Path
     >>> from rvmon.cdv.mutation.mutant import Mutant

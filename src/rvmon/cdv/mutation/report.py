@@ -110,7 +110,7 @@ class MutationReport:
         ]
 
     def _refuted(self, one: Tried) -> str:
-        """What tells a mutant from the code as it is; empty: nothing does."""
+        """What distinguishes a mutant from the code as it is; empty: nothing does."""
         if one.killed:
             return f"{killer(one)} kills it"
         return question(one, self.reading) if one.difference is not None else ""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class How(StrEnum):
-    """What tells a mutant from the code as it is."""
+    """What distinguishes a mutant from the code as it is."""
 
     REQUIREMENT = "requirement"
     """One fails that did not."""
