@@ -102,9 +102,7 @@ def _spec(formula: Formula, time_model: TimeModel) -> Spec:
 
 def _judged_by(spec: Spec, engine: str) -> str:
     """The engine that `auto` takes; else the one that was asked for."""
-    return (
-        compile_spec(spec.checked).requirements["R"].report.engine if engine == "auto" else engine
-    )
+    return compile_spec(spec.checked).requirements["R"].engine(engine)
 
 
 def _said(spec: Spec, word: Sequence[Letter], engine: str) -> Iterator[tuple[bool, bool | None]]:

@@ -6,6 +6,7 @@ import argparse
 import shlex
 
 from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.progress import busy
 from rvmon.cli.say import say, warn
 
 
@@ -32,7 +33,8 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.readers.recording import topics_of
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
-    proposal = propose(spec.checked, topics_of(arguments.data))
+    with busy(f"reading {arguments.data}"):
+        proposal = propose(spec.checked, topics_of(arguments.data))
     words = shlex.join(["rvmon", "run", arguments.spec, arguments.data, "--binding"])
     say(f"# Proposed by names and types. {words} THIS_FILE")
     say(proposal.text, end="")

@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_format
+from rvmon.cli.progress import busy
 from rvmon.cli.say import say_json
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.results.compare import compare
     from rvmon.results.read import read_results
 
-    found = compare(read_results(arguments.before), read_results(arguments.after))
+    with busy("comparing verdicts"):
+        found = compare(read_results(arguments.before), read_results(arguments.after))
     if arguments.format == "json":
         say_json(_json(found))
     else:

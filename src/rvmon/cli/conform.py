@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_budget, add_format, budget_of
+from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_time
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
@@ -70,7 +71,8 @@ def run(arguments: argparse.Namespace) -> int:
     broken = False
     for path in found_recordings(arguments.traces):
         try:
-            answers[path] = _compare(network, path, stamps, labels, chosen, arguments)
+            with busy(f"comparing {path}"):
+                answers[path] = _compare(network, path, stamps, labels, chosen, arguments)
         except TraceError as error:
             warn(f"error: {error}")
             broken = True

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import percentage
 from rvmon.cli.options import add_format
+from rvmon.cli.progress import busy
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
@@ -75,9 +76,10 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.coverage.database import merge, read
     from rvmon.report.coverage_summary import Summary
 
-    coverage = read(arguments.databases)
-    if arguments.merge is not None:
-        merge(arguments.databases, arguments.merge)
+    with busy("reading databases"):
+        coverage = read(arguments.databases)
+        if arguments.merge is not None:
+            merge(arguments.databases, arguments.merge)
     earlier = None if arguments.compare is None else _earlier(arguments, coverage)
     if arguments.campaign is not None:
         coverage = _campaign(coverage, arguments.campaign)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import random
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from rvmon.cli.beside import spec_and_options
 from rvmon.cli.evidence_write import is_recording, rows_of_judged
 from rvmon.cli.judging import judge_all
 from rvmon.cli.options import constants_of
+from rvmon.cli.progress import bar
 from rvmon.cli.say import say
 from rvmon.evidence.archive import TamperedError
 from rvmon.evidence.keep import Kept, derived_entries, opened_evidence, own_program, sha256_of
@@ -59,7 +60,7 @@ def _verify(
     about = kept.about
     say(f"{arguments.file}: {about.name}, evaluated by rvmon {about.rvmon}, law {about.law}")
     there = set(kept.items)
-    for name, sha256 in about.recordings.items():
+    for name, sha256 in _shown(about.recordings):
         if not is_recording(name):
             unchecked.append(f"{name} is not there")
         elif sha256_of(Path(name)) != sha256:
@@ -94,6 +95,14 @@ def _verify(
     for item in chosen:
         differ += _differences(item, kept.items[item], now.get(item, ()), columns)
     say(f"evaluated again: {size:,} of {len(kept.items):,}")
+
+
+def _shown(recordings: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Each recording with its hash, and how many have been looked at."""
+    with bar("recordings", len(recordings)) as show:
+        for count, one in enumerate(recordings.items(), start=1):
+            yield one
+            show(count)
 
 
 def _expect_derived(kept: Kept) -> None:

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_time, time_words
 from rvmon.cli.say import say
 from rvmon.errors import RvmonError
@@ -45,7 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise RvmonError(
             f"error: {output} is there already: give another place with -o, or --force to overwrite"
         )
-    profile = profile_of(arguments.data, arguments.time)
+    with busy(f"reading {arguments.data}"):
+        profile = profile_of(arguments.data, arguments.time)
     text = starter_text(profile)
     if output == "-":
         sys.stdout.write(text)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from rvmon.cli.attempts import ATTEMPT_HELP, chosen_attempt, named_attempt
 from rvmon.cli.numbers import instant
 from rvmon.cli.options import add_const, add_format, constants_of
+from rvmon.cli.progress import busy, shown_while_reading
 from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
 from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.cli.say import say_json
@@ -73,18 +74,21 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     mapped = spec.schema.named
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
     until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
-    samples = [one for one in in_order(recording) if until is None or one.t <= until]
+    samples = in_order(shown_while_reading(recording))
+    samples = [one for one in samples if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)
-    for sample in samples:
-        monitor.step_ns(sample.t, sample.values)
-    report = monitor.finish_ns(until)
+    with busy(f"evaluating {name}"):
+        for sample in samples:
+            monitor.step_ns(sample.t, sample.values)
+        report = monitor.finish_ns(until)
     if not report.attempts and report.end is not None:
         requirement = spec.requirements[name]
         miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)
         report = replace(report, misses={name: miss})
     attempt = chosen_attempt(report, name, exact)
     assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
-    anatomy = dissect(spec.checked, samples, report.end, attempt, recording.names)
+    with busy(f"taking {attempt.name} apart"):
+        anatomy = dissect(spec.checked, samples, report.end, attempt, recording.names)
     if arguments.format == "json":
         import msgspec
 
