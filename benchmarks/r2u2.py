@@ -139,9 +139,9 @@ def compared(workload: Workload, made: Built, folder: Path) -> tuple[int, int, i
     equal = count = false = 0
     for formula, other in zip(workload.formulas, theirs, strict=True):
         question = Question(formula, columns, frozenset(), TimeModel.HELD)
-        for own, verdict in zip(answers(question, ask_engine), other, strict=False):
-            if own is not None:
-                count, equal, false = count + 1, equal + (own is verdict), false + (not own)
+        for answer, verdict in zip(answers(question, ask_engine), other, strict=False):
+            if answer is not None:
+                count, equal, false = count + 1, equal + (answer is verdict), false + (not answer)
     return equal, count, false
 
 
