@@ -22,6 +22,7 @@ quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or p
 check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, the documentation without warnings
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
+	@$(BIN)/rvmon format --check $$(find specs examples -name '*.rv')
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
