@@ -31,7 +31,10 @@ _THEMES = (
 )
 """A notebook's own theme comes before that of the system."""
 
-_OWN = ":root{padding:.75rem 1rem;border-radius:.5rem}:root h1{font-size:1.05rem;margin:.25rem 0 .4rem}"
+_OWN = (
+    ":root{padding:.75rem 1rem;border-radius:.5rem}"
+    ":root h1{font-size:1.05rem;margin:.25rem 0 .4rem}"
+)
 """As specific as a notebook's own rules for headings, which come before."""
 
 
