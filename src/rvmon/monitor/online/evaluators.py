@@ -30,11 +30,14 @@ class Evaluators(EvaluatorMaker):
         main: the evaluator of all requirements without `for each`; its inputs are those of the run.
         instances: the evaluators of those with it, an instance each.
         forgets: whether instances are let go of that are over.
+        alone: whether they judge all requirements of a run.
+        left: ids of those that they judge though generated code could, beside some.
     """
 
     STATE: tuple[str, ...] = ("_history", "all")
 
     forgets = True
+    alone = True
 
     def __init__(
         self,
@@ -45,11 +48,14 @@ class Evaluators(EvaluatorMaker):
         ledger: Ledger,
     ) -> None:
         super().__init__(spec, requirements, engine, sources, ledger)
+        self.left: Sequence[str] = ()
         self.gap = spec.gap
         self.instances = Instances(forgets=self.forgets, is_held=self._has_captured)
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
         self._shared = [one for one in requirements if one.requirement.for_each is None]
-        self.main = class_of_all(spec, requirements)(Outages(spec, sources), {})
+        self.main = class_of_all(spec, requirements, alone=self.alone)(
+            Outages(spec, sources), {}
+        )
         self._drive(self.main, self._shared, {}, None)
         self._captured: list[tuple[Evaluator, Instance | None]] = []
         for compiled in requirements:
@@ -72,6 +78,14 @@ class Evaluators(EvaluatorMaker):
     def all(self) -> Sequence[Evaluator]:
         """The evaluators there are now."""
         return [evaluator for evaluator, _ in self._entries]
+
+    @property
+    def alarm(self) -> int:
+        """An instant before which nothing happens in any of them, no sample being taken."""
+        if self.gap is None:
+            return -NEVER  # each sample is a position
+        captured = min((evaluator.alarm for evaluator, _ in self._captured), default=NEVER)
+        return min(self.main.alarm, self.instances.alarm, captured)
 
     @property
     def arrivals(self) -> Arrivals:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,7 +41,7 @@ class Forms:
 
     Attributes:
         requirements: those that generated code judges, or feeds a judge of.
-        others: those that it can do nothing for.
+        others: those that it can do nothing for, or that it is not to judge.
         plan: of `requirements`.
         unit: the generated class.
         machines: per requirement, what judges its attempts; `None`: a judge.
@@ -61,6 +61,7 @@ def forms_of(
     rule: type[Rule] | None = None,
     *,
     measured: bool = False,
+    left: Container[str] = (),
 ) -> Forms:
     """Generate what monitors of some requirements run.
 
@@ -70,8 +71,9 @@ def forms_of(
         sources: the names that can arrive; `None`: all.
         rule: see `rvmon.codegen.python_unit.unit_class`.
         measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
+        left: ids of those that evaluators are to judge, though generated code could.
     """
-    fed = [one for one in requirements if one.is_fed]
+    fed = [one for one in requirements if one.is_fed and one.requirement.id not in left]
     plan = plan_requirements(compiled, fed, measured=measured, stepped=rule is not None)
     machines = [
         None if rule.automaton is None else one.machine("automaton")
@@ -79,14 +81,20 @@ def forms_of(
     ]
     # What judges attempts in doubt is made when one comes up.
     machines += [None for _ in plan.hidden_of]
-    others = [one for one in requirements if not one.is_fed]
+    others = [one for one in requirements if one not in fed]
     return Forms(fed, others, plan, unit_class(plan, sources, Unit, rule), machines)
 
 
 class GeneratedEvaluators(Evaluators):
-    """Evaluators of which one is generated code; the others are for what that cannot judge."""
+    """Evaluators of which one is generated code; the others are for what that cannot judge.
+
+    Attributes:
+        lent: whether compiled code has the state of what is generated: only the others are led.
+    """
 
     STATE = ("outages", "unit", "counts", *Evaluators.STATE)
+
+    alone = False
 
     def __init__(
         self,
@@ -99,9 +107,11 @@ class GeneratedEvaluators(Evaluators):
         other: Step,
     ) -> None:
         self.other = other
+        self.lent = False
         self.flush: Flush = self._flush
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
+        self.left = [one.requirement.id for one in forms.others if one.is_fed]
         self.unit = unit
         self.outages = Outages(spec, sources)
         self.counts = [0] * len(forms.requirements)
@@ -149,8 +159,10 @@ class GeneratedEvaluators(Evaluators):
 
     @property
     def arrivals(self) -> Arrivals:
-        """See `Evaluators`."""
-        return arrivals_of(self.unit)
+        """See `Evaluators`; what the others read they have seen, be the rest lent or not."""
+        own, others = arrivals_of(self.unit), arrivals_of(self.main)
+        kept = {name: found for name, found in own.expired.items() if name not in others.first}
+        return Arrivals(own.absent, {**own.first, **others.first}, {**kept, **others.expired})
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
@@ -198,20 +210,22 @@ class GeneratedEvaluators(Evaluators):
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`."""
-        self.unit.through(limit)
+        if not self.lent:
+            self.unit.through(limit)
         super().through(limit)
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, from the instant before."""
-        if t >= self.unit.wake:
+        if not self.lent and t >= self.unit.wake:
             self.unit.reach(t)
             self.unit.set_alarm()
         super().reach(t)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a valid sample; time has come to `t − 1` before."""
-        self.unit.take(t, values)
-        self.unit.after = _HELD  # the call goes on
+        if not self.lent:
+            self.unit.take(t, values)
+            self.unit.after = _HELD  # the call goes on
         super().sample(t, values)
 
     def finish(self, end: int, reached: int) -> None:

@@ -28,6 +28,7 @@ def owed_now(
     void = ledger.void_records
     counts = Counter(one.requirement for one in void)
     holding = [judge for judge in evaluators.judges if judge.attempts]
+    holding.sort(key=lambda judge: judge.compiled.rank)  # whichever evaluator each is in
     for judge in holding:
         counts[judge.compiled.requirement.id] += len(judge.attempts)
     if most is None:
