@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -14,7 +14,8 @@ from rvmon.errors import RvmonError
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.c import beside as beside_module
 from rvmon.monitor.c.beside import Beside, LendingMonitor, beside, plan_beside
-from rvmon.monitor.c.prepared import is_taken
+from rvmon.monitor.c.prepared import taken_of
+from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
 from rvmon.monitor.online.generated import (
     Forms,
@@ -23,6 +24,7 @@ from rvmon.monitor.online.generated import (
     forms_of,
 )
 from rvmon.monitor.online.monitor import Monitor
+from rvmon.monitor.online.snapshot import document_of, put_back
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
@@ -33,25 +35,47 @@ from rvmon.verdict.attempt import Attempt
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A specification in generated Python, and what is compiled to stand beside it."""
+    """A specification in generated Python, and what is compiled to stand beside it.
+
+    Attributes:
+        compiled: the specification.
+        forms: of Python alone.
+        shared: of what C takes, and what it does not.
+        own: what is compiled.
+    """
 
     compiled: CompiledSpec
     forms: Forms
+    shared: Forms
     own: Beside
+
+    def lending(self, keep: int | None) -> LendingMonitor:
+        """What has C beside it; it lends whenever it can."""
+        return _Counted(*(self.own, self.shared, *self._how), None, keep)
+
+    def plain(self, keep: int | None, *, shared: bool = False) -> Monitor:
+        """Python alone; `shared`: as one that goes on where C has judged."""
+        return GeneratedMonitor(self.shared if shared else self.forms, *self._how, "now", None, keep)
+
+    @property
+    def _how(self) -> tuple[CompiledSpec, Sequence[CompiledRequirement], str]:
+        return self.compiled, self.compiled.chosen(None), "auto"
 
 
 def compiled_beside(spec: CheckedSpec) -> Pair | None:
     """Compile a specification; `None` if `auto` takes nothing that is compiled for it."""
     compiled = compile_spec(replace(spec, max_delay=None))
     chosen = compiled.chosen(None)
-    if not is_taken(chosen):
+    taken = {one.requirement.id for one in taken_of(chosen)}
+    if not taken:
         return None
-    forms = forms_of(compiled, chosen, None)
+    left = compiled.requirements.keys() - taken
+    forms, shared = (forms_of(compiled, chosen, None, left=names) for names in ((), left))
     try:
-        library = online_library(plan_beside(forms.plan), optimised=False, beside=True)
+        library = online_library(plan_beside(shared.plan), optimised=False, beside=True)
     except RvmonError:
         return None
-    return Pair(compiled, forms, beside(forms, library))
+    return Pair(compiled, forms, shared, beside(shared, library))
 
 
 class _Counted(LendingMonitor):
@@ -109,11 +133,9 @@ class Run:
     """Two monitors of a pair, which are told and asked the same."""
 
     def __init__(self, pair: Pair, keep: int | None, listens: bool) -> None:
-        compiled, forms = pair.compiled, pair.forms
-        chosen = compiled.chosen(None)
         self.pair, self.keep = pair, keep
-        self.plain: Monitor = GeneratedMonitor(forms, compiled, chosen, "auto", "now", None, keep)
-        self.lending: Monitor = _Counted(pair.own, forms, compiled, chosen, "auto", None, keep)
+        self.plain: Monitor = pair.plain(keep)
+        self.lending: Monitor = pair.lending(keep)
         self.found: list[str] = []
         self.heard: tuple[list[str], list[str]] = ([], [])
         if listens:
@@ -132,11 +154,16 @@ class Run:
     def see_next_due(self) -> None:
         """Both name the same next instant; that of a network may come in vain, but not too late.
 
+        So may that of what generated Python judges only where C judges nothing.
+
         What Python names may come in vain, too: then nothing is decided before the other.
         """
         plan = self.pair.forms.plan
         has_network = any(rule.automaton is None for rule in plan.rules)
-        if not has_network and plan.gap in (None, 1):
+        is_left = plan is not self.pair.shared.plan and len(plan.rules) > len(
+            self.pair.shared.plan.rules
+        )
+        if not (has_network or is_left) and plan.gap in (None, 1):
             self.both(lambda m: m.next_due)
             return
         wanted, got = _next_decision(self.plain), self.lending.next_due
@@ -149,9 +176,9 @@ class Run:
 
     def _decides_by(self, t: int) -> bool:
         """Whether time alone decides something up to an instant."""
-        run = Run(self.pair, self.keep, False)
-        _put_back(self.pair.compiled, run.plain, self.plain.snapshot())
-        return bool(run.plain.advance_ns(t))
+        self.lending.snapshot()  # which drops what is too much
+        again = self._restored(self.plain.snapshot(), lends=False)
+        return bool(again.advance_ns(t))
 
     def put_away(self, *, across: bool) -> None:
         """Put both away, and take them up again, perhaps each as the other was."""
@@ -159,12 +186,25 @@ class Run:
         own, other = reversed(kept) if across else kept
         before = self.lending
         taken = before.taken if isinstance(before, _Counted) else 0
-        run = Run(self.pair, self.keep, False)
-        for monitor, data in ((run.plain, own), (run.lending, other)):
-            _put_back(self.pair.compiled, monitor, data)
-        self.plain, self.lending = run.plain, run.lending
+        self.plain, self.lending = self._restored(own, lends=False), self._restored(other)
         if isinstance(self.lending, _Counted):
             self.lending.taken = taken
+
+
+    def _restored(self, data: bytes, *, lends: bool = True) -> Monitor:
+        """What goes on from a snapshot, judged as it was."""
+        left = document_of(self.pair.compiled, data)["left"]
+        is_shared = bool(left)
+        can_lend = lends and sorted(left) == sorted(
+            one.requirement.id for one in self.pair.shared.others if one.is_fed
+        )
+        made = (
+            self.pair.lending(self.keep)
+            if can_lend
+            else self.pair.plain(self.keep, shared=is_shared)
+        )
+        _put_back(self.pair.compiled, made, data)
+        return made
 
 
 def _apart(wanted: object, got: object) -> str:
@@ -176,8 +216,6 @@ def _apart(wanted: object, got: object) -> str:
 
 
 def _put_back(compiled: CompiledSpec, monitor: Monitor, data: bytes) -> None:
-    from rvmon.monitor.online.snapshot import document_of, put_back
-
     put_back(document_of(compiled, data), monitor.options, monitor.evaluators, monitor)
 
 
@@ -194,6 +232,7 @@ def _next_decision(monitor: Monitor) -> int | None:
         if is_network:
             rule._look(rule.now)  # samples like the last one were but noted
         found.append(rule.next_due if is_network else unit.due_at[rule.index])
+    found += [one.next_decision for one in evaluators.all]
     soonest = min(found)
     return max(soonest, due) if soonest < NEVER else None
 
@@ -234,7 +273,7 @@ def _report(monitor: Monitor, end: int | None) -> Any:
         if one.name not in ("attempts", "engine", "dropped")
     }
     dropped = [(name, sorted(counts.items())) for name, counts in report.dropped.items()]
-    return attempts, others, dropped
+    return attempts, others, sorted(dropped)
 
 
 def _answer(monitor: Monitor, ask: Callable[[Monitor], Any]) -> Any:

@@ -107,8 +107,11 @@ def names_looked_at(
     uses = _uses_of(graphs, judged)
     names = {*uses}.union(*(one.reads for one in judged))
     names |= {one.requirement.for_each.value.event for one in judged if one.requirement.for_each}
+    # Instances that are over are let go of when a sample has a name that they read.
+    often = set().union(*(one.reads for one in judged if one.requirement.for_each))
     return {
-        name: name in spec.events
+        name: name in often
+        or name in spec.events
         or spec.signals[name].stale_after is not None
         or (name in uses and (uses[name].history or uses[name].marked))
         for name in names

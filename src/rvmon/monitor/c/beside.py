@@ -212,6 +212,7 @@ class LendingMonitor(GeneratedMonitor):
     def _admit(self, t: int, values: Mapping[str, Value]) -> None:
         """Lead the evaluators to a sample, before C takes it: they may refuse it."""
         if self._is_mixed:
+            self._show_last()
             self._shown = t
             self._unit_evaluators.through(t - 1)
             try:

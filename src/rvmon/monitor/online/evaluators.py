@@ -15,7 +15,6 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
 from rvmon.monitor.online.evaluator_maker import Captured, EvaluatorMaker
 from rvmon.monitor.records.ledger import Ledger
-from rvmon.plan.graph import Graph
 from rvmon.plan.outages import Outages
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.values import NEVER
@@ -251,10 +250,10 @@ class Evaluators(EvaluatorMaker):
         compared = self._compared(parent, compiled, own, instance)
         evaluator = self._evaluator(compiled, own, starts=False)
         self._drive_attempt(evaluator, compiled, own, instance)
-        replays = self._replays(compiled, parent.graph)
+        replays = self._replays(compiled)
         if not replays:
             evaluator.clerk = parent.clerk.copy()
-            parent.fork(evaluator)
+            parent.fork(evaluator, self._by_id[compiled.requirement.id].shared_graph)
         if compared is not None and compared.may_begin_otherwise:
             evaluator.cut_at(t)
         if replays:
@@ -267,9 +266,12 @@ class Evaluators(EvaluatorMaker):
         if compared is not None:
             compared.keeps(t)
 
-    def _replays(self, compiled: CompiledRequirement, graph: Graph) -> bool:
-        """Whether a captured attempt has to see what evaluators of a graph do not remember."""
-        return compiled.looks_back_beyond(graph)
+    def _replays(self, compiled: CompiledRequirement) -> bool:
+        """Whether a captured attempt has to see what its requirement does not remember.
+
+        Others that share its evaluator may remember it: what is said does not depend on them.
+        """
+        return compiled.looks_back_beyond(self._by_id[compiled.requirement.id].shared_graph)
 
     def _replay(self, evaluator: Evaluator, instance: Instance | None) -> None:
         """Let a new evaluator see the samples so far."""
@@ -321,7 +323,7 @@ class Evaluators(EvaluatorMaker):
         keyed = self.instances.keyed.get(compiled.requirement.id)
         return (keyed is not None and not keyed.reach.is_fresh) or (
             bool(compiled.requirement.captures)
-            and any(self._replays(one, compiled.shared_graph) for one in compiled.judges.values())
+            and any(self._replays(one) for one in compiled.judges.values())
         )
 
 
