@@ -287,8 +287,11 @@ class Evaluator(Nodes, Schedule):
             return
         # It is taken at a position to come, of which there may be none.
         for signal, name in enumerate(self.SIGNALS):
-            if name in values and self.first[signal] is None:
-                self.first[signal] = t
+            if name in values:
+                if self.first[signal] is None:
+                    self.first[signal] = t
+                if values[name] is not None and values[name] == values[name]:
+                    self.clerk.found(name, t)
         self.reach(t)
 
     def visit(self, t: int) -> None:
