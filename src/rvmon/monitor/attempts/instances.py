@@ -47,9 +47,11 @@ class Instances:
     @property
     def alarm(self) -> int:
         """An instant before which nothing happens in any of them, no sample being taken."""
+        if not self.keyed:
+            return NEVER
         if any(one.sees_all and one.open for one in self.keyed.values()):
             return -NEVER
-        found = min((one.template.alarm for one in self.keyed.values()), default=NEVER)
+        found = min(one.template.alarm for one in self.keyed.values())
         return min(found, self._alarms[0][0]) if self._alarms else found
 
     def through(self, limit: int) -> None:

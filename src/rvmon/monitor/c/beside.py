@@ -128,6 +128,8 @@ class LendingMonitor(GeneratedMonitor):
         self._is_lent = False
         self._shown = -LIMIT
         """The last instant of which the evaluators know all that C does."""
+        self._looks_at = -LIMIT
+        """Before that, nothing happens in them without a sample."""
         self._wait, self._patience = 1, _FEW
         super()._begin()
 
@@ -207,16 +209,20 @@ class LendingMonitor(GeneratedMonitor):
     def _set_look(self) -> None:
         """Have C take no sample alone once something happens in the evaluators."""
         if self._is_mixed:
-            self._core.look_at(max(-LIMIT, min(self._unit_evaluators.alarm, LIMIT)))
+            self._looks_at = max(-LIMIT, min(self._unit_evaluators.alarm, LIMIT))
+            self._core.look_at(self._looks_at)
 
     def _admit(self, t: int, values: Mapping[str, Value]) -> None:
         """Lead the evaluators to a sample, before C takes it: they may refuse it."""
         if self._is_mixed:
-            self._show_last()
+            evaluators = self._unit_evaluators
+            if evaluators.instances.keyed:
+                self._show_last()  # new ones begin where that left off
             self._shown = t
-            self._unit_evaluators.through(t - 1)
+            if t > self._looks_at:
+                evaluators.through(t - 1)
             try:
-                self._unit_evaluators.instances.admit(t, values)
+                evaluators.instances.admit(t, values)
             except TraceError:
                 self._pass_to(t)
                 raise
@@ -263,6 +269,8 @@ class LendingMonitor(GeneratedMonitor):
     def _merged(self, decided: Sequence[Attempt]) -> Sequence[Attempt]:
         """What C has decided, and put into the ledger, with what the evaluators have."""
         ledger, ranks = self._ledger, self._ranks
+        if not decided:
+            return ledger.flush()
         del ledger.attempts[len(ledger.attempts) - len(decided) :]
         ledger.recorded += [
             (one.decided or 0, ranks[one.requirement], one.number, one) for one in decided
