@@ -152,27 +152,20 @@ class Run:
             self.found.append(_apart(wanted, got))
 
     def see_next_due(self) -> None:
-        """Both name the same next instant; that of a network may come in vain, but not too late.
+        """Neither names an instant behind the next decision by time alone.
 
-        So may that of what generated Python judges only where C judges nothing.
-
-        What Python names may come in vain, too: then nothing is decided before the other.
+        That of a network may come in vain, and so may that of requirements that generated Python
+        judges only where C judges nothing; else C's comes no sooner than Python's.
         """
-        plan = self.pair.forms.plan
+        pair, plan = self.pair, self.pair.forms.plan
         has_network = any(rule.automaton is None for rule in plan.rules)
-        is_left = plan is not self.pair.shared.plan and len(plan.rules) > len(
-            self.pair.shared.plan.rules
-        )
-        if not (has_network or is_left) and plan.gap in (None, 1):
-            self.both(lambda m: m.next_due)
-            return
+        is_exact = not has_network and not _left(pair) and plan.gap in (None, 1)
         wanted, got = _next_decision(self.plain), self.lending.next_due
-        if (
-            wanted is not None
-            and (got is None or got > wanted)
-            and self._decides_by(wanted if got is None else got - 1)
-        ):
-            self.found.append(f"next due: {got} is later than {wanted}")
+        if wanted is not None and (got is None or got > wanted):
+            if self._decides_by(wanted if got is None else got - 1):
+                self.found.append(f"next due: {got} is later than {wanted}")
+        elif is_exact and got != self.plain.next_due:
+            self.found.append(f"next due: {got} is sooner than {self.plain.next_due}")
 
     def _decides_by(self, t: int) -> bool:
         """Whether time alone decides something up to an instant."""
@@ -193,18 +186,18 @@ class Run:
 
     def _restored(self, data: bytes, *, lends: bool = True) -> Monitor:
         """What goes on from a snapshot, judged as it was."""
-        left = document_of(self.pair.compiled, data)["left"]
-        is_shared = bool(left)
-        can_lend = lends and sorted(left) == sorted(
-            one.requirement.id for one in self.pair.shared.others if one.is_fed
-        )
-        made = (
-            self.pair.lending(self.keep)
-            if can_lend
-            else self.pair.plain(self.keep, shared=is_shared)
-        )
+        left = sorted(document_of(self.pair.compiled, data)["left"])
+        if lends and left == _left(self.pair):
+            made: Monitor = self.pair.lending(self.keep)
+        else:
+            made = self.pair.plain(self.keep, shared=bool(left))
         _put_back(self.pair.compiled, made, data)
         return made
+
+
+def _left(pair: Pair) -> list[str]:
+    """What generated Python judges only where C judges nothing."""
+    return sorted(one.requirement.id for one in pair.shared.others if one.is_fed)
 
 
 def _apart(wanted: object, got: object) -> str:
