@@ -67,7 +67,7 @@ def main(argv: list[str]) -> int:
         if pair is None:
             refused += 1
             continue
-        in_part += bool(pair.shared.others)
+        in_part += not pair.shared.are_all
         by_network += any(rule.automaton is None for rule in pair.forms.plan.rules)
         for index, case in enumerate(cases):
             told, taken = differences(pair, case, f"{seed}/{index}")

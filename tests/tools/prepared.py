@@ -197,7 +197,8 @@ class Run:
 
 def _left(pair: Pair) -> list[str]:
     """What generated Python judges only where C judges nothing."""
-    return sorted(one.requirement.id for one in pair.shared.others if one.is_fed)
+    left = pair.shared.left
+    return [] if left is None else sorted(one.requirement.id for one in left.requirements)
 
 
 def _apart(wanted: object, got: object) -> str:

@@ -76,7 +76,8 @@ def beside(forms: Forms, library: OnlineLibrary) -> Beside:
     """
     details = [NotedReasons(one, forms.plan, Ledger()).details for one in forms.requirements]
     plan = forms.plan
-    looked_at = names_looked_at(plan.spec, forms.others)
+    left = () if forms.left is None else forms.left.requirements
+    looked_at = names_looked_at(plan.spec, [*forms.others, *left])
     concerns = [
         (ALWAYS if looked_at[name] else BY_CHANGE) if name in looked_at else NOBODY
         for name in (*plan.signals, *plan.events)
@@ -110,7 +111,7 @@ class LendingMonitor(GeneratedMonitor):
         names = {*compiled.checked.signals, *compiled.checked.events}
         self._exchange = own.exchange
         self._concerns = own.concerns
-        self._is_mixed = bool(forms.others)
+        self._is_mixed = not forms.are_all
         self._ranks = {one.requirement.id: one.rank for one in requirements}
         self._core = own.library.core(
             frozenset() if sources is None else frozenset(names - sources),

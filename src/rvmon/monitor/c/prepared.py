@@ -34,7 +34,7 @@ class Prepared:
 
     Attributes:
         library: compiled, of the requirements that it judges.
-        left: ids of those that generated Python could judge, and evaluators do instead.
+        left: ids of those that generated Python judges.
     """
 
     library: OnlineLibrary

@@ -60,8 +60,9 @@ def generated_or_tables(
 
             how_prepared = (asked.sources, asked.keep)
             monitor = lending_monitor(prepared, forms, compiled, chosen, *how_prepared)
-            by_python = {one.engine("auto") for one in forms.others}
-            monitor.judged_by = ", ".join(["c", *sorted(by_python)])
+            apart = () if forms.left is None else forms.left.requirements
+            others = judged_by([*apart, *forms.others])
+            monitor.judged_by = f"c, {others}" if others else "c"
             return monitor
         monitor = GeneratedMonitor(forms, compiled, chosen, engine, *how)
     monitor.judged_by = judged_by(chosen)

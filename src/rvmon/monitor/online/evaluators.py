@@ -30,7 +30,6 @@ class Evaluators(EvaluatorMaker):
         instances: the evaluators of those with it, an instance each.
         forgets: whether instances are let go of that are over.
         alone: whether they judge all requirements of a run.
-        left: ids of those that they judge though generated code could, beside some.
     """
 
     STATE: tuple[str, ...] = ("_history", "all")
@@ -47,7 +46,6 @@ class Evaluators(EvaluatorMaker):
         ledger: Ledger,
     ) -> None:
         super().__init__(spec, requirements, engine, sources, ledger)
-        self.left: Sequence[str] = ()
         self.gap = spec.gap
         self.instances = Instances(forgets=self.forgets, is_held=self._has_captured)
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
@@ -77,6 +75,11 @@ class Evaluators(EvaluatorMaker):
     def all(self) -> Sequence[Evaluator]:
         """The evaluators there are now."""
         return [evaluator for evaluator, _ in self._entries]
+
+    @property
+    def left_requirements(self) -> Sequence[CompiledRequirement]:
+        """Those that have generated code of their own beside the rest."""
+        return ()
 
     @property
     def alarm(self) -> int:

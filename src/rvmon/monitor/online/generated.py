@@ -41,10 +41,11 @@ class Forms:
 
     Attributes:
         requirements: those that generated code judges, or feeds a judge of.
-        others: those that it can do nothing for, or that it is not to judge.
+        others: those that it can do nothing for.
         plan: of `requirements`.
         unit: the generated class.
         machines: per requirement, what judges its attempts; `None`: a judge.
+        left: the same of those that this code is not to judge, as compiled code takes its place.
     """
 
     requirements: Sequence[CompiledRequirement]
@@ -52,6 +53,12 @@ class Forms:
     plan: Plan
     unit: type[Unit]
     machines: Sequence[Machine | None]
+    left: Forms | None = None
+
+    @property
+    def are_all(self) -> bool:
+        """Whether the generated code judges all."""
+        return not self.others and self.left is None
 
 
 def forms_of(
@@ -71,9 +78,10 @@ def forms_of(
         sources: the names that can arrive; `None`: all.
         rule: see `rvmon.codegen.python_unit.unit_class`.
         measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
-        left: ids of those that evaluators are to judge, though generated code could.
+        left: ids of those that are to have code of their own, where they have any.
     """
-    fed = [one for one in requirements if one.is_fed and one.requirement.id not in left]
+    apart = [one for one in requirements if one.is_fed and one.requirement.id in left]
+    fed = [one for one in requirements if one.is_fed and one not in apart]
     plan = plan_requirements(compiled, fed, measured=measured, stepped=rule is not None)
     machines = [
         None if rule.automaton is None else one.machine("automaton")
@@ -81,8 +89,10 @@ def forms_of(
     ]
     # What judges attempts in doubt is made when one comes up.
     machines += [None for _ in plan.hidden_of]
-    others = [one for one in requirements if one not in fed]
-    return Forms(fed, others, plan, unit_class(plan, sources, Unit, rule), machines)
+    others = [one for one in requirements if not one.is_fed]
+    unit = unit_class(plan, sources, Unit, rule)
+    rest = forms_of(compiled, apart, sources) if apart else None
+    return Forms(fed, others, plan, unit, machines, rest)
 
 
 class GeneratedEvaluators(Evaluators):
@@ -90,9 +100,10 @@ class GeneratedEvaluators(Evaluators):
 
     Attributes:
         lent: whether compiled code has the state of what is generated: only the others are led.
+        left: the evaluators of what has generated code of its own; `None`: nothing has.
     """
 
-    STATE = ("outages", "unit", "counts", *Evaluators.STATE)
+    STATE = ("outages", "unit", "counts", "left", *Evaluators.STATE)
 
     alone = False
 
@@ -111,7 +122,13 @@ class GeneratedEvaluators(Evaluators):
         self.flush: Flush = self._flush
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
-        self.left = [one.requirement.id for one in forms.others if one.is_fed]
+        self.left = None
+        if forms.left is not None:
+            made = forms.left.unit(forms.left.machines, unit.absent)
+            self.left = GeneratedEvaluators(
+                forms.left, made, compiled, engine, sources, ledger, other
+            )
+        self.forms = forms
         self.unit = unit
         self.outages = Outages(spec, sources)
         self.counts = [0] * len(forms.requirements)
@@ -161,13 +178,31 @@ class GeneratedEvaluators(Evaluators):
     def arrivals(self) -> Arrivals:
         """See `Evaluators`; what the others read they have seen, be the rest lent or not."""
         own, others = arrivals_of(self.unit), arrivals_of(self.main)
-        kept = {name: found for name, found in own.expired.items() if name not in others.first}
-        return Arrivals(own.absent, {**own.first, **others.first}, {**kept, **others.expired})
+        first, expired = {**own.first, **others.first}, {**own.expired, **others.expired}
+        if self.left is not None:
+            read = {name for one in self.left.forms.requirements for name in one.reads}
+            theirs = self.left.arrivals
+            first |= {name: at for name, at in theirs.first.items() if name in read}
+            expired |= {name: found for name, found in theirs.expired.items() if name in read}
+        return Arrivals(own.absent, first, expired)
+
+    @property
+    def left_requirements(self) -> Sequence[CompiledRequirement]:
+        """See `Evaluators`."""
+        return () if self.left is None else self.left.forms.requirements
+
+    @property
+    def alarm(self) -> int:
+        """See `Evaluators`; of all that is not lent."""
+        found = super().alarm if self.left is None else min(super().alarm, self.left.alarm)
+        return found if self.lent else min(found, self.unit.wake)
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
         """The judges of all evaluators."""
-        return [*(self._judge_now(rule) for rule in self.unit.rules), *super().judges]
+        own = [self._judge_now(rule) for rule in self.unit.rules]
+        left = () if self.left is None else self.left.judges
+        return [*own, *left, *super().judges]
 
     def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
         """See `Evaluators`."""
@@ -177,7 +212,8 @@ class GeneratedEvaluators(Evaluators):
             else (self._clerks[rule.index].id, rule, rule.running_attempt)
             for rule in self.unit.rules
         ]
-        return [*own, *super().holders()]
+        left = () if self.left is None else self.left.holders()
+        return [*own, *left, *super().holders()]
 
     def _judge_now(self, rule: Rule) -> AttemptJudge:
         """A rule that knows its requirement, or how one would stand in its place."""
@@ -206,27 +242,38 @@ class GeneratedEvaluators(Evaluators):
         for rule in self.unit.rules:
             if rule.slides:
                 rule.pass_to(t)
+        if self.left is not None:
+            self.left.take_along(t)
         super().take_along(t)
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`."""
         if not self.lent:
             self.unit.through(limit)
-        super().through(limit)
+        if self.left is not None:
+            self.left.through(limit)
+        if self.forms.others:
+            super().through(limit)
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, from the instant before."""
         if not self.lent and t >= self.unit.wake:
             self.unit.reach(t)
             self.unit.set_alarm()
-        super().reach(t)
+        if self.left is not None:
+            self.left.reach(t)
+        if self.forms.others:
+            super().reach(t)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a valid sample; time has come to `t − 1` before."""
         if not self.lent:
             self.unit.take(t, values)
             self.unit.after = _HELD  # the call goes on
-        super().sample(t, values)
+        if self.left is not None:
+            self.left.sample(t, values)
+        if self.forms.others:
+            super().sample(t, values)
 
     def finish(self, end: int, reached: int) -> None:
         """Settle what is undecided; time has come to `end` before."""
@@ -238,6 +285,8 @@ class GeneratedEvaluators(Evaluators):
             for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts, rule.runs = [], {}
+        if self.left is not None:
+            self.left.finish(end, reached)
         super().finish(end, reached)
 
     def undetermined(self) -> list[str]:
@@ -247,7 +296,8 @@ class GeneratedEvaluators(Evaluators):
             for index, one in enumerate(self._clerks)
             if not self.unit.is_determined(index)
         ]
-        return [*own, *super().undetermined()]
+        left = () if self.left is None else self.left.undetermined()
+        return [*own, *left, *super().undetermined()]
 
 
 class GeneratedMonitor(Monitor):
@@ -274,7 +324,7 @@ class GeneratedMonitor(Monitor):
         self._forms = forms
         self._unit = forms.unit(forms.machines, absent)
         super().__init__(compiled, requirements, engine, settle, sources, keep)
-        self._by_unit = not forms.others and self._intake is None
+        self._by_unit = forms.are_all and self._intake is None
         """Whether the unit alone takes samples as they come."""
         # Generated code looks and closes in one go only where one thread has a turn at a time.
         if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
@@ -348,7 +398,9 @@ class GeneratedMonitor(Monitor):
         return data
 
     def _next_due(self) -> int | None:
-        own = min(self._unit.next_position(), self._unit.next_due())
+        left = self._unit_evaluators.left
+        units = [self._unit] if left is None else [self._unit, left.unit]
+        own = min(min(unit.next_position(), unit.next_due()) for unit in units)
         others = super()._next_due()
         found = own if others is None else min(own, others)
         if found >= NEVER or self._reached is None or self._report is not None:
