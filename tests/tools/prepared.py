@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -17,19 +17,15 @@ from rvmon.monitor.c.beside import Beside, LendingMonitor, beside, plan_beside
 from rvmon.monitor.c.prepared import taken_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
-from rvmon.monitor.online.generated import (
-    Forms,
-    GeneratedEvaluators,
-    GeneratedMonitor,
-    forms_of,
-)
+from rvmon.monitor.online.forms import Forms, forms_of
+from rvmon.monitor.online.generated import GeneratedEvaluators, GeneratedMonitor
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.online.snapshot import document_of, put_back
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.show import show_case
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt
 
 
@@ -49,13 +45,15 @@ class Pair:
     shared: Forms
     own: Beside
 
-    def lending(self, keep: int | None) -> LendingMonitor:
+    def lending(self, keep: int | None) -> _Counted:
         """What has C beside it; it lends whenever it can."""
         return _Counted(*(self.own, self.shared, *self._how), None, keep)
 
     def plain(self, keep: int | None, *, shared: bool = False) -> Monitor:
         """Python alone; `shared`: as one that goes on where C has judged."""
-        return GeneratedMonitor(self.shared if shared else self.forms, *self._how, "now", None, keep)
+        return GeneratedMonitor(
+            self.shared if shared else self.forms, *self._how, "now", None, keep
+        )
 
     @property
     def _how(self) -> tuple[CompiledSpec, Sequence[CompiledRequirement], str]:
@@ -82,10 +80,22 @@ class _Counted(LendingMonitor):
     """Lends whenever it can, and counts what C has taken."""
 
     taken = 0
+    shared = 0
+
+    @property
+    def alone(self) -> int:
+        """How many samples C has taken alone."""
+        return self.taken + self._taken_now() - self.shared
+
+    def _taken_now(self) -> int:
+        return int.from_bytes(self._core.take_back()[:8], "little") if self._is_lent else 0
+
+    def _judge(self, t: int, values: Mapping[str, Value]) -> None:
+        super()._judge(t, values)
+        self.shared += self._is_lent
 
     def _have_back(self) -> None:
-        if self._is_lent:
-            self.taken += int.from_bytes(self._core.take_back()[:8], "little")
+        self.taken += self._taken_now()
         super()._have_back()
 
 
@@ -125,8 +135,7 @@ def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
         run.both(lambda m: _report(m, case.end))
     finally:
         beside_module._FEW, beside_module._MANY = waits
-    taken = run.lending.taken if isinstance(run.lending, _Counted) else 0
-    return ([*run.found, show_case(case)] if run.found else []), taken
+    return ([*run.found, show_case(case)] if run.found else []), run.lending.taken
 
 
 class Run:
@@ -135,7 +144,7 @@ class Run:
     def __init__(self, pair: Pair, keep: int | None, listens: bool) -> None:
         self.pair, self.keep = pair, keep
         self.plain: Monitor = pair.plain(keep)
-        self.lending: Monitor = pair.lending(keep)
+        self.lending = pair.lending(keep)
         self.found: list[str] = []
         self.heard: tuple[list[str], list[str]] = ([], [])
         if listens:
@@ -170,27 +179,25 @@ class Run:
     def _decides_by(self, t: int) -> bool:
         """Whether time alone decides something up to an instant."""
         self.lending.snapshot()  # which drops what is too much
-        again = self._restored(self.plain.snapshot(), lends=False)
-        return bool(again.advance_ns(t))
+        return bool(self._plain_from(self.plain.snapshot()).advance_ns(t))
 
     def put_away(self, *, across: bool) -> None:
-        """Put both away, and take them up again, perhaps each as the other was."""
-        kept = (self.plain.snapshot(), self.lending.snapshot())
-        own, other = reversed(kept) if across else kept
-        before = self.lending
-        taken = before.taken if isinstance(before, _Counted) else 0
-        self.plain, self.lending = self._restored(own, lends=False), self._restored(other)
-        if isinstance(self.lending, _Counted):
-            self.lending.taken = taken
+        """Put both away, and take them up again, perhaps each as the other was.
 
+        C does not go on where generated Python judged together what C leaves to Python.
+        """
+        plain, lending = self.plain.snapshot(), self.lending.snapshot()
+        goes_on = document_of(self.pair.compiled, plain)["left"] == _left(self.pair)
+        taken = self.lending.taken
+        self.plain = self._plain_from(lending if across else plain)
+        self.lending = self.pair.lending(self.keep)
+        _put_back(self.pair.compiled, self.lending, plain if across and goes_on else lending)
+        self.lending.taken = taken
 
-    def _restored(self, data: bytes, *, lends: bool = True) -> Monitor:
-        """What goes on from a snapshot, judged as it was."""
-        left = sorted(document_of(self.pair.compiled, data)["left"])
-        if lends and left == _left(self.pair):
-            made: Monitor = self.pair.lending(self.keep)
-        else:
-            made = self.pair.plain(self.keep, shared=bool(left))
+    def _plain_from(self, data: bytes) -> Monitor:
+        """Python alone that goes on from a snapshot, judging as was judged."""
+        shared = bool(document_of(self.pair.compiled, data)["left"])
+        made = self.pair.plain(self.keep, shared=shared)
         _put_back(self.pair.compiled, made, data)
         return made
 

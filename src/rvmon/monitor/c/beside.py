@@ -22,7 +22,8 @@ from rvmon.monitor.c.exchange import Exchange
 from rvmon.monitor.c.noted_reasons import NotedReasons
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.generated import Forms, GeneratedMonitor
+from rvmon.monitor.online.forms import Forms
+from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.plan import Plan
@@ -200,7 +201,7 @@ class LendingMonitor(GeneratedMonitor):
     # What C does not judge.
 
     def _show_last(self) -> None:
-        """Lead the evaluators to the last sample that C took alone: nothing is new to them in it."""
+        """Lead the evaluators to the last sample that C took alone; they learn nothing else."""
         last = self._last
         if self._is_mixed and last is not None and last > self._shown:
             self._unit_evaluators.through(last - 1)

@@ -18,7 +18,7 @@ from rvmon.monitor.compiled.code_plan import plan_alone, plan_requirements
 from rvmon.monitor.compiled.refusal import of_prepared, of_prepared_margins
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.generated import Forms
+from rvmon.monitor.online.forms import Forms
 from rvmon.monitor.online.snapshot import digest_of
 from rvmon.plan.plan import Plan
 
@@ -118,7 +118,9 @@ def prepared_beside(
     if not isinstance(own, Prepared):
         return None
     taken = (rule.requirement.id for rule in own.library.plan.rules)
-    if sources is not None and not all(compiled.requirements[id_].reads <= sources for id_ in taken):
+    if sources is not None and not all(
+        compiled.requirements[id_].reads <= sources for id_ in taken
+    ):
         return None
     return own
 

@@ -10,7 +10,8 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.choice import judged_by
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import judge_rows
-from rvmon.monitor.online.generated import Forms, GeneratedMonitor, forms_of
+from rvmon.monitor.online.forms import Forms, forms_of
+from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report

@@ -50,9 +50,7 @@ class Evaluators(EvaluatorMaker):
         self.instances = Instances(forgets=self.forgets, is_held=self._has_captured)
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
         self._shared = [one for one in requirements if one.requirement.for_each is None]
-        self.main = class_of_all(spec, requirements, alone=self.alone)(
-            Outages(spec, sources), {}
-        )
+        self.main = class_of_all(spec, requirements, alone=self.alone)(Outages(spec, sources), {})
         self._drive(self.main, self._shared, {}, None)
         self._captured: list[tuple[Evaluator, Instance | None]] = []
         for compiled in requirements:

@@ -19,7 +19,8 @@ from rvmon.monitor.compiled.refusal import MOST_GENERATED
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.evaluator_maker import Captured
-from rvmon.monitor.online.generated import Forms, GeneratedEvaluators, forms_of
+from rvmon.monitor.online.forms import Forms, forms_of
+from rvmon.monitor.online.generated import GeneratedEvaluators
 from rvmon.monitor.online.unit_clerks import UnitClerk, UnitStanding
 from rvmon.monitor.robustness.gauged import Gauged
 from rvmon.monitor.robustness.margin_judge import MarginJudge
