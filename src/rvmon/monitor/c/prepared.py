@@ -29,7 +29,7 @@ _PACKAGE = Path(__file__).parents[2]
 
 
 @dataclass(frozen=True, slots=True)
-class Prepared:
+class PreparedBeside:
     """What was compiled ahead to stand beside generated Python.
 
     Attributes:
@@ -100,7 +100,7 @@ def prepared_beside(
     compiled: CompiledSpec,
     chosen: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
-) -> Prepared | None:
+) -> PreparedBeside | None:
     """What was compiled ahead for the engine `auto` in streams; `None`: nothing was.
 
     Args:
@@ -115,7 +115,7 @@ def prepared_beside(
         found = _type(_BESIDE, compiled, chosen)
         compiled.forms[key] = found and _prepared(compiled, chosen, *found)
     own = compiled.forms[key]
-    if not isinstance(own, Prepared):
+    if not isinstance(own, PreparedBeside):
         return None
     taken = (rule.requirement.id for rule in own.library.plan.rules)
     if sources is not None and not all(
@@ -130,15 +130,15 @@ def _prepared(
     chosen: Sequence[CompiledRequirement],
     type_: Callable[..., Core],
     ids: Sequence[str],
-) -> Prepared:
+) -> PreparedBeside:
     taken = [one for one in chosen if one.requirement.id in ids]
     plan = plan_beside(plan_requirements(compiled, taken))
     left = frozenset(one.requirement.id for one in chosen if one.is_fed) - {*ids}
-    return Prepared(library_of(plan, type_), left)
+    return PreparedBeside(library_of(plan, type_), left)
 
 
 def lending_monitor(
-    prepared: Prepared,
+    prepared: PreparedBeside,
     forms: Forms,
     compiled: CompiledSpec,
     chosen: Sequence[CompiledRequirement],

@@ -59,8 +59,7 @@ def generated_or_tables(
         if prepared is not None and prepared.left == left:
             from rvmon.monitor.c.prepared import lending_monitor
 
-            how_prepared = (asked.sources, asked.keep)
-            monitor = lending_monitor(prepared, forms, compiled, chosen, *how_prepared)
+            monitor = lending_monitor(prepared, forms, compiled, chosen, asked.sources, asked.keep)
             apart = () if forms.left is None else forms.left.requirements
             others = judged_by([*apart, *forms.others])
             monitor.judged_by = f"c, {others}" if others else "c"
