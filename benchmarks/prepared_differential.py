@@ -43,15 +43,20 @@ def main(argv: list[str]) -> int:
     parser.add_argument(
         "--windows", type=int, default=30, help="per cent that are windows within windows"
     )
+    parser.add_argument(
+        "--mixed", type=int, default=50, help="per cent of the others that C may take in part only"
+    )
     parser.add_argument("--show", type=int, default=3, help="differences printed at most")
     options = parser.parse_args(argv)
     began = time.perf_counter()
-    judged = refused = by_network = samples = by_c = found = number = 0
+    judged = refused = in_part = by_network = samples = by_c = found = number = 0
     while judged < options.pairs:
         number += 1
         seed = f"{options.seed}/{number}"
         rng = random.Random(seed)
-        profile = Profile(time=MODELS[number % len(MODELS)], captures=False, for_each=False)
+        mixed = rng.random() * 100 < options.mixed
+        several = {"requirements": 5 if mixed else 2, "captures": mixed, "for_each": mixed}
+        profile = Profile(time=MODELS[number % len(MODELS)], **several)
         unknowns = rng.random() < 0.25
         size = 300 if rng.random() < 0.2 else 60
         traces = TraceProfile(size, span=4 * size, unknowns=unknowns, long=20)
@@ -62,6 +67,7 @@ def main(argv: list[str]) -> int:
         if pair is None:
             refused += 1
             continue
+        in_part += not pair.shared.are_all
         by_network += any(rule.automaton is None for rule in pair.forms.plan.rules)
         for index, case in enumerate(cases):
             told, taken = differences(pair, case, f"{seed}/{index}")
@@ -74,6 +80,7 @@ def main(argv: list[str]) -> int:
                     print(f"\n{'=' * 72}\nseed {seed}, trace {index}\n" + "\n".join(told[:8]))
     seconds = time.perf_counter() - began
     print(f"pairs {judged}, specifications refused {refused}, in {seconds:.0f} s")
+    print(f"specifications that C takes in part {in_part}")
     print(f"specifications with what no automaton judges {by_network}")
     print(f"samples {samples}, of them by C {by_c}; pairs that differ {found}")
     return 1 if found else 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -14,54 +14,88 @@ from rvmon.errors import RvmonError
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.c import beside as beside_module
 from rvmon.monitor.c.beside import Beside, LendingMonitor, beside, plan_beside
-from rvmon.monitor.c.prepared import is_taken
+from rvmon.monitor.c.prepared import taken_of
+from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
-from rvmon.monitor.online.generated import (
-    Forms,
-    GeneratedEvaluators,
-    GeneratedMonitor,
-    forms_of,
-)
+from rvmon.monitor.online.forms import Forms, forms_of
+from rvmon.monitor.online.generated import GeneratedEvaluators, GeneratedMonitor
 from rvmon.monitor.online.monitor import Monitor
+from rvmon.monitor.online.snapshot import document_of, put_back
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.show import show_case
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A specification in generated Python, and what is compiled to stand beside it."""
+    """A specification in generated Python, and what is compiled to stand beside it.
+
+    Attributes:
+        compiled: the specification.
+        forms: of Python alone.
+        shared: of what C takes, and what it does not.
+        own: what is compiled.
+    """
 
     compiled: CompiledSpec
     forms: Forms
+    shared: Forms
     own: Beside
+
+    def lending(self, keep: int | None) -> _Counted:
+        """What has C beside it; it lends whenever it can."""
+        return _Counted(*(self.own, self.shared, *self._how), None, keep)
+
+    def plain(self, keep: int | None, *, shared: bool = False) -> Monitor:
+        """Python alone; `shared`: as one that goes on where C has judged."""
+        return GeneratedMonitor(
+            self.shared if shared else self.forms, *self._how, "now", None, keep
+        )
+
+    @property
+    def _how(self) -> tuple[CompiledSpec, Sequence[CompiledRequirement], str]:
+        return self.compiled, self.compiled.chosen(None), "auto"
 
 
 def compiled_beside(spec: CheckedSpec) -> Pair | None:
     """Compile a specification; `None` if `auto` takes nothing that is compiled for it."""
     compiled = compile_spec(replace(spec, max_delay=None))
     chosen = compiled.chosen(None)
-    if not is_taken(chosen):
+    taken = {one.requirement.id for one in taken_of(chosen)}
+    if not taken:
         return None
-    forms = forms_of(compiled, chosen, None)
+    left = compiled.requirements.keys() - taken
+    forms, shared = (forms_of(compiled, chosen, None, left=names) for names in ((), left))
     try:
-        library = online_library(plan_beside(forms.plan), optimised=False, beside=True)
+        library = online_library(plan_beside(shared.plan), optimised=False, beside=True)
     except RvmonError:
         return None
-    return Pair(compiled, forms, beside(forms, library))
+    return Pair(compiled, forms, shared, beside(shared, library))
 
 
 class _Counted(LendingMonitor):
     """Lends whenever it can, and counts what C has taken."""
 
     taken = 0
+    shared = 0
+
+    @property
+    def alone(self) -> int:
+        """How many samples C has taken alone."""
+        return self.taken + self._taken_now() - self.shared
+
+    def _taken_now(self) -> int:
+        return int.from_bytes(self._core.take_back()[:8], "little") if self._is_lent else 0
+
+    def _judge(self, t: int, values: Mapping[str, Value]) -> None:
+        super()._judge(t, values)
+        self.shared += self._is_lent
 
     def _have_back(self) -> None:
-        if self._is_lent:
-            self.taken += int.from_bytes(self._core.take_back()[:8], "little")
+        self.taken += self._taken_now()
         super()._have_back()
 
 
@@ -101,19 +135,16 @@ def differences(pair: Pair, case: Case, seed: str) -> tuple[list[str], int]:
         run.both(lambda m: _report(m, case.end))
     finally:
         beside_module._FEW, beside_module._MANY = waits
-    taken = run.lending.taken if isinstance(run.lending, _Counted) else 0
-    return ([*run.found, show_case(case)] if run.found else []), taken
+    return ([*run.found, show_case(case)] if run.found else []), run.lending.taken
 
 
 class Run:
     """Two monitors of a pair, which are told and asked the same."""
 
     def __init__(self, pair: Pair, keep: int | None, listens: bool) -> None:
-        compiled, forms = pair.compiled, pair.forms
-        chosen = compiled.chosen(None)
         self.pair, self.keep = pair, keep
-        self.plain: Monitor = GeneratedMonitor(forms, compiled, chosen, "auto", "now", None, keep)
-        self.lending: Monitor = _Counted(pair.own, forms, compiled, chosen, "auto", None, keep)
+        self.plain: Monitor = pair.plain(keep)
+        self.lending = pair.lending(keep)
         self.found: list[str] = []
         self.heard: tuple[list[str], list[str]] = ([], [])
         if listens:
@@ -130,41 +161,51 @@ class Run:
             self.found.append(_apart(wanted, got))
 
     def see_next_due(self) -> None:
-        """Both name the same next instant; that of a network may come in vain, but not too late.
+        """Neither names an instant behind the next decision by time alone.
 
-        What Python names may come in vain, too: then nothing is decided before the other.
+        That of a network may come in vain, and so may that of requirements that generated Python
+        judges only where C judges nothing; else C's comes no sooner than Python's.
         """
-        plan = self.pair.forms.plan
+        pair, plan = self.pair, self.pair.forms.plan
         has_network = any(rule.automaton is None for rule in plan.rules)
-        if not has_network and plan.gap in (None, 1):
-            self.both(lambda m: m.next_due)
-            return
+        is_exact = not has_network and not _left(pair) and plan.gap in (None, 1)
         wanted, got = _next_decision(self.plain), self.lending.next_due
-        if (
-            wanted is not None
-            and (got is None or got > wanted)
-            and self._decides_by(wanted if got is None else got - 1)
-        ):
-            self.found.append(f"next due: {got} is later than {wanted}")
+        if wanted is not None and (got is None or got > wanted):
+            if self._decides_by(wanted if got is None else got - 1):
+                self.found.append(f"next due: {got} is later than {wanted}")
+        elif is_exact and got != self.plain.next_due:
+            self.found.append(f"next due: {got} is sooner than {self.plain.next_due}")
 
     def _decides_by(self, t: int) -> bool:
         """Whether time alone decides something up to an instant."""
-        run = Run(self.pair, self.keep, False)
-        _put_back(self.pair.compiled, run.plain, self.plain.snapshot())
-        return bool(run.plain.advance_ns(t))
+        self.lending.snapshot()  # which drops what is too much
+        return bool(self._plain_from(self.plain.snapshot()).advance_ns(t))
 
     def put_away(self, *, across: bool) -> None:
-        """Put both away, and take them up again, perhaps each as the other was."""
-        kept = (self.plain.snapshot(), self.lending.snapshot())
-        own, other = reversed(kept) if across else kept
-        before = self.lending
-        taken = before.taken if isinstance(before, _Counted) else 0
-        run = Run(self.pair, self.keep, False)
-        for monitor, data in ((run.plain, own), (run.lending, other)):
-            _put_back(self.pair.compiled, monitor, data)
-        self.plain, self.lending = run.plain, run.lending
-        if isinstance(self.lending, _Counted):
-            self.lending.taken = taken
+        """Put both away, and take them up again, perhaps each as the other was.
+
+        C does not go on where generated Python judged together what C leaves to Python.
+        """
+        plain, lending = self.plain.snapshot(), self.lending.snapshot()
+        goes_on = document_of(self.pair.compiled, plain)["left"] == _left(self.pair)
+        taken = self.lending.taken
+        self.plain = self._plain_from(lending if across else plain)
+        self.lending = self.pair.lending(self.keep)
+        _put_back(self.pair.compiled, self.lending, plain if across and goes_on else lending)
+        self.lending.taken = taken
+
+    def _plain_from(self, data: bytes) -> Monitor:
+        """Python alone that goes on from a snapshot, judging as was judged."""
+        shared = bool(document_of(self.pair.compiled, data)["left"])
+        made = self.pair.plain(self.keep, shared=shared)
+        _put_back(self.pair.compiled, made, data)
+        return made
+
+
+def _left(pair: Pair) -> list[str]:
+    """What generated Python judges only where C judges nothing."""
+    left = pair.shared.left
+    return [] if left is None else sorted(one.requirement.id for one in left.requirements)
 
 
 def _apart(wanted: object, got: object) -> str:
@@ -176,8 +217,6 @@ def _apart(wanted: object, got: object) -> str:
 
 
 def _put_back(compiled: CompiledSpec, monitor: Monitor, data: bytes) -> None:
-    from rvmon.monitor.online.snapshot import document_of, put_back
-
     put_back(document_of(compiled, data), monitor.options, monitor.evaluators, monitor)
 
 
@@ -194,6 +233,7 @@ def _next_decision(monitor: Monitor) -> int | None:
         if is_network:
             rule._look(rule.now)  # samples like the last one were but noted
         found.append(rule.next_due if is_network else unit.due_at[rule.index])
+    found += [one.next_decision for one in evaluators.all]
     soonest = min(found)
     return max(soonest, due) if soonest < NEVER else None
 
@@ -234,7 +274,7 @@ def _report(monitor: Monitor, end: int | None) -> Any:
         if one.name not in ("attempts", "engine", "dropped")
     }
     dropped = [(name, sorted(counts.items())) for name, counts in report.dropped.items()]
-    return attempts, others, dropped
+    return attempts, others, sorted(dropped)
 
 
 def _answer(monitor: Monitor, ask: Callable[[Monitor], Any]) -> Any:

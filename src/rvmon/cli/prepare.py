@@ -54,10 +54,12 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     rows = [(one.use, f"{one.seconds:.1f} s", _size(one.size), str(one.path)) for one in found]
     say(plain_table([("for", "took", "size", "file"), *rows]).rstrip())
-    if found[0].use != USES[0]:
-        say("auto judges streams in Python: it takes all requirements or none, and not")
-        for name, choice in spec.engines(only=ids).items():
-            if refusal := choice.refused.get("prepared"):
+    refused = {name: one.refused.get("prepared") for name, one in spec.engines(only=ids).items()}
+    if any(refused.values()):
+        count_taken = sum(one is None for one in refused.values())
+        say(f"auto judges {count_taken} of {len(refused)} requirements in C; in Python:")
+        for name, refusal in refused.items():
+            if refusal:
                 say(f"  {name}: {refusal.reason}")
     return 0
 

@@ -63,6 +63,9 @@ NOT_YET = -1 << 63
 """The instant of what did not happen."""
 
 
+NOBODY, BY_CHANGE, ALWAYS = range(3)
+"""Whom it concerns what a sample says of a name; see `Core.lend`."""
+
 _SLOTS = (
     *("requirement", "number", "triggered", "decided", "verdict", "decision"),
     *("in_doubt", "_details", "_noted"),
@@ -103,8 +106,14 @@ class Core(Protocol):
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 
-    def lend(self, state: bytes, ledger: list[Attempt], /) -> None:
-        """Take a state over, beside a monitor in Python; what is decided comes into its ledger."""
+    def lend(self, state: bytes, ledger: list[Attempt], concerns: bytes, /) -> None:
+        """Take a state over, beside a monitor in Python; what is decided comes into its ledger.
+
+        `concerns` is, per name, whether Python looks at samples of another value of it, or at all.
+        """
+
+    def look_at(self, t: int, /) -> None:
+        """Have Python look at all samples from `t` on; said anew after each at which it looks."""
 
     def take_back(self) -> bytes:
         """The state, as `lend` takes it; Python goes on from there once it says `give_up`."""

@@ -19,12 +19,8 @@ from rvmon.monitor.build import build_monitor
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.evaluators import Evaluators
-from rvmon.monitor.online.generated import (
-    Forms,
-    GeneratedEvaluators,
-    GeneratedMonitor,
-    forms_of,
-)
+from rvmon.monitor.online.forms import Forms, forms_of
+from rvmon.monitor.online.generated import GeneratedEvaluators, GeneratedMonitor
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind

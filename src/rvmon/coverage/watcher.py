@@ -13,7 +13,7 @@ from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.state import FALSE
-from rvmon.monitor.online.generated import Forms
+from rvmon.monitor.online.forms import Forms
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.plan.planning import plan_of
 from rvmon.runtime.unit import Unit

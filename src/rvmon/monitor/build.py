@@ -19,6 +19,7 @@ def build_monitor(
     settle: str = "now",
     sources: Iterable[str] | None = None,
     keep: int | None = None,
+    left: Iterable[str] | None = None,
 ) -> Monitor:
     """Build a monitor from a compiled specification.
 
@@ -30,6 +31,7 @@ def build_monitor(
             each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
         keep: so many records of each verdict, the newest, are kept per requirement; default all.
+        left: see `rvmon.monitor.engines.registry.Asked`.
 
     Raises:
         UnknownNameError: `only`, `engine` or `settle` names what does not exist.
@@ -41,5 +43,6 @@ def build_monitor(
     if settle not in ("now", "next"):
         raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
     given = None if sources is None else frozenset(sources)
-    asked = Asked(requirements_asked(compiled.checked, only), settle, given, keep)
+    ids = requirements_asked(compiled.checked, only)
+    asked = Asked(ids, settle, given, keep, left=None if left is None else frozenset(left))
     return engine_named(engine).online(compiled, asked)

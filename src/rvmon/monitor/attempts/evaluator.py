@@ -183,16 +183,18 @@ class Evaluator(Nodes, Schedule):
             for place in own:
                 made.since[place] = self.position
 
-    def fork(self, made: Evaluator) -> None:
+    def fork(self, made: Evaluator, own: Graph) -> None:
         """Have an evaluator of other formulas begin at this position, of which it sees what occurs.
 
-        It must not remember anything but by nodes that this one has, too.
+        Args:
+            made: it remembers nothing but by nodes of `own`.
+            own: of the formulas of this one, those of its requirement.
         """
         take_inputs(made, self)
         if self.origin is None:
             return
         index = self.graph.index
-        shared = [(n, index[one]) for n, one in enumerate(made.graph.nodes) if one in index]
+        shared = [(n, index[one]) for n, one in enumerate(made.graph.nodes) if one in own.index]
         take_nodes(made, self, shared)
         # Momentary ones are seen to be over at the next position.
         dirty = made.KEPT & (made.momentary | ~_bits(place for place, _ in shared))
@@ -285,8 +287,11 @@ class Evaluator(Nodes, Schedule):
             return
         # It is taken at a position to come, of which there may be none.
         for signal, name in enumerate(self.SIGNALS):
-            if name in values and self.first[signal] is None:
-                self.first[signal] = t
+            if name in values:
+                if self.first[signal] is None:
+                    self.first[signal] = t
+                if values[name] is not None and values[name] == values[name]:
+                    self.clerk.found(name, t)
         self.reach(t)
 
     def visit(self, t: int) -> None:

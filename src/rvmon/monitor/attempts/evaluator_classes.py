@@ -20,26 +20,31 @@ _IDLE: dict[int | None, type[Evaluator]] = {}
 """The classes of evaluators that read nothing, by the ticks between two positions."""
 
 
-def class_of_all(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> type[Evaluator]:
+def class_of_all(
+    spec: CheckedSpec, requirements: Sequence[CompiledRequirement], *, alone: bool = True
+) -> type[Evaluator]:
     """The class of the evaluator that requirements without `for each` share.
 
     It sees when each signal that some requirement reads had its first value, and what is stale.
 
     Args:
         spec: of the requirements.
-        requirements: all that are judged.
+        requirements: that are judged.
+        alone: whether they are all; else what they do not read becomes stale elsewhere.
     """
     if not requirements:
         if spec.gap not in _IDLE:
             _IDLE[spec.gap] = generated(spec, graph_of(()), (), {}, Evaluator)
         return _IDLE[spec.gap]
-    key = tuple(one.rank for one in requirements)
+    key = (alone, *(one.rank for one in requirements))
     cached = requirements[0].evaluators
     if key not in cached:
         shared = [one for one in requirements if one.requirement.for_each is None]
         graph = graph_of(node for one in shared for node in one.shared_graph.nodes)
         names = {name for one in requirements for name in one.reads}
-        names |= {name for name, signal in spec.signals.items() if signal.stale_after is not None}
+        if alone:
+            perishable = (name for name, one in spec.signals.items() if one.stale_after is not None)
+            names.update(perishable)
         uses = _uses_of([graph], shared)
         cached[key] = generated(spec, graph, {*names, *uses}, uses, Evaluator)
     made: type[Evaluator] = cached[key]
@@ -82,6 +87,35 @@ def generated(
     made = evaluator_class(plan, base)
     made.graph, made.SPARSE, made.SPAN = graph, sparse_nodes(plan), sparse_span(plan)
     return made
+
+
+def names_looked_at(
+    spec: CheckedSpec, requirements: Iterable[CompiledRequirement]
+) -> Mapping[str, bool]:
+    """The names that concern requirements; whether an update does that brings no other value.
+
+    Args:
+        spec: of the requirements.
+        requirements: that evaluators judge.
+    """
+    judged = [*requirements]
+    graphs = [
+        graph
+        for one in judged
+        for graph in (one.shared_graph, *(each.consequent_graph for each in one.judges.values()))
+    ]
+    uses = _uses_of(graphs, judged)
+    names = {*uses}.union(*(one.reads for one in judged))
+    names |= {one.requirement.for_each.value.event for one in judged if one.requirement.for_each}
+    # Instances that are over are let go of when a sample has a name that they read.
+    often = set().union(*(one.reads for one in judged if one.requirement.for_each))
+    return {
+        name: name in often
+        or name in spec.events
+        or spec.signals[name].stale_after is not None
+        or (name in uses and (uses[name].history or uses[name].marked))
+        for name in names
+    }
 
 
 def _uses_of(graphs: list[Graph], capturing: Iterable[CompiledRequirement]) -> dict[str, Uses]:

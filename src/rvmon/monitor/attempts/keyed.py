@@ -32,6 +32,7 @@ class Keyed:
         known: the values that occurred, but for those that were forgotten.
         open: the evaluators of those that are not over.
         reach: what they depend on.
+        sees_all: whether each sample concerns all that are open.
     """
 
     def __init__(
@@ -57,7 +58,7 @@ class Keyed:
         )
         self._last_rank = 0
         self._over: dict[Scalar, None] = {}
-        self._sees_all = not is_timed or bool(compiled.requirement.captures)
+        self.sees_all = not is_timed or bool(compiled.requirement.captures)
 
     def instances(self) -> list[Instance]:
         """Those that are known, first those that are over, in the order in which they were."""
@@ -95,7 +96,7 @@ class Keyed:
 
     def concerned(self, values: Mapping[str, Value]) -> list[Scalar]:
         """The open instances that a sample concerns."""
-        if self._sees_all or not self.reach.others.isdisjoint(values):
+        if self.sees_all or not self.reach.others.isdisjoint(values):
             return list(self.open)
         found: dict[Scalar, None] = {}
         for event, field in self.reach.fields.items():

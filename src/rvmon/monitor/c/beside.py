@@ -3,6 +3,9 @@
 C takes the samples that say nothing but plain values, and notes with each decision what its reason
 is worked out from. For all else (unknown values, what is wrong, questions, the end) Python takes
 the state back: so the two differ in nothing but the time they take.
+
+What C does not judge, evaluators in Python do all the while. C takes alone what is nothing new to
+them, up to the instant at which something happens in them; other samples both are given.
 """
 
 from __future__ import annotations
@@ -12,13 +15,15 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.c_online import OnlineLibrary
-from rvmon.errors import OverlapError
+from rvmon.codegen.c_online import ALWAYS, BY_CHANGE, NOBODY, OnlineLibrary
+from rvmon.errors import OverlapError, TraceError
+from rvmon.monitor.attempts.evaluator_classes import names_looked_at
 from rvmon.monitor.c.exchange import Exchange
 from rvmon.monitor.c.noted_reasons import NotedReasons
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.generated import Forms, GeneratedMonitor
+from rvmon.monitor.online.forms import Forms
+from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.plan import Plan
@@ -54,11 +59,13 @@ class Beside:
         library: compiled.
         exchange: of states.
         details: per requirement, gives records their reasons.
+        concerns: per name, whether Python looks at it itself; see `Core.lend`.
     """
 
     library: OnlineLibrary
     exchange: Exchange
     details: tuple[Any, ...]
+    concerns: bytes
 
 
 def beside(forms: Forms, library: OnlineLibrary) -> Beside:
@@ -69,7 +76,14 @@ def beside(forms: Forms, library: OnlineLibrary) -> Beside:
         library: compiled of its `plan_beside`.
     """
     details = [NotedReasons(one, forms.plan, Ledger()).details for one in forms.requirements]
-    return Beside(library, Exchange(forms, library), tuple(details))
+    plan = forms.plan
+    left = () if forms.left is None else forms.left.requirements
+    looked_at = names_looked_at(plan.spec, [*forms.others, *left])
+    concerns = [
+        (ALWAYS if looked_at[name] else BY_CHANGE) if name in looked_at else NOBODY
+        for name in (*plan.signals, *plan.events)
+    ]
+    return Beside(library, Exchange(forms, library), tuple(details), bytes(concerns))
 
 
 class LendingMonitor(GeneratedMonitor):
@@ -77,9 +91,9 @@ class LendingMonitor(GeneratedMonitor):
 
     Args:
         own: the compiled code.
-        forms: what was generated; of all requirements.
+        forms: what was generated, of the requirements that C takes; and which it does not.
         compiled: the specification.
-        requirements: to be judged.
+        requirements: all that are to be judged.
         engine: that was asked for.
         sources: the names that can arrive; `None`: all.
         keep: see `build_monitor`.
@@ -97,6 +111,9 @@ class LendingMonitor(GeneratedMonitor):
     ) -> None:
         names = {*compiled.checked.signals, *compiled.checked.events}
         self._exchange = own.exchange
+        self._concerns = own.concerns
+        self._is_mixed = not forms.are_all
+        self._ranks = {one.requirement.id: one.rank for one in requirements}
         self._core = own.library.core(
             frozenset() if sources is None else frozenset(names - sources),
             look_closer=self._take_at,
@@ -105,11 +122,16 @@ class LendingMonitor(GeneratedMonitor):
             details=own.details,
         )
         super().__init__(forms, compiled, requirements, engine, "now", sources, keep)
+        self._in_python = self.step_ns
         self.step, self.step_ns = self._core.step, self._core.step_ns
 
     def _begin(self) -> None:
         self._core.reset()
         self._is_lent = False
+        self._shown = -LIMIT
+        """The last instant of which the evaluators know all that C does."""
+        self._looks_at = -LIMIT
+        """Before that, nothing happens in them without a sample."""
         self._wait, self._patience = 1, _FEW
         super()._begin()
 
@@ -133,7 +155,7 @@ class LendingMonitor(GeneratedMonitor):
         """Take a sample that C does not take."""
         if self._is_lent:
             return self._take(t_ns, values)
-        decided: Sequence[Attempt] = self._unit.step(t_ns, values)
+        decided = self._in_python(t_ns, values)
         self._wait -= 1
         if self._wait <= 0:
             with suppress(OverlapError):  # another call has come meanwhile
@@ -148,15 +170,19 @@ class LendingMonitor(GeneratedMonitor):
         self._wait = self._patience
         self._patience = min(2 * self._patience, _MANY)
         if state is not None:
-            self._core.lend(state, self._ledger.attempts)
-            self._is_lent = True
+            self._core.lend(state, self._ledger.attempts, self._concerns)
+            self._is_lent = self._unit_evaluators.lent = True
             self._unit.wake = -LIMIT
+            if self._last is not None:
+                self._shown = self._last
+            self._set_look()
 
     def _have_back(self) -> None:
         """Have Python go on."""
         if self._is_lent:
+            self._show_last()
             taken = self._exchange.take_back(self._unit_evaluators, self._core.take_back())
-            self._is_lent = False
+            self._is_lent = self._unit_evaluators.lent = False
             self._core.give_up()
             if self._last is not None and self._reached is not None:
                 self._floor = max(self._last, self._reached - 1)
@@ -172,13 +198,49 @@ class LendingMonitor(GeneratedMonitor):
             self._core.free()
         self._listeners.call(decided)
 
+    # What C does not judge.
+
+    def _show_last(self) -> None:
+        """Lead the evaluators to the last sample that C took alone; they learn nothing else."""
+        last = self._last
+        if self._is_mixed and last is not None and last > self._shown:
+            self._unit_evaluators.through(last - 1)
+            self._unit_evaluators.sample(last, {})
+            self._shown = last
+
+    def _set_look(self) -> None:
+        """Have C take no sample alone once something happens in the evaluators."""
+        if self._is_mixed:
+            self._looks_at = max(-LIMIT, min(self._unit_evaluators.alarm, LIMIT))
+            self._core.look_at(self._looks_at)
+
+    def _admit(self, t: int, values: Mapping[str, Value]) -> None:
+        """Lead the evaluators to a sample, before C takes it: they may refuse it."""
+        if self._is_mixed:
+            evaluators = self._unit_evaluators
+            if evaluators.instances.keyed:
+                self._show_last()  # new ones begin where that left off
+            self._shown = t
+            if t > self._looks_at:
+                evaluators.through(t - 1)
+            try:
+                evaluators.instances.admit(t, values)
+            except TraceError:
+                self._pass_to(t)
+                raise
+
+    # What both judge.
+
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         if self._is_lent:
+            self._admit(t, values)
             try:
                 self._core.take(t, dict(values))
             except ValueError:
                 self._have_back()
             else:
+                if self._is_mixed:
+                    self._unit_evaluators.sample(t, values)
                 self._last = self._reached = t
                 return
         super()._judge(t, values)
@@ -189,6 +251,10 @@ class LendingMonitor(GeneratedMonitor):
         if not self._is_lent:
             super()._pass_to(t)
         elif self._reached is None or t > self._reached:
+            if self._is_mixed:
+                self._show_last()
+                self._unit_evaluators.through(t - 1)
+                self._unit_evaluators.reach(t)
             self._core.advance(t)
             self._reached = t
 
@@ -196,8 +262,22 @@ class LendingMonitor(GeneratedMonitor):
         if not self._is_lent:
             return super()._flush()
         decided = self._core.flush()
+        if self._is_mixed:
+            decided = self._merged(decided)
+            self._set_look()
         self._kept.bound(self._unit_evaluators)
         return decided
+
+    def _merged(self, decided: Sequence[Attempt]) -> Sequence[Attempt]:
+        """What C has decided, and put into the ledger, with what the evaluators have."""
+        ledger, ranks = self._ledger, self._ranks
+        if not decided:
+            return ledger.flush()
+        del ledger.attempts[len(ledger.attempts) - len(decided) :]
+        ledger.recorded += [
+            (one.decided or 0, ranks[one.requirement], one.number, one) for one in decided
+        ]
+        return ledger.flush()
 
     # What C does not know.
 

@@ -19,7 +19,8 @@ from rvmon.codegen.c_online import NEVER as C_NEVER
 from rvmon.codegen.c_online import NOT_YET, OnlineLibrary, largest_taken
 from rvmon.formula.state import COMBINING, FALSE, TRUE, UNKNOWN, State, StateOp
 from rvmon.monitor.c.exchange_rules import bounded, instant, is_plain, rule_words, take_rule
-from rvmon.monitor.online.generated import Forms, GeneratedEvaluators
+from rvmon.monitor.online.forms import Forms
+from rvmon.monitor.online.generated import GeneratedEvaluators
 from rvmon.runtime.past import History
 from rvmon.runtime.unit import Unit
 from rvmon.runtime.values import NEVER

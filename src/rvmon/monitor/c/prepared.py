@@ -6,6 +6,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from rvmon.monitor.compiled.code_plan import plan_alone, plan_requirements
 from rvmon.monitor.compiled.refusal import of_prepared, of_prepared_margins
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.generated import Forms
+from rvmon.monitor.online.forms import Forms
 from rvmon.monitor.online.snapshot import digest_of
 from rvmon.plan.plan import Plan
 
@@ -25,6 +26,19 @@ _BESIDE, _MEASURING = "beside", "measuring"
 """What a file is for."""
 
 _PACKAGE = Path(__file__).parents[2]
+
+
+@dataclass(frozen=True, slots=True)
+class PreparedBeside:
+    """What was compiled ahead to stand beside generated Python.
+
+    Attributes:
+        library: compiled, of the requirements that it judges.
+        left: ids of those that generated Python judges.
+    """
+
+    library: OnlineLibrary
+    left: frozenset[str]
 
 
 def prepare_beside(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]) -> Path | None:
@@ -37,10 +51,11 @@ def prepare_beside(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
     Raises:
         RvmonError: there is no compiler or no cache.
     """
-    if not is_taken(chosen):
+    taken = taken_of(chosen)
+    if not taken:
         return None
-    build = online_build(plan_beside(plan_requirements(compiled, chosen)), beside=True)
-    return _built(_BESIDE, build, compiled, chosen)
+    build = online_build(plan_beside(plan_requirements(compiled, taken)), beside=True)
+    return _built(_BESIDE, build, compiled, chosen, taken)
 
 
 def prepare_measuring(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]) -> Path:
@@ -54,54 +69,96 @@ def prepare_measuring(compiled: CompiledSpec, chosen: Sequence[CompiledRequireme
         RvmonError: there is no compiler or no cache, or C does not measure a requirement.
     """
     build = online_build(_measured_plan(compiled, chosen), measured=True)
-    return _built(_MEASURING, build, compiled, chosen)
+    return _built(_MEASURING, build, compiled, chosen, chosen)
 
 
 def _measured_plan(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]) -> Plan:
-    return plan_alone(compiled, [one.requirement.id for one in chosen], measured=True)
+    return plan_alone(compiled, _ids(chosen), measured=True)
 
 
 def _built(
-    use: str, build: Build, compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
+    use: str,
+    build: Build,
+    compiled: CompiledSpec,
+    chosen: Sequence[CompiledRequirement],
+    taken: Sequence[CompiledRequirement],
 ) -> Path:
-    """Compile, and note where it lies."""
+    """Compile, and note where it lies, and what of it is judged."""
     path = built(build)
-    keep(_note(use, path.parent, compiled, chosen), json.dumps([_maker(), path.name]).encode())
+    content = json.dumps([_maker(), path.name, _ids(taken)]).encode()
+    keep(_note(use, path.parent, compiled, chosen), content)
     compiled.forms.pop(_key(use, chosen), None)
     return path
 
 
-def is_taken(chosen: Sequence[CompiledRequirement]) -> bool:
-    """Whether `auto` takes what is compiled for some requirements: all of them or none."""
-    return bool(chosen) and all(of_prepared(one) is None for one in chosen)
+def taken_of(chosen: Sequence[CompiledRequirement]) -> Sequence[CompiledRequirement]:
+    """Those of some requirements that `auto` has compiled C judge."""
+    return [one for one in chosen if of_prepared(one) is None]
 
 
-def lending_monitor(
+def prepared_beside(
     compiled: CompiledSpec,
-    forms: Forms,
+    chosen: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
-    keep: int | None,
-) -> LendingMonitor | None:
-    """A monitor of the engine `auto` that has what was compiled ahead; `None`: nothing was.
+) -> PreparedBeside | None:
+    """What was compiled ahead for the engine `auto` in streams; `None`: nothing was.
 
     Args:
         compiled: the specification.
-        forms: what was generated in Python of the requirements.
+        chosen: the requirements.
         sources: the names that can arrive; `None`: all.
-        keep: see `build_monitor`.
     """
-    chosen = forms.requirements
-    if forms.others or not _has_gil():
-        return None
-    if sources is not None and not all(one.reads <= sources for one in chosen):
+    if not _has_gil():
         return None
     key = _key(_BESIDE, chosen)
     if key not in compiled.forms:
-        type_ = _type(_BESIDE, compiled, chosen)
-        compiled.forms[key] = type_ and beside(forms, library_of(plan_beside(forms.plan), type_))
+        found = _type(_BESIDE, compiled, chosen)
+        compiled.forms[key] = found and _prepared(compiled, chosen, *found)
     own = compiled.forms[key]
-    if not isinstance(own, Beside):
+    if not isinstance(own, PreparedBeside):
         return None
+    taken = (rule.requirement.id for rule in own.library.plan.rules)
+    if sources is not None and not all(
+        compiled.requirements[id_].reads <= sources for id_ in taken
+    ):
+        return None
+    return own
+
+
+def _prepared(
+    compiled: CompiledSpec,
+    chosen: Sequence[CompiledRequirement],
+    type_: Callable[..., Core],
+    ids: Sequence[str],
+) -> PreparedBeside:
+    taken = [one for one in chosen if one.requirement.id in ids]
+    plan = plan_beside(plan_requirements(compiled, taken))
+    left = frozenset(one.requirement.id for one in chosen if one.is_fed) - {*ids}
+    return PreparedBeside(library_of(plan, type_), left)
+
+
+def lending_monitor(
+    prepared: PreparedBeside,
+    forms: Forms,
+    compiled: CompiledSpec,
+    chosen: Sequence[CompiledRequirement],
+    sources: frozenset[str] | None,
+    keep: int | None,
+) -> LendingMonitor:
+    """A monitor of the engine `auto` that has what was compiled ahead.
+
+    Args:
+        prepared: that.
+        forms: generated in Python of what that judges, and what it does not.
+        compiled: the specification.
+        chosen: all requirements.
+        sources: the names that can arrive; `None`: all.
+        keep: see `build_monitor`.
+    """
+    key = ("beside", forms.unit)
+    own = compiled.forms.get(key)
+    if not isinstance(own, Beside):
+        own = compiled.forms[key] = beside(forms, prepared.library)
     return LendingMonitor(own, forms, compiled, chosen, "auto", sources, keep)
 
 
@@ -118,8 +175,8 @@ def measuring_prepared(
         return None
     key = _key(_MEASURING, chosen)
     if key not in compiled.forms:
-        type_ = _type(_MEASURING, compiled, chosen)
-        compiled.forms[key] = type_ and library_of(_measured_plan(compiled, chosen), type_)
+        found = _type(_MEASURING, compiled, chosen)
+        compiled.forms[key] = found and library_of(_measured_plan(compiled, chosen), found[0])
     own = compiled.forms[key]
     return own if isinstance(own, OnlineLibrary) else None
 
@@ -130,34 +187,38 @@ def _has_gil() -> bool:
 
 def _type(
     use: str, compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
-) -> Callable[..., Core] | None:
-    """The type that was compiled ahead."""
+) -> tuple[Callable[..., Core], Sequence[str]] | None:
+    """The type that was compiled ahead, and ids of what it judges."""
     folder = cache_folder()
     note = None if folder is None else read_kept(_note(use, folder, compiled, chosen))
     if folder is None or note is None:
         return None
     try:
-        maker, name = json.loads(note)
+        maker, name, ids = json.loads(note)
     except ValueError:
         return None
     path = folder / Path(name).name
     if maker != _maker() or not is_whole(path):
         return None
     try:
-        return type_in(path)
+        return type_in(path), ids
     except (OSError, ImportError):  # of another machine that shares the folder
         return None
 
 
 def _key(use: str, chosen: Sequence[CompiledRequirement]) -> tuple[object, ...]:
-    return (use, *(one.requirement.id for one in chosen))
+    return (use, *_ids(chosen))
+
+
+def _ids(chosen: Sequence[CompiledRequirement]) -> list[str]:
+    return [one.requirement.id for one in chosen]
 
 
 def _note(
     use: str, folder: Path, compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
 ) -> Path:
     """Where it stands which file was made of some requirements."""
-    key = (digest_of(compiled), [one.requirement.id for one in chosen])
+    key = (digest_of(compiled), _ids(chosen))
     return folder / f"{use}-{hashlib.sha256(repr(key).encode()).hexdigest()[:40]}.json"
 
 

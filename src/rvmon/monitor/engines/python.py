@@ -10,7 +10,8 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.choice import judged_by
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import judge_rows
-from rvmon.monitor.online.generated import Forms, GeneratedMonitor, forms_of
+from rvmon.monitor.online.forms import Forms, forms_of
+from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
@@ -46,21 +47,40 @@ def generated_or_tables(
     if len(chosen) > MOST_GENERATED or not any(one.is_fed for one in chosen):
         monitor = Monitor(compiled, chosen, engine, *how)
     else:
-        key = (tuple(one.requirement.id for one in chosen), asked.sources)
-        forms = compiled.forms.get(key)
-        if not isinstance(forms, Forms):
-            forms = compiled.forms[key] = forms_of(compiled, chosen, asked.sources)
-        lending = None
+        prepared = None
         if engine == "auto" and asked.settle == "now" and compiled.checked.max_delay is None:
-            from rvmon.monitor.c.prepared import lending_monitor  # few have prepared anything
+            from rvmon.monitor.c.prepared import prepared_beside  # few have prepared anything
 
-            lending = lending_monitor(compiled, forms, asked.sources, asked.keep)
-        if lending is not None:
-            lending.judged_by = "c"
-            return lending
+            prepared = prepared_beside(compiled, chosen, asked.sources)
+        left = asked.left
+        if left is None:
+            left = frozenset() if prepared is None else prepared.left
+        forms = _forms(compiled, chosen, asked.sources, left)
+        if prepared is not None and prepared.left == left:
+            from rvmon.monitor.c.prepared import lending_monitor
+
+            monitor = lending_monitor(prepared, forms, compiled, chosen, asked.sources, asked.keep)
+            apart = () if forms.left is None else forms.left.requirements
+            others = judged_by([*apart, *forms.others])
+            monitor.judged_by = f"c, {others}" if others else "c"
+            return monitor
         monitor = GeneratedMonitor(forms, compiled, chosen, engine, *how)
     monitor.judged_by = judged_by(chosen)
     return monitor
+
+
+def _forms(
+    compiled: CompiledSpec,
+    chosen: Sequence[CompiledRequirement],
+    sources: frozenset[str] | None,
+    left: frozenset[str],
+) -> Forms:
+    """What is generated for some requirements, made once."""
+    key = (tuple(one.requirement.id for one in chosen), sources, left)
+    found = compiled.forms.get(key)
+    if not isinstance(found, Forms):
+        found = compiled.forms[key] = forms_of(compiled, chosen, sources, left=left)
+    return found
 
 
 ENGINES = {"python": Python()}

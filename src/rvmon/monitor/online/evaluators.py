@@ -15,7 +15,6 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
 from rvmon.monitor.online.evaluator_maker import Captured, EvaluatorMaker
 from rvmon.monitor.records.ledger import Ledger
-from rvmon.plan.graph import Graph
 from rvmon.plan.outages import Outages
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.values import NEVER
@@ -30,11 +29,13 @@ class Evaluators(EvaluatorMaker):
         main: the evaluator of all requirements without `for each`; its inputs are those of the run.
         instances: the evaluators of those with it, an instance each.
         forgets: whether instances are let go of that are over.
+        alone: whether they judge all requirements of a run.
     """
 
     STATE: tuple[str, ...] = ("_history", "all")
 
     forgets = True
+    alone = True
 
     def __init__(
         self,
@@ -49,7 +50,7 @@ class Evaluators(EvaluatorMaker):
         self.instances = Instances(forgets=self.forgets, is_held=self._has_captured)
         self._history: list[tuple[int, Mapping[str, Value]]] | None = None
         self._shared = [one for one in requirements if one.requirement.for_each is None]
-        self.main = class_of_all(spec, requirements)(Outages(spec, sources), {})
+        self.main = class_of_all(spec, requirements, alone=self.alone)(Outages(spec, sources), {})
         self._drive(self.main, self._shared, {}, None)
         self._captured: list[tuple[Evaluator, Instance | None]] = []
         for compiled in requirements:
@@ -72,6 +73,19 @@ class Evaluators(EvaluatorMaker):
     def all(self) -> Sequence[Evaluator]:
         """The evaluators there are now."""
         return [evaluator for evaluator, _ in self._entries]
+
+    @property
+    def left_requirements(self) -> Sequence[CompiledRequirement]:
+        """Those that have generated code of their own beside the rest."""
+        return ()
+
+    @property
+    def alarm(self) -> int:
+        """An instant before which nothing happens in any of them, no sample being taken."""
+        if self.gap is None:
+            return -NEVER  # each sample is a position
+        captured = min((evaluator.alarm for evaluator, _ in self._captured), default=NEVER)
+        return min(self.main.alarm, self.instances.alarm, captured)
 
     @property
     def arrivals(self) -> Arrivals:
@@ -237,10 +251,10 @@ class Evaluators(EvaluatorMaker):
         compared = self._compared(parent, compiled, own, instance)
         evaluator = self._evaluator(compiled, own, starts=False)
         self._drive_attempt(evaluator, compiled, own, instance)
-        replays = self._replays(compiled, parent.graph)
+        replays = self._replays(compiled)
         if not replays:
             evaluator.clerk = parent.clerk.copy()
-            parent.fork(evaluator)
+            parent.fork(evaluator, self._by_id[compiled.requirement.id].shared_graph)
         if compared is not None and compared.may_begin_otherwise:
             evaluator.cut_at(t)
         if replays:
@@ -253,9 +267,12 @@ class Evaluators(EvaluatorMaker):
         if compared is not None:
             compared.keeps(t)
 
-    def _replays(self, compiled: CompiledRequirement, graph: Graph) -> bool:
-        """Whether a captured attempt has to see what evaluators of a graph do not remember."""
-        return compiled.looks_back_beyond(graph)
+    def _replays(self, compiled: CompiledRequirement) -> bool:
+        """Whether a captured attempt has to see what its requirement does not remember.
+
+        Others that share its evaluator may remember it: what is said does not depend on them.
+        """
+        return compiled.looks_back_beyond(self._by_id[compiled.requirement.id].shared_graph)
 
     def _replay(self, evaluator: Evaluator, instance: Instance | None) -> None:
         """Let a new evaluator see the samples so far."""
@@ -307,7 +324,7 @@ class Evaluators(EvaluatorMaker):
         keyed = self.instances.keyed.get(compiled.requirement.id)
         return (keyed is not None and not keyed.reach.is_fresh) or (
             bool(compiled.requirement.captures)
-            and any(self._replays(one, compiled.shared_graph) for one in compiled.judges.values())
+            and any(self._replays(one) for one in compiled.judges.values())
         )
 
 

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from rvmon.automaton.machine import Machine
-from rvmon.codegen.python_unit import unit_class
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.judges import judge_of
-from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.health import Arrivals, arrivals_of
 from rvmon.monitor.online.evaluators import Evaluators
+from rvmon.monitor.online.forms import Forms
 from rvmon.monitor.online.monitor import Monitor, Step
 from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.online.unit_clerks import JudgeClerk, UnitClerk, UnitStanding
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.outages import Outages
-from rvmon.plan.plan import Plan
 from rvmon.runtime.nodes import BUSY, LIMIT
 from rvmon.runtime.rule import Rule
 from rvmon.runtime.unit import Unit
@@ -35,58 +31,17 @@ _HELD = BUSY + 1
 """As `BUSY`, while the monitor is called itself; behind a call that was interrupted as it ended."""
 
 
-@dataclass(frozen=True, slots=True)
-class Forms:
-    """What is generated for one choice of requirements and sources; serves any number of monitors.
+class GeneratedEvaluators(Evaluators):
+    """Evaluators of which one is generated code; the others are for what that cannot judge.
 
     Attributes:
-        requirements: those that generated code judges, or feeds a judge of.
-        others: those that it can do nothing for.
-        plan: of `requirements`.
-        unit: the generated class.
-        machines: per requirement, what judges its attempts; `None`: a judge.
+        lent: whether compiled code has the state of what is generated: only the others are led.
+        left: the evaluators of what has generated code of its own; `None`: nothing has.
     """
 
-    requirements: Sequence[CompiledRequirement]
-    others: Sequence[CompiledRequirement]
-    plan: Plan
-    unit: type[Unit]
-    machines: Sequence[Machine | None]
+    STATE = ("outages", "unit", "counts", "left", *Evaluators.STATE)
 
-
-def forms_of(
-    compiled: CompiledSpec,
-    requirements: Sequence[CompiledRequirement],
-    sources: frozenset[str] | None,
-    rule: type[Rule] | None = None,
-    *,
-    measured: bool = False,
-) -> Forms:
-    """Generate what monitors of some requirements run.
-
-    Args:
-        compiled: the specification.
-        requirements: chosen from it.
-        sources: the names that can arrive; `None`: all.
-        rule: see `rvmon.codegen.python_unit.unit_class`.
-        measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
-    """
-    fed = [one for one in requirements if one.is_fed]
-    plan = plan_requirements(compiled, fed, measured=measured, stepped=rule is not None)
-    machines = [
-        None if rule.automaton is None else one.machine("automaton")
-        for one, rule in zip(fed, plan.rules, strict=True)
-    ]
-    # What judges attempts in doubt is made when one comes up.
-    machines += [None for _ in plan.hidden_of]
-    others = [one for one in requirements if not one.is_fed]
-    return Forms(fed, others, plan, unit_class(plan, sources, Unit, rule), machines)
-
-
-class GeneratedEvaluators(Evaluators):
-    """Evaluators of which one is generated code; the others are for what that cannot judge."""
-
-    STATE = ("outages", "unit", "counts", *Evaluators.STATE)
+    alone = False
 
     def __init__(
         self,
@@ -99,9 +54,17 @@ class GeneratedEvaluators(Evaluators):
         other: Step,
     ) -> None:
         self.other = other
+        self.lent = False
         self.flush: Flush = self._flush
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
+        self.left = None
+        if forms.left is not None:
+            made = forms.left.unit(forms.left.machines, unit.absent)
+            self.left = GeneratedEvaluators(
+                forms.left, made, compiled, engine, sources, ledger, other
+            )
+        self.forms = forms
         self.unit = unit
         self.outages = Outages(spec, sources)
         self.counts = [0] * len(forms.requirements)
@@ -149,13 +112,33 @@ class GeneratedEvaluators(Evaluators):
 
     @property
     def arrivals(self) -> Arrivals:
+        """See `Evaluators`; what the others read they have seen, be the rest lent or not."""
+        own, others = arrivals_of(self.unit), arrivals_of(self.main)
+        first, expired = {**own.first, **others.first}, {**own.expired, **others.expired}
+        if self.left is not None:
+            read = {name for one in self.left.forms.requirements for name in one.reads}
+            theirs = self.left.arrivals
+            first |= {name: at for name, at in theirs.first.items() if name in read}
+            expired |= {name: found for name, found in theirs.expired.items() if name in read}
+        return Arrivals(own.absent, first, expired)
+
+    @property
+    def left_requirements(self) -> Sequence[CompiledRequirement]:
         """See `Evaluators`."""
-        return arrivals_of(self.unit)
+        return () if self.left is None else self.left.forms.requirements
+
+    @property
+    def alarm(self) -> int:
+        """See `Evaluators`; of all that is not lent."""
+        found = super().alarm if self.left is None else min(super().alarm, self.left.alarm)
+        return found if self.lent else min(found, self.unit.wake)
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
         """The judges of all evaluators."""
-        return [*(self._judge_now(rule) for rule in self.unit.rules), *super().judges]
+        own = [self._judge_now(rule) for rule in self.unit.rules]
+        left = () if self.left is None else self.left.judges
+        return [*own, *left, *super().judges]
 
     def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
         """See `Evaluators`."""
@@ -165,7 +148,8 @@ class GeneratedEvaluators(Evaluators):
             else (self._clerks[rule.index].id, rule, rule.running_attempt)
             for rule in self.unit.rules
         ]
-        return [*own, *super().holders()]
+        left = () if self.left is None else self.left.holders()
+        return [*own, *left, *super().holders()]
 
     def _judge_now(self, rule: Rule) -> AttemptJudge:
         """A rule that knows its requirement, or how one would stand in its place."""
@@ -194,25 +178,38 @@ class GeneratedEvaluators(Evaluators):
         for rule in self.unit.rules:
             if rule.slides:
                 rule.pass_to(t)
+        if self.left is not None:
+            self.left.take_along(t)
         super().take_along(t)
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`."""
-        self.unit.through(limit)
-        super().through(limit)
+        if not self.lent:
+            self.unit.through(limit)
+        if self.left is not None:
+            self.left.through(limit)
+        if self.forms.others:
+            super().through(limit)
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, from the instant before."""
-        if t >= self.unit.wake:
+        if not self.lent and t >= self.unit.wake:
             self.unit.reach(t)
             self.unit.set_alarm()
-        super().reach(t)
+        if self.left is not None:
+            self.left.reach(t)
+        if self.forms.others:
+            super().reach(t)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a valid sample; time has come to `t − 1` before."""
-        self.unit.take(t, values)
-        self.unit.after = _HELD  # the call goes on
-        super().sample(t, values)
+        if not self.lent:
+            self.unit.take(t, values)
+            self.unit.after = _HELD  # the call goes on
+        if self.left is not None:
+            self.left.sample(t, values)
+        if self.forms.others:
+            super().sample(t, values)
 
     def finish(self, end: int, reached: int) -> None:
         """Settle what is undecided; time has come to `end` before."""
@@ -224,6 +221,8 @@ class GeneratedEvaluators(Evaluators):
             for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts, rule.runs = [], {}
+        if self.left is not None:
+            self.left.finish(end, reached)
         super().finish(end, reached)
 
     def undetermined(self) -> list[str]:
@@ -233,7 +232,8 @@ class GeneratedEvaluators(Evaluators):
             for index, one in enumerate(self._clerks)
             if not self.unit.is_determined(index)
         ]
-        return [*own, *super().undetermined()]
+        left = () if self.left is None else self.left.undetermined()
+        return [*own, *left, *super().undetermined()]
 
 
 class GeneratedMonitor(Monitor):
@@ -260,7 +260,7 @@ class GeneratedMonitor(Monitor):
         self._forms = forms
         self._unit = forms.unit(forms.machines, absent)
         super().__init__(compiled, requirements, engine, settle, sources, keep)
-        self._by_unit = not forms.others and self._intake is None
+        self._by_unit = forms.are_all and self._intake is None
         """Whether the unit alone takes samples as they come."""
         # Generated code looks and closes in one go only where one thread has a turn at a time.
         if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
@@ -334,7 +334,9 @@ class GeneratedMonitor(Monitor):
         return data
 
     def _next_due(self) -> int | None:
-        own = min(self._unit.next_position(), self._unit.next_due())
+        left = self._unit_evaluators.left
+        units = [self._unit] if left is None else [self._unit, left.unit]
+        own = min(min(unit.next_position(), unit.next_due()) for unit in units)
         others = super()._next_due()
         found = own if others is None else min(own, others)
         if found >= NEVER or self._reached is None or self._report is not None:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from heapq import nsmallest
 
+from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.verdict.attempt import Attempt
@@ -27,12 +28,19 @@ def owed_now(
     """
     void = ledger.void_records
     counts = Counter(one.requirement for one in void)
+    # In the order of the file and of triggers, whichever evaluator each is in.
     holding = [judge for judge in evaluators.judges if judge.attempts]
+    holding.sort(key=lambda judge: (judge.compiled.rank, judge.rank, judge.hidden))
     for judge in holding:
         counts[judge.compiled.requirement.id] += len(judge.attempts)
     if most is None:
-        chosen = [(judge, attempt) for judge in holding for attempt in judge.attempts]
+        own = ((judge, sorted(judge.attempts, key=_age)) for judge in holding)
+        chosen = [(judge, attempt) for judge, attempts in own for attempt in attempts]
     else:
-        first = nsmallest(most, holding, key=lambda judge: judge.attempts[0].triggered)
-        chosen = [(judge, judge.attempts[0]) for judge in first]
+        oldest = [(judge, min(judge.attempts, key=_age)) for judge in holding]
+        chosen = nsmallest(most, oldest, key=lambda one: _age(one[1]))
     return counts, [*(ledger.open_record(*one, now) for one in chosen), *void[:most]]
+
+
+def _age(attempt: Open) -> int:
+    return attempt.triggered

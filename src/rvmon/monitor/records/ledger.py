@@ -142,8 +142,9 @@ class Ledger:
 
     @property
     def void_records(self) -> Sequence[Attempt]:
-        """The records of these attempts; all of them are numbered."""
-        return [replace(one, number=_number(attempt)) for _, attempt, one in self.void]
+        """The records of these attempts, in the law's order; all of them are numbered."""
+        found = [(rank, replace(one, number=_number(own))) for rank, own, one in self.void]
+        return [record for _, record in sorted(found, key=lambda entry: _order(*entry))]
 
     def close(self) -> Sequence[Attempt]:
         """Give the last records, when all attempts are decided or ended."""

@@ -19,11 +19,11 @@ from rvmon.monitor.compiled.refusal import MOST_GENERATED
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.evaluator_maker import Captured
-from rvmon.monitor.online.generated import Forms, GeneratedEvaluators, forms_of
+from rvmon.monitor.online.forms import Forms, forms_of
+from rvmon.monitor.online.generated import GeneratedEvaluators
 from rvmon.monitor.online.unit_clerks import UnitClerk, UnitStanding
 from rvmon.monitor.robustness.gauged import Gauged
 from rvmon.monitor.robustness.margin_judge import MarginJudge
-from rvmon.plan.graph import Graph
 from rvmon.plan.leaves import reads
 from rvmon.plan.plan import Plan
 from rvmon.runtime.past import History
@@ -248,8 +248,8 @@ class MeasuringEvaluators(GeneratedEvaluators):
             keyed.reach = replace(keyed.reach, is_fresh=False)
         return keyed
 
-    def _replays(self, compiled: CompiledRequirement, graph: Graph) -> bool:
-        return compiled.measured_plan.looks_back or super()._replays(compiled, graph)
+    def _replays(self, compiled: CompiledRequirement) -> bool:
+        return compiled.measured_plan.looks_back or super()._replays(compiled)
 
     @property
     def measuring(self) -> Sequence[MarginJudge]:

@@ -213,6 +213,90 @@ def test_what_is_wrong_is_refused_and_changes_nothing(pair):
     assert lead(own, 20, start=20) == lead(other, 20, start=20)
 
 
+MIXED = """
+time held
+signal p, q : bool
+signal x, y : real
+event go
+event g(k : int)
+event h(m : int)
+requirement R1
+  upon go then within 3 ns y > a let a = y
+requirement R2
+  upon p then within 3 ns q
+requirement R3
+  upon g.k == each then within 3 ns h.m == each for each each in g.k
+requirement R4
+  always sqrt(x) < 3
+requirement R5
+  upon go then within 3 ns q
+"""
+"""C takes R2 and R5; `let` and `for each` have evaluators, and R4 generated Python of its own."""
+
+
+@pytest.fixture(scope="module")
+def mixed():
+    """A specification that C takes in part."""
+    found = compiled_beside(rvmon.loads(MIXED).checked)
+    assert found is not None
+    assert [rule.requirement.id for rule in found.shared.plan.rules] == ["R2", "R5"]
+    return found
+
+
+def lent(mixed):
+    """Two monitors, of which one has lent its state."""
+    run = Run(mixed, None, listens=False)
+    for t in range(5):
+        told(run, t, {"p": False, "q": False, "x": 1.0, "y": 1.0})
+    assert run.lending.alone > 0
+    return run
+
+
+def told(run, t, values):
+    """Give a sample to both."""
+    run.both(lambda monitor: [*map(repr, monitor.step_ns(t, values))])
+
+
+def test_records_of_c_and_python_come_in_one_order(mixed):
+    """What a sample decides in both: by instant, then by the place in the file."""
+    run = lent(mixed)
+    told(run, 5, {"go": True, "p": True, "g": {"k": 7}})
+    found = [one.name for one in run.lending.step_ns(12, {"x": 16.0})]
+    assert found == ["R1#1", "R2#1", "R3#1", "R5#1", "R4#1"]
+    assert [one.name for one in run.lending.finish().attempts] == found
+
+
+def test_c_takes_alone_what_is_nothing_new_to_python(mixed):
+    """Names that it does not read, and values that it has."""
+    run = lent(mixed)
+    before = run.lending.alone
+    for t in range(5, 25):
+        told(run, t, {"p": t % 4 == 0, "x": 1.0, "y": 1.0})
+    assert run.lending.alone - before == 20
+    assert run.found == []
+
+
+def test_a_sample_that_python_refuses_c_does_not_take(mixed, monkeypatch):
+    """There may be too many instances; both go on as if it had not come."""
+    monkeypatch.setattr("rvmon.monitor.attempts.instances.MOST_OPEN", 1)
+    run = lent(mixed)
+    told(run, 5, {"g": {"k": 7}, "p": True})
+    told(run, 6, {"g": {"k": 8}, "q": True})
+    told(run, 7, {"q": False})
+    run.both(lambda monitor: repr(monitor.finish_ns(20).attempts))
+    assert run.found == []
+
+
+def test_both_say_the_same_where_c_takes_a_part(mixed):
+    """Also behind snapshots, wrong samples and values that are not known."""
+    rng = random.Random(1)
+    traces = [TraceProfile(samples=60, span=200, unknowns=number == 0) for number in range(4)]
+    cases = [random_trace(rng, mixed.compiled.checked, one) for one in traces]
+    found = [differences(mixed, case, f"{n}") for n, case in enumerate(cases)]
+    assert [told for told, _ in found] == [[]] * len(found)
+    assert sum(taken for _, taken in found) > 0
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [
