@@ -26,7 +26,7 @@ HOLDS: Residual = frozenset([frozenset()])
 FAILS: Residual = frozenset()
 
 _MOST_PAIRS = 1 << 10
-"""So many pairs of clauses are reduced, however few may be kept: of (a or b) and (a or b) two."""
+"""So many pairs of clauses are reduced at most, if few may be kept."""
 
 
 class TooManyClausesError(Exception):
@@ -69,7 +69,7 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
     """The reduced conjunction.
 
     Raises:
-        TooManyClausesError: it has more than `limit` clauses, or may have, being too long to reduce.
+        TooManyClausesError: it has more than `limit` clauses, or is too long to be reduced.
     """
     if left == right or right == HOLDS:
         return left
@@ -96,6 +96,8 @@ def _reduced(clauses: Iterable[Clause]) -> Residual:
         return HOLDS
     kept: list[Clause] = []
     for clause in ordered:
+        if any(map(clause.issuperset, kept)):
+            continue
         if not any(_clause_implies(clause, other) for other in kept):
             kept = [other for other in kept if not _clause_implies(other, clause)]
             kept.append(clause)
