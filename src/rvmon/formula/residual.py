@@ -25,6 +25,9 @@ Residual = frozenset[Clause]
 HOLDS: Residual = frozenset([frozenset()])
 FAILS: Residual = frozenset()
 
+_MOST_PAIRS = 1 << 10
+"""So many pairs of clauses are reduced at most, if few may be kept."""
+
 
 class TooManyClausesError(Exception):
     """A residual outgrew the limit that was set for it."""
@@ -66,15 +69,18 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
     """The reduced conjunction.
 
     Raises:
-        TooManyClausesError: it may have more than `limit` clauses.
+        TooManyClausesError: it has more than `limit` clauses, or is too long to be reduced.
     """
     if left == right or right == HOLDS:
         return left
     if left == HOLDS:
         return right
-    if limit is not None and len(left) * len(right) > limit:
+    if limit is not None and len(left) * len(right) > max(limit, _MOST_PAIRS):
         raise TooManyClausesError
-    return _reduced({_conjunction(first | second) for first in left for second in right})
+    made = _reduced({_conjunction(first | second) for first in left for second in right})
+    if limit is not None and len(made) > limit:
+        raise TooManyClausesError
+    return made
 
 
 def _conjunction(clause: Clause) -> Clause:
@@ -90,6 +96,8 @@ def _reduced(clauses: Iterable[Clause]) -> Residual:
         return HOLDS
     kept: list[Clause] = []
     for clause in ordered:
+        if any(map(clause.issuperset, kept)):
+            continue
         if not any(_clause_implies(clause, other) for other in kept):
             kept = [other for other in kept if not _clause_implies(other, clause)]
             kept.append(clause)

@@ -61,6 +61,14 @@ def test_many_propositions_do_not_make_many_classes():
     assert automaton.classes == 2
 
 
+@pytest.mark.parametrize("high", [None, 5])
+def test_conjunctions_of_recurring_demands_close(high):
+    """A location is what of three is still owed, however many ways lead there."""
+    demands = two(eventually(p, 0, high), "and", eventually(q, 0, high))
+    demands = two(demands, "and", eventually(r, 0, high))
+    assert build(always(demands)).clocks == (0 if high is None else 3)
+
+
 def test_respawned_windows_do_not_close():
     """A window above zero that is opened again and again outgrows the budget, which is said."""
     with pytest.raises(DoesNotCloseError, match="more than"):
