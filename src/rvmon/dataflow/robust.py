@@ -106,7 +106,12 @@ class Gauge(ABC):
 
     def answers(self, news: Sequence[Value], known: int) -> Sequence[Value]:
         """What is asked for of a formula of which there is news, up to where it is known."""
-        asked, found, index = self.asked, [], 0
+        asked = self.asked
+        if len(news) == 1 and asked[0] == known == news[0][0]:  # a stream, at most samples
+            del asked[0]
+            self.reported = news[0][1]
+            return news
+        found, index = [], 0
         for start, value in (*news, (known + 1, self.reported)):
             while index < len(asked) and asked[index] < start:
                 found.append((asked[index], self.reported))

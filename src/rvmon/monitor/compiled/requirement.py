@@ -14,10 +14,12 @@ from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
+from rvmon.codegen.python_margins import gauge_class
 from rvmon.codegen.python_windows import windows_class
 from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
+from rvmon.dataflow.robust import Gauge
 from rvmon.dataflow.soonest_news import delay_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
@@ -197,6 +199,11 @@ class CompiledRequirement:
     def measured_plan(self) -> NetworkPlan:
         """The same of what it owes as far as that is measured, past operators included."""
         return plan_of(expanded(self.measured.owed), self.gap)
+
+    @cached_property
+    def gauge(self) -> type[Gauge]:
+        """What measures it, generated once for all of its attempts."""
+        return gauge_class(self.measured_plan, self.gap)
 
     @cached_property
     def measured(self) -> Obligation:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from rvmon.codegen.python_margins import gauge_class
 from rvmon.dataflow.margin_end import End, Rest
 from rvmon.dataflow.margins import INFINITE, OF_TRUTH, Margin, margin_reader
 from rvmon.dataflow.nodes import NetworkPlan
@@ -100,7 +99,7 @@ class MarginJudge(AttemptJudge):
         self._readers = [self._reader(core, spec) for _, core in plan.leaves]
         self._passing = flow.gap is not None and any(then for _, then in self._readers)
         """Whether some leaf is another behind a position at which it is read."""
-        self._gauge = gauge_class(plan, flow.gap)
+        self._gauge = compiled.gauge
         # Elsewhere a sample is not all that there is to be known up to its instant.
         self._goes_straight = not self._passing and compiled.obligation.trigger is not None
         self._plain = known
