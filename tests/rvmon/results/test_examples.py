@@ -51,9 +51,12 @@ def test_logs_become_a_table_that_is_asked(folder):
     ]
 
 
-def test_the_notebook_runs(folder):
-    """Its cells, one after the other."""
+def test_the_notebook_runs(folder, monkeypatch):
+    """Its cells, one after the other, where it lies: beside the logs, below the specification."""
     pytest.importorskip("pandas")
+    (folder / "nightly").mkdir()
+    (folder / "logs").rename(folder / "nightly" / "logs")
+    monkeypatch.chdir(folder / "nightly")
     book = json.loads((NIGHTLY / "failures.ipynb").read_text(encoding="utf-8"))
     names = {}
     for cell in book["cells"]:
