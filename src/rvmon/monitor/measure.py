@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from rvmon.errors import TraceError, UnknownNameError
+from rvmon.monitor.c.notes import MEASURING, noted
 from rvmon.monitor.compiled.refusal import of_measured_c
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
@@ -69,9 +70,12 @@ def robustness_monitor(
 
 def _is_prepared(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
     """Whether compiled C lies ready that measures the requirements as Python does."""
+    chosen = compiled.chosen(only)
+    if not noted(MEASURING, compiled, chosen):
+        return False
     from rvmon.monitor.c.prepared import measuring_prepared
 
-    return measuring_prepared(compiled, compiled.chosen(only)) is not None
+    return measuring_prepared(compiled, chosen) is not None
 
 
 def _is_c(engine: str) -> bool:

@@ -2,30 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
-from rvmon.cache import cache_folder, file_stamps, is_whole, keep, read_kept
-from rvmon.codegen.c_build import Build, built, processor
+from rvmon.codegen.c_build import Build, built
 from rvmon.codegen.c_online import Core, OnlineLibrary, library_of, online_build, type_in
 from rvmon.monitor.c.beside import Beside, LendingMonitor, beside, plan_beside
+from rvmon.monitor.c.notes import BESIDE, MEASURING, key_of, note, noted
 from rvmon.monitor.compiled.code_plan import plan_alone, plan_requirements
 from rvmon.monitor.compiled.refusal import of_prepared, of_prepared_margins
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.forms import Forms
-from rvmon.monitor.online.snapshot import digest_of
 from rvmon.plan.plan import Plan
-
-_BESIDE, _MEASURING = "beside", "measuring"
-"""What a file is for."""
-
-_PACKAGE = Path(__file__).parents[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +45,7 @@ def prepare_beside(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
     if not taken:
         return None
     build = online_build(plan_beside(plan_requirements(compiled, taken)), beside=True)
-    return _built(_BESIDE, build, compiled, chosen, taken)
+    return _built(BESIDE, build, compiled, chosen, taken)
 
 
 def prepare_measuring(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]) -> Path:
@@ -69,11 +59,11 @@ def prepare_measuring(compiled: CompiledSpec, chosen: Sequence[CompiledRequireme
         RvmonError: there is no compiler or no cache, or C does not measure a requirement.
     """
     build = online_build(_measured_plan(compiled, chosen), measured=True)
-    return _built(_MEASURING, build, compiled, chosen, chosen)
+    return _built(MEASURING, build, compiled, chosen, chosen)
 
 
 def _measured_plan(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]) -> Plan:
-    return plan_alone(compiled, _ids(chosen), measured=True)
+    return plan_alone(compiled, [one.requirement.id for one in chosen], measured=True)
 
 
 def _built(
@@ -85,9 +75,7 @@ def _built(
 ) -> Path:
     """Compile, and note where it lies, and what of it is judged."""
     path = built(build)
-    content = json.dumps([_maker(), path.name, _ids(taken)]).encode()
-    keep(_note(use, path.parent, compiled, chosen), content)
-    compiled.forms.pop(_key(use, chosen), None)
+    note(use, path, compiled, chosen, taken)
     return path
 
 
@@ -108,11 +96,9 @@ def prepared_beside(
         chosen: the requirements.
         sources: the names that can arrive; `None`: all.
     """
-    if not _has_gil():
-        return None
-    key = _key(_BESIDE, chosen)
+    key = key_of(BESIDE, chosen)
     if key not in compiled.forms:
-        found = _type(_BESIDE, compiled, chosen)
+        found = _type(BESIDE, compiled, chosen)
         compiled.forms[key] = found and _prepared(compiled, chosen, *found)
     own = compiled.forms[key]
     if not isinstance(own, PreparedBeside):
@@ -171,59 +157,25 @@ def measuring_prepared(
         compiled: the specification.
         chosen: the requirements, from it.
     """
-    if not chosen or not _has_gil() or any(map(of_prepared_margins, chosen)):
+    if not chosen or any(map(of_prepared_margins, chosen)):
         return None
-    key = _key(_MEASURING, chosen)
+    key = key_of(MEASURING, chosen)
     if key not in compiled.forms:
-        found = _type(_MEASURING, compiled, chosen)
+        found = _type(MEASURING, compiled, chosen)
         compiled.forms[key] = found and library_of(_measured_plan(compiled, chosen), found[0])
     own = compiled.forms[key]
     return own if isinstance(own, OnlineLibrary) else None
-
-
-def _has_gil() -> bool:
-    return bool(getattr(sys, "_is_gil_enabled", lambda: True)())
 
 
 def _type(
     use: str, compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
 ) -> tuple[Callable[..., Core], Sequence[str]] | None:
     """The type that was compiled ahead, and ids of what it judges."""
-    folder = cache_folder()
-    note = None if folder is None else read_kept(_note(use, folder, compiled, chosen))
-    if folder is None or note is None:
+    found = noted(use, compiled, chosen)
+    if found is None:
         return None
-    try:
-        maker, name, ids = json.loads(note)
-    except ValueError:
-        return None
-    path = folder / Path(name).name
-    if maker != _maker() or not is_whole(path):
-        return None
+    path, ids = found
     try:
         return type_in(path), ids
     except (OSError, ImportError):  # of another machine that shares the folder
         return None
-
-
-def _key(use: str, chosen: Sequence[CompiledRequirement]) -> tuple[object, ...]:
-    return (use, *_ids(chosen))
-
-
-def _ids(chosen: Sequence[CompiledRequirement]) -> list[str]:
-    return [one.requirement.id for one in chosen]
-
-
-def _note(
-    use: str, folder: Path, compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
-) -> Path:
-    """Where it stands which file was made of some requirements."""
-    key = (digest_of(compiled), _ids(chosen))
-    return folder / f"{use}-{hashlib.sha256(repr(key).encode()).hexdigest()[:40]}.json"
-
-
-@cache
-def _maker() -> str:
-    """What else a file depends on: this package, this Python, this processor."""
-    key = (list(file_stamps(str(_PACKAGE))), sys.version, processor())
-    return hashlib.sha256(repr(key).encode()).hexdigest()

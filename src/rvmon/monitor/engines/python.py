@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rvmon.monitor.c.notes import BESIDE, noted
 from rvmon.monitor.compiled.refusal import MOST_GENERATED, Refusal, of_generated, too_many
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -48,8 +49,13 @@ def generated_or_tables(
         monitor = Monitor(compiled, chosen, engine, *how)
     else:
         prepared = None
-        if engine == "auto" and asked.settle == "now" and compiled.checked.max_delay is None:
-            from rvmon.monitor.c.prepared import prepared_beside  # few have prepared anything
+        if (
+            engine == "auto"
+            and asked.settle == "now"
+            and compiled.checked.max_delay is None
+            and noted(BESIDE, compiled, chosen)
+        ):
+            from rvmon.monitor.c.prepared import prepared_beside
 
             prepared = prepared_beside(compiled, chosen, asked.sources)
         left = asked.left

@@ -129,7 +129,7 @@ def test_auto_measures_by_what_is_compiled(monkeypatch):
         return type(monitor), [*found, list(monitor.open), list(monitor.finish(9.0))]
 
     ready, ours = figures()
-    monkeypatch.setattr("rvmon.monitor.c.prepared._maker", lambda: "another version")
+    monkeypatch.setattr("rvmon.monitor.c.notes._maker", lambda: "another version")
     spec = rvmon.loads(SPEC)
     python, theirs = figures()
     assert (ready, python) == (CompiledRobustnessMonitor, RobustnessMonitor)
