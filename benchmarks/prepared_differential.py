@@ -26,9 +26,9 @@ MODELS = tuple(TimeModel)
 
 
 def windowed(rng: random.Random) -> CheckedSpec:
-    """A specification of windows within windows that a network judges, and C can."""
+    """A specification of windows, or `until`, within windows that a network judges, and C can."""
     while True:
-        spec = random_chain(rng)
+        spec = random_chain(rng, untils=rng.random() < 0.5)
         (one,) = compile_spec(spec).chosen(None)
         if one.engine("auto") == "network" and of_prepared(one) is None:
             return spec

@@ -46,17 +46,42 @@ def reach_of(plan: NetworkPlan) -> int | None:
             case Leaf():
                 return 0
             case Junction(operands=operands):
-                return greatest(*operands)
+                return known([within(node, place) for place in operands])
             case Window(operand=operand, over=int(over)):
-                inner = greatest(operand)
-                return None if inner is None else inner + over
+                return after(over, operand)
             case Window() | Shift() | Sweep():
                 return None
 
+    def within(junction: Junction, place: int) -> int | None:
+        """The reach of an operand, or that of an `until` which another operand bounds.
+
+        Where its right operand is not met in time, that decides the junction; where it is, that
+        decides the `until`.
+        """
+        node = plan.nodes[place]
+        low = node.offset if isinstance(node, Shift) else 0
+        swept = plan.sweep_of(node) if isinstance(node, Shift) else node
+        if isinstance(swept, Sweep) and swept.future and swept.dual is not junction.every:
+            for bound in map(plan.nodes.__getitem__, junction.operands):
+                match bound:
+                    case Window(over=int(over)) if (
+                        bound.operand == swept.right
+                        and bound.every is swept.dual
+                        and bound.low == low
+                    ):
+                        return after(over, swept.left, swept.right)
+        return reach(node)
+
+    def after(over: int, *places: int) -> int | None:
+        inner = greatest(*places)
+        return None if inner is None else inner + over
+
     def greatest(*places: int) -> int | None:
-        found = [reach(plan.nodes[place]) for place in places]
-        known = [one for one in found if one is not None]
-        return max(known) if len(known) == len(found) else None
+        return known([reach(plan.nodes[place]) for place in places])
+
+    def known(found: Sequence[int | None]) -> int | None:
+        bounds = [one for one in found if one is not None]
+        return max(bounds) if len(bounds) == len(found) else None
 
     root = plan.nodes[-1]
     if isinstance(root, Sweep) and root.future:

@@ -227,13 +227,12 @@ def _until(network: Knowledge, place: int, node: Sweep, made: Sequence[Soonest])
             found = left(network, side, start, FAR)
             is_cut = bool(cut) and cut[-1][1] >= start
             return min(found, right(network, side, start, FAR)) if is_cut else found
-        # What is known not to be met all the way up to now ends as soon as the way does.
+        # What is known not to be met all the way up to now ends as soon as the way does; of what is
+        # swept it may be forgotten that it is known.
         found = right(network, side, start, now)
-        run = around(missed, now)
-        if run is not None and network.unknown_from(place, max(first, run[0])) > min(now, last):
-            run = None
-        if run is not None or last > now:
-            found = min(found, left(network, side, now + 1, FAR))
-        return found
+        ends = last > now or swept[place] > now
+        if not ends and (run := around(missed, now)) is not None:
+            ends = network.unknown_from(place, max(first, run[0])) <= min(now, last)
+        return min(found, left(network, side, now + 1, FAR)) if ends else found
 
     return soonest

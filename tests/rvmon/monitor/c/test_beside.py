@@ -4,10 +4,12 @@ import random
 import tracemalloc
 
 import pytest
+from tests.tools.chains import random_chain
 from tests.tools.differential import cases_of
 from tests.tools.prepared import Run, compiled_beside, differences
 
 import rvmon
+from rvmon.monitor.compiled.specification import compile_spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile, random_trace
@@ -95,6 +97,22 @@ def test_both_say_the_same_where_a_network_judges(time):
     found = [differences(pair, random_trace(rng, spec, traces), f"{n}") for n in range(3)]
     assert [told for told, _ in found] == [[]] * len(found)
     assert sum(taken for _, taken in found) > 0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_both_say_the_same_of_windows_and_until(seed):
+    """Also what stood at a decision that is found only as the next sample comes."""
+    rng, taken = random.Random(f"until {seed}"), 0
+    while not taken:
+        spec = random_chain(rng, untils=True)
+        [one] = compile_spec(spec).chosen(None)
+        pair = compiled_beside(spec) if one.engine("auto") == "network" else None
+        if pair is not None:
+            traces = TraceProfile(samples=60, span=240, unknowns=seed == 0, long=20)
+            cases = [random_trace(rng, spec, traces) for _ in range(6)]
+            found = [differences(pair, case, f"{seed}/{n}") for n, case in enumerate(cases)]
+            assert [told for told, _ in found] == [[]] * len(found)
+            taken = sum(taken for _, taken in found)
 
 
 OPEN = "time held\nsignal q : bool\nrequirement R\n  always F[0 ns, 30 ns] G[0 ns, 9 ns] q\n"
