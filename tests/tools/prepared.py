@@ -70,7 +70,8 @@ def compiled_beside(spec: CheckedSpec) -> Pair | None:
     left = compiled.requirements.keys() - taken
     forms, shared = (forms_of(compiled, chosen, None, left=names) for names in ((), left))
     try:
-        library = online_library(plan_beside(shared.plan), optimised=False, beside=True)
+        plan = plan_beside(shared.plan, shared.requirements)
+        library = online_library(plan, optimised=False, beside=True)
     except RvmonError:
         return None
     return Pair(compiled, forms, shared, beside(shared, library))

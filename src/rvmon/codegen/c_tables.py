@@ -26,14 +26,12 @@ _WAITING = ", ".join([str(PASSED + 1), "0", *("NULL" for _ in _TABLES)])
 """In place of an automaton where a network judges: an attempt is neither passed nor failed."""
 
 
-def automata_source(
-    plan: Plan, networks: Mapping[int, int], numbers: Sequence[int]
-) -> Iterator[str]:
+def automata_source(plan: Plan, forms: Mapping[int, int], numbers: Sequence[int]) -> Iterator[str]:
     """The tables of all requirements, and the array `automata` of them.
 
     Args:
         plan: what is generated.
-        networks: by number of a judge without an automaton, that of its network.
+        forms: by number of a judge that has one, that of its form; see `Networks`.
         numbers: of the requirements of its rules, among all.
     """
     width = max((r.automaton.clocks for _, r in plan.judges if r.automaton), default=0) or 1
@@ -48,10 +46,11 @@ def automata_source(
             yield from _arrays(data, index, width)
             machine = _machine(data, index)
         yield array("uint8_t", f"outcomes{index}", outcomes(rule.requirement.at_end))
-        judging = f"{machine}, {networks.get(index, -1)}"
+        form = forms.get(index, -1)
+        judging = f"{machine}, {form if rule.automaton is None else -1}, {form}"
         entries.append(_entry(plan, (owner, numbers[owner]), rule, judging, index))
     if not entries:  # which C does not have
-        places, flags = ", ".join(["-1"] * 9), ", ".join(["false"] * 4)
+        places, flags = ", ".join(["-1"] * 10), ", ".join(["false"] * 4)
         entries.append(f"    {{{_WAITING}, {places}, {flags}, NULL}},")
     yield ""
     yield "static const automaton automata[] = {"

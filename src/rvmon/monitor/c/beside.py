@@ -17,16 +17,18 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.codegen.c_online import ALWAYS, BY_CHANGE, NOBODY, OnlineLibrary
 from rvmon.errors import OverlapError, TraceError
+from rvmon.formula.core import Literal
 from rvmon.monitor.attempts.evaluator_classes import names_looked_at
 from rvmon.monitor.c.exchange import Exchange
 from rvmon.monitor.c.noted_reasons import NotedReasons
+from rvmon.monitor.compiled.refusal import of_tables
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.forms import Forms
 from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.monitor.online.one_call import overlap
 from rvmon.monitor.records.ledger import Ledger
-from rvmon.plan.plan import Plan
+from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.plan.planning import plan_of
 from rvmon.runtime.nodes import LIMIT
 from rvmon.trace.sample import Value
@@ -41,14 +43,29 @@ _FEW, _MANY = 4, 256
 time that it had it back soon."""
 
 
-def plan_beside(plan: Plan) -> Plan:
+def plan_beside(plan: Plan, requirements: Sequence[CompiledRequirement]) -> Plan:
     """What is compiled to stand beside generated Python: all but what reports the unknown.
+
+    Where that follows windows, compiled code steps the automaton, if there is one.
 
     Args:
         plan: of the generated Python.
+        requirements: that it is of.
     """
-    known = [replace(rule, hidden=None, determined=None) for rule in plan.rules]
+    known = [
+        replace(_stepped(one, rule), hidden=None, determined=None)
+        for one, rule in zip(requirements, plan.rules, strict=True)
+    ]
     return plan_of(plan.spec, known)
+
+
+def _stepped(one: CompiledRequirement, rule: PlannedRule) -> PlannedRule:
+    if rule.automaton is not None or of_tables(one) is not None:
+        return rule
+    told = {core.proposition for _, core in one.network_plan.leaves if isinstance(core, Literal)}
+    if not told.issuperset(rule.alphabet.propositions):
+        return rule
+    return replace(rule, automaton=one.slim, is_lettered=True)
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,14 @@ from rvmon.codegen.c_nodes import group_count, group_of
 from rvmon.codegen.c_online import NEVER as C_NEVER
 from rvmon.codegen.c_online import NOT_YET, OnlineLibrary, largest_taken
 from rvmon.formula.state import COMBINING, FALSE, TRUE, UNKNOWN, State, StateOp
-from rvmon.monitor.c.exchange_rules import bounded, instant, is_plain, rule_words, take_rule
+from rvmon.monitor.c.exchange_rules import (
+    begins_with_letters,
+    bounded,
+    instant,
+    is_plain,
+    rule_words,
+    take_rule,
+)
 from rvmon.monitor.online.forms import Forms
 from rvmon.monitor.online.generated import GeneratedEvaluators
 from rvmon.runtime.past import History
@@ -84,6 +91,9 @@ class Exchange:
         if not self._names_read.isdisjoint(evaluators.outages.now):
             return None
         if not self._is_known(unit) or not all(map(is_plain, unit.rules)):
+            return None
+        rules = zip(unit.rules, self._plan.rules, strict=False)
+        if not all(begins_with_letters(rule) for rule, planned in rules if planned.is_lettered):
             return None
         if unit.gathered and not self._is_clocked:
             unit.leave()  # what nobody reads has occurred

@@ -54,6 +54,13 @@ def is_plain(rule: Rule) -> bool:
     )
 
 
+def begins_with_letters(rule: Rule) -> bool:
+    """Whether all letters are noted that the oldest attempt of windows has seen."""
+    attempts: list[Open] = rule.undecided()
+    letters = rule.lent() if isinstance(rule, NetworkJudge) else None
+    return not attempts or (bool(letters) and letters[0][0] <= attempts[0].triggered)
+
+
 def rule_words(rule: Rule, count: int) -> Iterator[int]:
     """The state of a rule; `count`: the number of its last attempt."""
     attempts: list[Open] = rule.undecided()

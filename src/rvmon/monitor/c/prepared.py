@@ -44,7 +44,7 @@ def prepare_beside(compiled: CompiledSpec, chosen: Sequence[CompiledRequirement]
     taken = taken_of(chosen)
     if not taken:
         return None
-    build = online_build(plan_beside(plan_requirements(compiled, taken)), beside=True)
+    build = online_build(plan_beside(plan_requirements(compiled, taken), taken), beside=True)
     return _built(BESIDE, build, compiled, chosen, taken)
 
 
@@ -118,7 +118,7 @@ def _prepared(
     ids: Sequence[str],
 ) -> PreparedBeside:
     taken = [one for one in chosen if one.requirement.id in ids]
-    plan = plan_beside(plan_requirements(compiled, taken))
+    plan = plan_beside(plan_requirements(compiled, taken), taken)
     left = frozenset(one.requirement.id for one in chosen if one.is_fed) - {*ids}
     return PreparedBeside(library_of(plan, type_), left)
 
