@@ -137,10 +137,10 @@ def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
     while True:
         contender.prepare(workload, rows)
         spent = max(contender.run().cpu_ns, 1)
-        if rows == workload.rows or spent >= budget / 10:
+        fitting = min(max(int(rows * budget / spent), FEWEST_ROWS), workload.rows)
+        if fitting <= rows or spent >= budget / 2:  # what each pass costs once weighs little
             break
-        rows = min(10 * rows, workload.rows)
-    fitting = min(max(int(rows * budget / spent), FEWEST_ROWS), workload.rows)
+        rows = min(10 * rows, fitting)
     if fitting != rows:
         contender.prepare(workload, fitting)
     return fitting

@@ -150,8 +150,9 @@ class Knowledge:
         wanted[-1] = position
         for place in range(len(nodes) - 1, -1, -1):
             node, base = nodes[place], wanted[place]
-            if isinstance(node, Sweep) and not node.future:
-                base = min(base, self._take_over(place))
+            if isinstance(node, Sweep):
+                base = self.positions.alike_from(base)
+                base = base if node.future else min(base, self._take_over(place))
             for ranges in self.known[place]:
                 drop(ranges, base)
             start = max(base, self.pending[place])

@@ -79,6 +79,14 @@ class Positions:
         index = bisect_left(self.stamps, integer)
         return self.stamps[index] if index < len(self.stamps) else max(integer, self.last + 1)
 
+    def alike_from(self, integer: int) -> int:
+        """The first integer of which no more can be known than of one: both lie before a position.
+
+        Where that is still to come, the one behind the last position.
+        """
+        index = bisect_left(self.stamps, integer) if self.sparse else 0
+        return self.stamps[index - 1] + 1 if index else integer
+
     def standing_at(self, integer: int) -> int:
         """The last position not behind an integer, or the integer itself if there is none."""
         if not self.sparse:

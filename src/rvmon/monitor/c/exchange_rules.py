@@ -57,8 +57,8 @@ def is_plain(rule: Rule) -> bool:
 def begins_with_letters(rule: Rule) -> bool:
     """Whether all letters are noted that the oldest attempt of windows has seen."""
     attempts: list[Open] = rule.undecided()
-    letters = rule.lent() if isinstance(rule, NetworkJudge) else None
-    return not attempts or (bool(letters) and letters[0][0] <= attempts[0].triggered)
+    letters = (isinstance(rule, NetworkJudge) and rule.lent()) or ()
+    return not attempts or any(t <= attempts[0].triggered for t, _ in letters[:1])
 
 
 def rule_words(rule: Rule, count: int) -> Iterator[int]:

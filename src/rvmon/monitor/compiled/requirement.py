@@ -14,7 +14,6 @@ from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.table import TableMachine
-from rvmon.codegen.python_margins import gauge_class
 from rvmon.codegen.python_windows import windows_class
 from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
@@ -203,6 +202,8 @@ class CompiledRequirement:
     @cached_property
     def gauge(self) -> type[Gauge]:
         """What measures it, generated once for all of its attempts."""
+        from rvmon.codegen.python_margins import gauge_class
+
         return gauge_class(self.measured_plan, self.gap)
 
     @cached_property

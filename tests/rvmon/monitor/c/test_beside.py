@@ -115,6 +115,58 @@ def test_both_say_the_same_of_windows_and_until(seed):
             taken = sum(taken for _, taken in found)
 
 
+AT_ONCE = """
+spec s
+signal p, q, r : bool
+requirement R
+  whenever p then within 2 s for 5 s (q or r)
+"""
+
+
+def test_a_decision_shows_what_was_read_then():
+    """Though it is found as the next sample comes, which changes what is read."""
+    pair = compiled_beside(rvmon.loads(AT_ONCE).checked)
+    assert pair is not None
+    assert [rule.automaton for rule in pair.forms.plan.rules] == [None]
+    run, shown = Run(pair, None, listens=False), []
+    for t in range(300):
+        values = {"p": t % 25 == 3, "q": t % 25 > 11, "r": t % 25 > 3}
+        values["q"] = values["q"] != (t % 25 == 14)
+        run.both(lambda monitor, t=t, values=values: [*map(repr, monitor.step(2 * t, values))])
+    run.both(lambda monitor: shown.append(monitor.finish().attempts))
+    assert run.found == []
+    assert [repr(one) for one in shown[0]] == [repr(one) for one in shown[1]]
+    assert {one.verdict.value for one in shown[1]} == {"P"}
+    assert run.lending.taken > 200
+
+
+FOLLOWED = """
+spec s
+time {}
+signal p, q : bool
+requirement R
+  upon p then for 9 ns within 3 ns q
+"""
+
+
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 3 ns"])
+def test_both_say_the_same_where_c_steps_an_automaton_instead_of_windows(time):
+    """It goes on from letters, and has them when Python goes on."""
+    pair = compiled_beside(rvmon.loads(FOLLOWED.format(time)).checked)
+    assert pair is not None
+    assert [rule.automaton for rule in pair.forms.plan.rules] == [None]
+    run, rng, t = Run(pair, None, listens=False), random.Random(time), 0
+    for _ in range(600):
+        t += rng.choice((1, 1, 2, 3, 7))
+        values = {"p": rng.random() < 0.3, "q": rng.random() < 0.6}
+        run.both(lambda monitor, t=t, values=values: [*map(repr, monitor.step_ns(t, values))])
+        if rng.random() < 0.02:
+            run.both(lambda monitor: [*map(repr, monitor.open)])
+    run.both(lambda monitor: repr(monitor.finish().attempts))
+    assert run.found == []
+    assert run.lending.taken > 50
+
+
 OPEN = "time held\nsignal q : bool\nrequirement R\n  always F[0 ns, 30 ns] G[0 ns, 9 ns] q\n"
 
 
