@@ -167,6 +167,34 @@ def test_both_say_the_same_where_c_steps_an_automaton_instead_of_windows(time):
     assert run.lending.taken > 50
 
 
+CROWDED = """
+spec s
+time {}
+signal q : bool
+event e
+requirement R
+  upon e then for 300 ns within 9 ns q
+"""
+
+
+@pytest.mark.parametrize("time", ["held", "sampled"])
+def test_many_and_few_open_attempts_are_judged_alike(time):
+    """C has a network judge many attempts at once, and goes back to the automaton."""
+    pair = compiled_beside(rvmon.loads(CROWDED.format(time)).checked)
+    assert pair is not None
+    run, rng, most = Run(pair, None, listens=False), random.Random(time), 0
+    for t in range(3000):
+        values = {"q": rng.random() < (0.5 if t % 700 > 200 else 0.1), "e": t % 700 > 150}
+        run.both(lambda monitor, t=t, values=values: [*map(repr, monitor.step_ns(t, values))])
+        if t % 499 == 0:
+            run.both(lambda monitor: len(monitor.open))
+            most = max(most, len(run.plain.open))
+    run.both(lambda monitor: repr(monitor.finish_ns(3000).attempts))
+    assert run.found == []
+    assert run.lending.taken > 2000
+    assert most > 100
+
+
 OPEN = "time held\nsignal q : bool\nrequirement R\n  always F[0 ns, 30 ns] G[0 ns, 9 ns] q\n"
 
 
