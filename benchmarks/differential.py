@@ -51,6 +51,7 @@ def judging(
         online_every=options.online_every,
         shrunk=0 if options.fail_fast else options.show,
         silent=("c rows",),
+        windows=options.windows,
     )
 
 
@@ -60,6 +61,9 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--pairs", type=int, default=1_000)
     parser.add_argument("--traces", type=int, default=1, help="of the pairs with one spec")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--windows", type=int, default=0, help="per cent of the specs that are windows in windows"
+    )
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
     parser.add_argument("--engine", nargs="+", default=["auto"], metavar="ENGINE", help=_ENGINES)
     parser.add_argument("--workers", type=int, default=1)

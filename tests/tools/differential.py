@@ -17,6 +17,7 @@ from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.law.walk import intervals
 from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Attempt, Decision
+from tests.tools.chains import random_chain
 from tests.tools.features import Feature, features
 from tests.tools.frame import frame_differences
 from tests.tools.health import health_differences
@@ -107,11 +108,22 @@ class Campaign:
 
 
 def cases_of(
-    seed: object, profile: Profile, traces: TraceProfile, number: int = 1
+    seed: object, profile: Profile, traces: TraceProfile, number: int = 1, *, windows: int = 0
 ) -> Iterator[Case]:
-    """The random cases of a seed, the same for ever: one specification, so many traces."""
+    """The random cases of a seed, the same for ever: one specification, so many traces.
+
+    Args:
+        seed: whatever tells cases apart.
+        profile: of the spec.
+        traces: of the traces.
+        number: of traces.
+        windows: per cent of the specs that are windows, and `until`, within windows.
+    """
     rng = random.Random(str(seed))
-    spec = random_spec(rng, profile)
+    if windows and rng.random() * 100 < windows:
+        spec = random_chain(rng, untils=rng.random() < 0.7)
+    else:
+        spec = random_spec(rng, profile)
     for _ in range(number):
         yield random_trace(rng, spec, traces)
 
@@ -186,6 +198,7 @@ def campaign_of(
     online_every: int = 10,
     shrunk: int = 3,
     silent: Container[str] = (),
+    windows: int = 0,
 ) -> Campaign:
     """Judge the cases of each seed with the oracle, once, and with some engines.
 
@@ -199,9 +212,14 @@ def campaign_of(
             0 for none.
         shrunk: so many disagreements of an engine are shrunk and shown, the others only named.
         silent: the engines that say nothing before the end.
+        windows: see `cases_of`.
     """
     campaign = Campaign(Mix(), {name: Tally() for name in engines})
-    cases = ((seed, case) for seed in seeds for case in cases_of(seed, profile, traces, each))
+    cases = (
+        (seed, case)
+        for seed in seeds
+        for case in cases_of(seed, profile, traces, each, windows=windows)
+    )
     for index, (seed, case) in enumerate(cases):
         asked = online_every > 0 and index % online_every == 0
         judgement = Judgement(case)
