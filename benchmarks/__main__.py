@@ -235,7 +235,8 @@ def main(argv: Sequence[str]) -> int:
     """Measure and write the page."""
     options = parse(argv)
     size = QUICK if options.quick else Size()
-    command = " ".join(["python -m benchmarks", *argv])
+    shown = ["FOLDER" if Path(one) == options.r2u2 else one for one in argv]
+    command = " ".join(["python -m benchmarks", *shown])
     findings = run(size, options.only, command, options.r2u2)
     options.out.write_text(render(findings), encoding="utf-8")
     _say(f"wrote {options.out}")
