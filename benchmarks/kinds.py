@@ -1,11 +1,12 @@
 """What each kind of requirement that people write costs per sample, in each engine.
 
-    python -m benchmarks.kinds [--rows 4000] [--time sampled] [WORD …]
+    python -m benchmarks.kinds [--rows 4000] [--time sampled] [--events 5] [WORD …]
 
 Thirteen kinds, each demanded at every instant and upon an event that comes in 5 % of the samples,
-over values that are drawn anew and cross at every row, a second apart. Processor time of `step`,
-all in, the least of three passes; `–` where the engine refuses the requirement. The verdicts and
-decision instants of all engines are compared. With words, only kinds that have one of them.
+or in `--events` of them, over values that are drawn anew and cross at every row, a second apart.
+Processor time of `step`, all in, the least of three passes; `–` where the engine refuses the
+requirement. The verdicts and decision instants of all engines are compared. With words, only kinds
+that have one of them.
 """
 
 from __future__ import annotations
@@ -54,13 +55,13 @@ def requirements() -> Iterator[tuple[str, str]]:
         yield f"{name}, upon", f"upon e then ({formula})"
 
 
-def rows_of(count: int) -> list[dict[str, Value]]:
-    """Samples in which all values change, and now and then an event occurs."""
+def rows_of(count: int, events: float) -> list[dict[str, Value]]:
+    """Samples in which all values change, and in so many per cent of them an event occurs."""
     rng = random.Random("kinds")
     rows: list[dict[str, Value]] = []
     for _ in range(count):
         row: dict[str, Value] = {"x": rng.uniform(0, 10), "y": rng.uniform(0, 10)}
-        if rng.random() < 0.05:
+        if rng.random() * 100 < events:
             row["e"] = True
         rows.append(row)
     return rows
@@ -105,9 +106,10 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--rows", type=int, default=4000)
     parser.add_argument("--time", choices=("held", "sampled"), default="held")
     parser.add_argument("--seconds", type=float, default=1.0, help="for more than one pass")
+    parser.add_argument("--events", type=float, default=5, help="per cent of the samples with one")
     parser.add_argument("words", nargs="*")
     options = parser.parse_args(argv)
-    rows = rows_of(options.rows)
+    rows = rows_of(options.rows, options.events)
     with tempfile.TemporaryDirectory() as folder:  # in which nothing is prepared yet
         os.environ["XDG_CACHE_HOME"] = folder
         return table(options, rows)
