@@ -71,10 +71,14 @@ class Unit:
         """Whether an instance can be made from what the first monitor stands at.
 
         Between two ticks of a clock that has gone on to what the next tick sees: what its trigger
-        was at the last one, which an edge asks for, is gone.
+        was at the last one, which an edge asks for, is gone. It is not asked for where attempts
+        begin whatever the trigger was.
         """
         reach = self._reach
-        return reach is not None and reach.is_fresh and (reach.begins or self.plan.gap in (None, 1))
+        if reach is None or not reach.is_fresh:
+            return False
+        no_edge = self.requirement.pulse or self.requirement.mode is Mode.WHENEVER
+        return self.plan.gap in (None, 1) or (reach.begins and no_edge)
 
     def _shared(self, rule: PlannedRule) -> Iterator[State]:
         """The state formulas of an instance."""

@@ -180,6 +180,15 @@ def test_values_at_the_end_of_a_clock_are_refused():
             "upon p or g.k == key then true",
             [(0, {"g": {"k": None}}), (1, {}), (3, {"g": {"k": 1}})],
         ),
+        # Nor is it where the trigger is an edge only because the past of it never holds.
+        (
+            "upon (once[1 ns, 1 ns] true) or g.k == key then true",
+            [(0, {"g": None}), (2, {}), (3, {"g": {"k": 0}})],
+        ),
+        (
+            "upon (once[1 ns, 1 ns] true) or g.k == key then true",
+            [(0, {}), (1, {"g": True}), (2, {"g": {"k": 1}}), (9, {})],
+        ),
         # What came since the last tick did not occur at it.
         ("upon g then key >= h.m", [(0, {}), (4, {"h": {"m": 0}}), (5, {"g": {"k": 0}}), (7, {})]),
     ],
