@@ -86,6 +86,17 @@ def test_each_call_returns_what_the_network_of_python_does(form, model):
         assert told(spec.monitor(engine="c"), rows) == told(spec.monitor(engine="network"), rows)
 
 
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("engine", ["c", "network"])
+def test_no_window_of_the_past_holds_what_is_taken_of_a_since_before_the_trace(engine, model):
+    """`once` was met nowhere before the first position, which is in no window either."""
+    form = "upon start then historically[0 s, 5 s] once F[0 s, 3 s] q"
+    rows = [(0, {"q": False}), (1 * S, {}), (2 * S, {"q": True})]
+    monitor = rvmon.loads(text_of(form, model)).monitor(engine=engine)
+    decided = [one for t, values in rows for one in monitor.step_ns(t, values)]
+    assert [(str(one.verdict), one.decided) for one in decided] == [("P", 2 * S)]
+
+
 def test_what_stays_unknown_while_nobody_looks_fails_nothing():
     """A value lost since the network was last asked, which is not until the next change."""
     spec = rvmon.loads(text_of(FORMS["between ticks"]))
