@@ -1,0 +1,186 @@
+/* The monitor core: judges a stream of samples by a plan. C99, no Python, no global state.
+ *
+ * A plan (plan.md) is a constant block of bytes, made from a specification by `rvmon.core.plan`. It
+ * is checked once, when it is opened; after that nothing in it can make the core read or write
+ * outside of its memory. Times are nanoseconds between -2^62 and 2^62.
+ *
+ * Unknown values are a kind of number of their own, so NaN never reaches a comparison; still, compile
+ * without -ffast-math and with -ffp-contract=off, or sums differ in the last digit. */
+#ifndef RVMON_CORE_H
+#define RVMON_CORE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define RV_NEVER INT64_MAX
+/* No instant yet: of a run without samples. */
+#define RV_NO_TIME INT64_MIN
+
+/* A number: exact if it is whole, else binary64. Booleans are the whole numbers 0 and 1; labels are
+ * whole numbers that the plan's maker has given them. */
+enum { RV_UNKNOWN = 0, RV_WHOLE = 1, RV_REAL = 2 };
+
+typedef struct {
+    int32_t kind;
+    union {
+        int64_t whole;
+        double real;
+    } as;
+} rv_number;
+
+/* What a sample says of a name: NO is "an event that did not occur"; UNKNOWN, that it was lost. */
+enum { RV_SAYS_NO = 0, RV_SAYS_UNKNOWN = 1, RV_SAYS_YES = 2 };
+
+/* One update. Several of one event in one sample are several occurrences. */
+typedef struct {
+    int32_t name;              /* signals first, then events */
+    int32_t says;              /* of a signal: UNKNOWN or YES */
+    rv_number value;           /* of a signal */
+    const rv_number *fields;   /* of an event that occurs, as many as it has; NULL: all unknown */
+} rv_update;
+
+enum { RV_FAIL = 0, RV_PASS = 1, RV_INCONCLUSIVE = 2, RV_NOT_TRIGGERED = 3 };
+
+/* What settled an attempt: the samples so far; the end of the trace; a policy; nothing. */
+enum { RV_BY_PREFIX = 0, RV_HELD_TO_END = 1, RV_BY_POLICY = 2, RV_OPEN = 3 };
+
+/* The record of an attempt; `decided` of an open one is the end of the trace, or means nothing. */
+typedef struct {
+    int64_t triggered;
+    int64_t decided;
+    int64_t captured;          /* place of its captured values among those of all; -1: it has none */
+    int32_t requirement;
+    uint32_t number;
+    uint8_t verdict;
+    uint8_t decision;
+    uint8_t in_doubt;          /* 1: a trigger that may not have been; counted apart */
+} rv_record;
+
+typedef struct rv_plan rv_plan;
+typedef struct rv_monitor rv_monitor;
+
+/* Where memory comes from. Two functions: from a heap. A block: that alone, and running out of it is
+ * `RV_NO_MEMORY`. Everything is given back at once, by `rv_free`. */
+typedef struct {
+    void *(*allocate)(size_t size);
+    void (*release)(void *memory);
+    void *block;
+    size_t size;
+} rv_memory;
+
+/* Why something was not done. */
+enum {
+    RV_OK = 0,
+    RV_BAD_PLAN = 1,
+    RV_NO_MEMORY = 2,
+    RV_TOO_EARLY = 3,          /* the sample is not later than all before */
+    RV_OUT_OF_RANGE = 4,       /* an instant beyond 2^62 */
+    RV_FINISHED = 5
+};
+
+/* Check a plan: the place of the first section found wrong, -1 if all is well. The bytes are not
+ * copied: they have to stay, aligned to 8. */
+int32_t rv_plan_check(const void *bytes, size_t size);
+
+/* A monitor at the begin of a run; NULL if the plan is wrong or memory is short. */
+rv_monitor *rv_new(const void *plan, size_t size, rv_memory memory);
+void rv_free(rv_monitor *m);
+
+/* Begin another run; names declared absent are so still. */
+int rv_reset(rv_monitor *m);
+
+/* Say that a name has no source: it is unknown throughout. Before the first sample. */
+void rv_set_absent(rv_monitor *m, int32_t name);
+
+/* Judge one sample, whole. What is refused leaves the monitor as it was, except RV_NO_MEMORY: then
+ * the run is spoilt, and no verdict of it is green. */
+int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count);
+
+/* No sample before `t` will come. */
+int rv_advance(rv_monitor *m, int64_t t);
+
+/* End the run, at `t` if that is later than all so far (RV_NO_TIME: where it is). */
+int rv_finish(rv_monitor *m, int64_t t);
+
+/* The last instant of a trace that is finished at `t`; RV_NO_TIME if it has no position. */
+int64_t rv_end(const rv_monitor *m, int64_t t);
+
+/* The next instant at which time alone can decide something. */
+int64_t rv_next_due(rv_monitor *m);
+
+/* The instants of the first and the last sample, and the instant that time has come to. */
+typedef struct {
+    int64_t began;
+    int64_t last;
+    int64_t reached;
+} rv_times;
+
+rv_times rv_times_of(const rv_monitor *m);
+
+/* Records since the last `rv_forget_records`, of each call in the order of reports: by decision, then
+ * requirement, then number. Valid until the next call. */
+int64_t rv_records(const rv_monitor *m, const rv_record **records);
+const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
+void rv_forget_records(rv_monitor *m);
+
+/* Attempts that are open; `take` returns false to end. */
+typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);
+void rv_each_open(const rv_monitor *m, rv_take take, void *user);
+
+/* How many attempts of a requirement failed, passed, stayed open, and whether its trigger was ever
+ * true or false. */
+typedef struct {
+    int64_t failed;
+    int64_t passed;
+    int64_t inconclusive;
+    bool heard;
+    bool open;                 /* an attempt is undecided now */
+} rv_counts;
+
+rv_counts rv_count(const rv_monitor *m, int32_t requirement);
+
+/* The verdict so far: final once the run is finished; never PASS or NOT_TRIGGERED if it is spoilt. */
+int rv_verdict(const rv_monitor *m, int32_t requirement);
+
+/* Whether memory was short in this run. */
+bool rv_spoilt(const rv_monitor *m);
+
+/* What a plan declares. */
+typedef struct {
+    int32_t signals;
+    int32_t events;
+    int32_t fields;
+    int32_t requirements;
+    int32_t captured;          /* the most values that an attempt has */
+} rv_sizes;
+
+rv_sizes rv_sizes_of(const rv_monitor *m);
+
+/* The first field of an event, and how many it has. */
+int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first);
+
+/* Columns: rows of one recording, in ascending order of time. */
+enum { RV_COLUMN_REAL, RV_COLUMN_WHOLE, RV_COLUMN_BYTE };
+
+typedef struct {
+    const void *values;        /* as `kind` says; of an event: NULL */
+    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update */
+    int32_t kind;
+    int32_t name;
+    const rv_number *const *fields; /* of an event: a column for each field, or NULL */
+} rv_column;
+
+/* Judge rows; `done` counts those that were. */
+int rv_rows(rv_monitor *m, const int64_t *times, int64_t rows, const rv_column *columns,
+            int32_t count, int64_t *done);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
