@@ -287,5 +287,7 @@ enum {
     CODE_HYPOT, CODES
 };
 #define PROGRAM_DEPTH 32
+/* Events whose fields one comparison may read. */
+#define PAYLOAD_EVENTS_MOST 8
 
 #endif

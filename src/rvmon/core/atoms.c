@@ -1,0 +1,220 @@
+/* Atoms: what a formula reads off the input at a position. Each is read when its input changes, and
+ * shown by the leaves that speak of it. */
+#include "state.h"
+
+static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
+{
+    const double x = value->as.real;
+    bool holds;
+    if (value->kind != RV_REAL) {
+        return IS_UNKNOWN;
+    }
+    switch (how) {
+    case CMP_LT: holds = x < constant; break;
+    case CMP_LE: holds = x <= constant; break;
+    case CMP_EQ: holds = x == constant; break;
+    case CMP_NE: holds = x != constant; break;
+    case CMP_GE: holds = x >= constant; break;
+    default: holds = x > constant; break;
+    }
+    return holds ? IS_TRUE : IS_FALSE;
+}
+
+static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)
+{
+    const rv_number left = program_value(r, a->left, at);
+    const rv_number right = program_value(r, a->right, at);
+    return (uint8_t)compare_numbers(a->compare, &left, &right);
+}
+
+/* Over fields of events: all combinations of their occurrences are looked at. */
+static uint8_t over_occurrences(const run *r, const atom_plan *a)
+{
+    const int32_t *events = LIST(PLAN(r), a->events);
+    int32_t at[PAYLOAD_EVENTS_MOST];
+    uint8_t found = IS_FALSE;
+    bool absent = false;
+    bool may_occur = true;
+    int32_t i;
+    for (i = 0; i < a->events.count; i++) {
+        const int32_t e = events[i];
+        absent = absent || (r->silent[e] == IS_UNKNOWN);
+        may_occur = may_occur && ((r->silent[e] == IS_UNKNOWN) || (r->payloads[e].count > 0));
+        at[i] = 0;
+    }
+    if (absent || !may_occur) {
+        return may_occur ? IS_UNKNOWN : IS_FALSE;
+    }
+    for (;;) {
+        uint8_t one = IS_UNKNOWN;
+        bool known = true;
+        for (i = 0; i < a->events.count; i++) {
+            const occurrences *o = &r->payloads[events[i]];
+            known = known && (o->known[at[i]] != 0U);
+            r->chosen[events[i]] = at[i];
+        }
+        if (known) {
+            one = compare_at(r, a, r->chosen);
+        }
+        found = (one > found) ? one : found;
+        for (i = a->events.count - 1; i >= 0; i--) {
+            at[i]++;
+            if (at[i] < r->payloads[events[i]].count) {
+                break;
+            }
+            at[i] = 0;
+        }
+        if (i < 0) {
+            break;
+        }
+    }
+    return found;
+}
+
+static uint8_t atom_now(const run *r, const atom_plan *a)
+{
+    const int32_t signals = r->part->plan->signals.count;
+    switch (a->op) {
+    case ATOM_SIGNAL:
+        return (r->value[a->input].kind == RV_UNKNOWN)
+            ? IS_UNKNOWN : truth_if(r->value[a->input].as.whole != 0);
+    case ATOM_REAL: return compare_real(a->compare, &r->value[a->input], a->constant);
+    case ATOM_COMPARE: return compare_at(r, a, NULL);
+    case ATOM_PAYLOAD: return over_occurrences(r, a);
+    case ATOM_EVENT: return r->occurs[a->input];
+    case ATOM_KNOWN_SIGNAL: return truth_if(r->value[a->input].kind != RV_UNKNOWN);
+    case ATOM_KNOWN_EVENT: return truth_if(r->occurs[a->input] != IS_UNKNOWN);
+    case ATOM_UPDATED_SIGNAL:
+        return (r->absent[a->input] != 0U) ? IS_UNKNOWN : truth_if(r->updated[a->input] != 0U);
+    case ATOM_UPDATED_EVENT:
+        return (r->absent[signals + a->input] != 0U)
+            ? IS_UNKNOWN : truth_if(r->updated[signals + a->input] != 0U);
+    case ATOM_CHANGED: return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->changed[a->input];
+    default: return truth_if(r->at.starting);
+    }
+}
+
+/* Whether an atom as it is now speaks of this position only. */
+static bool is_momentary(const run *r, int32_t atom)
+{
+    return (r->atom[atom] != IS_FALSE) && (r->momentary[atom] != 0U);
+}
+
+void recheck(run *r, int32_t atom)
+{
+    const atom_plan *a = &r->part->atoms[atom];
+    const uint8_t now = atom_now(r, a);
+    if (now != r->atom[atom]) {
+        const list nodes = a->nodes[r->at.phase];
+        const int32_t *node = LIST(PLAN(r), nodes);
+        int32_t i;
+        r->atom[atom] = now;
+        for (i = 0; i < nodes.count; i++) {
+            soil(r, node[i]);
+        }
+    }
+    if (is_momentary(r, atom) && (r->is_fresh[atom] == 0U)) {
+        r->is_fresh[atom] = 1;
+        r->fresh[r->at.fresh_count] = atom;
+        r->at.fresh_count++;
+    }
+}
+
+void recheck_list(run *r, list l)
+{
+    const int32_t *atoms = LIST(PLAN(r), l);
+    int32_t i;
+    for (i = 0; i < l.count; i++) {
+        recheck(r, atoms[i]);
+    }
+}
+
+/* Read again what spoke of the last position only; what was read since speaks of this one. */
+void recheck_fading(run *r)
+{
+    const int32_t count = r->at.fading_count;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        r->is_fading[r->fading[i]] = 0;
+    }
+    r->at.fading_count = 0;
+    for (i = 0; i < count; i++) {
+        recheck(r, r->fading[i]);
+    }
+    for (i = 0; i < r->at.fresh_count; i++) {
+        const int32_t atom = r->fresh[i];
+        r->is_fresh[atom] = 0;
+        if (is_momentary(r, atom) && (r->is_fading[atom] == 0U)) {
+            r->is_fading[atom] = 1;
+            r->fading[r->at.fading_count] = atom;
+            r->at.fading_count++;
+        }
+    }
+    r->at.fresh_count = 0;
+}
+
+/* Read an atom anew at a position at which its nodes are worked out anyway. If what occurred is still
+ * `pending`, it speaks of the next position. */
+void reread(run *r, int32_t atom, bool pending)
+{
+    r->atom[atom] = atom_now(r, &r->part->atoms[atom]);
+    if (!is_momentary(r, atom)) {
+        return;
+    }
+    if (pending && (r->is_fresh[atom] == 0U)) {
+        r->is_fresh[atom] = 1;
+        r->fresh[r->at.fresh_count] = atom;
+        r->at.fresh_count++;
+    } else if (!pending && (r->is_fading[atom] == 0U)) {
+        r->is_fading[atom] = 1;
+        r->fading[r->at.fading_count] = atom;
+        r->at.fading_count++;
+    } else {
+        /* It is listed. */
+    }
+}
+
+static bool is_unborn(const run *r, list births)
+{
+    const int32_t *one = LIST(PLAN(r), births);
+    int32_t i;
+    for (i = 0; i < births.count; i++) {
+        if (r->births[one[i] >> 1] <= (one[i] & 1)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether all that is said of the events of an atom is known: an occurrence that is unknown leaves it
+ * unknown, born or not. */
+static bool all_occurrences_known(const run *r, const atom_plan *a)
+{
+    const int32_t *events = LIST(PLAN(r), a->events);
+    int32_t i;
+    int32_t j;
+    for (i = 0; i < a->events.count; i++) {
+        const occurrences *o = &r->payloads[events[i]];
+        if (r->silent[events[i]] == IS_UNKNOWN) {
+            return false;
+        }
+        for (j = 0; j < o->count; j++) {
+            if (o->known[j] == 0U) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+uint8_t leaf_truth(const run *r, const node_plan *n)
+{
+    if (n->op == NODE_UNBORN) {
+        return truth_if(is_unborn(r, n->operands));
+    }
+    if ((r->atom[n->a] == IS_UNKNOWN) && (n->b != IS_UNKNOWN) && is_unborn(r, n->operands)
+        && all_occurrences_known(r, &r->part->atoms[n->a])) {
+        return (uint8_t)n->b;
+    }
+    return r->atom[n->a];
+}

@@ -1,0 +1,245 @@
+/* Attempts of which values are captured: each has a run of its own. They are numbered, and told of, at
+ * the end of each call.
+ *
+ * By then it is known which of all instances came first: where attempts begin at one instant, the
+ * one that was triggered first does, then that of the instance that occurred first. */
+#include "state.h"
+
+#include <string.h>
+
+bool starts_here(const run *r, int32_t index)
+{
+    return ((r->starters >> index) & 1) != 0;
+}
+
+bool is_idle(const run *r)
+{
+    return (r->judges[r->judged].first < 0) && !r->judges[r->judged].running;
+}
+
+static int64_t turn_of(const home *h, int32_t at, bool sure)
+{
+    return sure ? h->turns[at].became : attempt_at(h, at)->triggered;
+}
+
+/* Whether one attempt is to be numbered before another. */
+static bool is_earlier(const home *h, int32_t at, int32_t other, bool sure)
+{
+    const int64_t t = turn_of(h, at, sure);
+    const int64_t other_t = turn_of(h, other, sure);
+    const int64_t triggered = attempt_at(h, at)->triggered;
+    const int64_t other_triggered = attempt_at(h, other)->triggered;
+    if (t != other_t) {
+        return t < other_t;
+    }
+    if (triggered != other_triggered) {
+        return triggered < other_triggered;
+    }
+    return h->turns[at].judge->rank < h->turns[other].judge->rank;
+}
+
+static int32_t *link_of(home *h, int32_t at, bool sure)
+{
+    return sure ? &h->turns[at].next_sure : &h->turns[at].next_doubt;
+}
+
+/* Take it that an attempt became sure at `t`, or began in doubt. */
+void note_turn(run *r, int32_t at, int64_t t)
+{
+    home *h = r->home;
+    const bool sure = attempt_at(h, at)->sure;
+    int32_t *ends = sure ? h->sure : h->doubtful;
+    int32_t before = ends[1];
+    if (sure) {
+        h->turns[at].became = t;
+    }
+    if ((before >= 0) && is_earlier(h, at, before, sure)) {
+        int32_t next = ends[0];
+        before = -1;
+        while (!is_earlier(h, at, next, sure)) {
+            before = next;
+            next = *link_of(h, next, sure);
+        }
+        *link_of(h, at, sure) = next;
+    } else {
+        *link_of(h, at, sure) = -1;
+        ends[1] = at;
+    }
+    if (before < 0) {
+        ends[0] = at;
+    } else {
+        *link_of(h, before, sure) = at;
+    }
+}
+
+/* Take it that an attempt was decided. */
+void note_done(run *r, int32_t at)
+{
+    home *h = r->home;
+    h->turns[at].next_done = -1;
+    if (h->done[1] < 0) {
+        h->done[0] = at;
+    } else {
+        h->turns[h->done[1]].next_done = at;
+    }
+    h->done[1] = at;
+}
+
+/* Number what began, and tell of what was decided. */
+void flush_turns(home *h)
+{
+    int32_t at;
+    for (at = h->sure[0]; at >= 0; at = h->turns[at].next_sure) {
+        h->count++;
+        attempt_at(h, at)->number = h->count;
+    }
+    for (at = h->doubtful[0]; at >= 0; at = h->turns[at].next_doubt) {
+        h->doubts++;
+        h->turns[at].doubt_number = h->doubts;
+    }
+    at = h->done[0];
+    h->sure[0] = h->sure[1] = -1;
+    h->doubtful[0] = h->doubtful[1] = -1;
+    h->done[0] = h->done[1] = -1;
+    while (at >= 0) {
+        turn *own = &h->turns[at];
+        const int32_t next = own->next_done;
+        report(own->judge, own->rule, at, own->verdict, own->decision, own->decided);
+        own->judge = NULL;
+        give_back(h, at);
+        at = next;
+    }
+}
+
+/* The values that an attempt captures which begins at the position of a run, behind that of `for
+ * each`. */
+static void capture(run *r, rv_number *values)
+{
+    const list captures = r->part->plan->captures;
+    const int32_t *programs = LIST(PLAN(r), captures);
+    const int32_t first = r->part->plan->each;
+    rv_number *own = r->captured;
+    int32_t i;
+    r->captured = values; /* one may be made of those before it */
+    for (i = 0; i < captures.count; i++) {
+        values[first + i] = program_value(r, programs[i], NULL);
+    }
+    r->captured = own;
+}
+
+/* Whether an attempt may have begun at this position with other values than it captured. */
+static bool may_be_other(run *r)
+{
+    const judge_plan *j = &r->part->judges[r->judged];
+    const part_plan *p = r->part->plan;
+    run *parent = r->parent;
+    rv_number *now = r->home->room;
+    int32_t i;
+    if (!(parent->doubted && ((j->flags & JUDGE_BLURS_ANYWHERE) != 0))
+        && (parent->truth[j->blurs] != IS_UNKNOWN)) {
+        return false;
+    }
+    now[0] = r->captured[0];
+    capture(parent, now);
+    for (i = p->each; i < p->captured; i++) {
+        if ((now[i].kind == RV_UNKNOWN) || !same_number(&now[i], &r->captured[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* See from the position `t` of its parent whether the values of an attempt stay known. */
+static void keep_watch(run *r, int64_t t)
+{
+    const uint8_t trigger = r->parent->truth[r->part->judges[0].trigger];
+    int32_t at;
+    if (is_idle(r) || (trigger == IS_FALSE)) {
+        r->blurs = false;
+    } else if (r->blurs && (r->cut == NEVER) && may_be_other(r)) {
+        const int32_t *lapsed = LIST(PLAN(r), r->part->plan->lapsed);
+        int32_t i;
+        r->cut = t;
+        r->at.alarm = least(r->at.alarm, t);
+        for (i = 0; i < r->part->plan->lapsed.count; i++) {
+            soil(r, lapsed[i]);
+        }
+    } else {
+        /* They do. */
+    }
+    if (r->cut < NEVER) {
+        for (at = r->judges[r->judged].first; at >= 0; at = attempt_at(r->home, at)->next) {
+            attempt *x = attempt_at(r->home, at);
+            x->hollow = true;
+            x->clouded = (trigger != IS_FALSE) && (x->clouded || (trigger == IS_UNKNOWN));
+        }
+    }
+    r->watched = r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE));
+}
+
+void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
+{
+    home *h = r->home;
+    const bool watched = r->part->judges[index].blurs >= 0;
+    run *made = forked(r);
+    if (made == NULL) {
+        return;
+    }
+    made->parent = r;
+    made->judged = index;
+    made->starters = 0;
+    made->judging = 1 << index;
+    made->opens_at = -LIMIT;
+    made->blurs = true;
+    capture(r, made->captured);
+    if (watched && may_be_other(made)) {
+        made->cut = t;
+    }
+    if ((r->part->plan->flags & PART_REPLAYS) != 0) {
+        replay(made);
+        through(made, t, false);
+    } else {
+        vary(made, t, false);
+    }
+    r->children++;
+    if (h->captured == NULL) {
+        h->captured = made;
+    } else {
+        h->last_captured->next = made;
+    }
+    h->last_captured = made;
+    begin_here(made, index, t, triggered);
+    set_alarm(made, next_position(made));
+    if (watched) {
+        keep_watch(made, t);
+    }
+}
+
+/* Have those looked after that were triggered here, at the position `t`. */
+void look_after(run *r, int64_t t)
+{
+    run *one;
+    bool some = false;
+    int32_t i;
+    for (one = (r->children > 0) ? r->home->captured : NULL; one != NULL; one = one->next) {
+        if ((one->parent == r) && one->watched) {
+            keep_watch(one, t);
+            some = some || one->watched;
+        }
+    }
+    r->stays_busy = false;
+    for (i = 0; some && (i < r->part->plan->events.count); i++) {
+        /* Payloads are others behind this position. */
+        r->stays_busy = r->stays_busy || (r->payloads[i].count > 0);
+    }
+}
+
+/* What occurred at the last position is over. */
+void forget_last(run *r)
+{
+    r->touched_now = true;
+    if (r->over) {
+        r->over = false;
+        forget(r);
+    }
+}

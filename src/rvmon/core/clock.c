@@ -1,0 +1,384 @@
+/* Positions and time: which instants are looked at, and in which order things happen there. */
+#include "state.h"
+
+#include <string.h>
+
+/* The smallest multiple of `step` from `start` on that is not before `t`. */
+static int64_t position_from(int64_t start, int64_t step, int64_t t)
+{
+    const int64_t ahead = t - start;
+    return start + (ahead + step - 1) / step * step;
+}
+
+/* Whether the attempt of the episode that runs has failed, and what is owed now does not at once. */
+static bool may_go_on(const run *r, int32_t index)
+{
+    const int32_t again = r->part->judges[index].again;
+    return (again >= 0) && (r->judges[index].failed_at < NEVER) && (r->truth[again] != IS_FALSE);
+}
+
+/* Drop those whose episode is over. */
+static void tidy_failing(run *r)
+{
+    int32_t kept = 0;
+    int32_t i;
+    for (i = 0; i < r->failing_count; i++) {
+        const int32_t index = r->failing[i];
+        if (r->judges[index].failed_at < NEVER) {
+            r->failing[kept] = index;
+            kept++;
+        } else {
+            r->judges[index].is_failing_listed = false;
+        }
+    }
+    r->failing_count = kept;
+}
+
+/* The next position at which an attempt may follow a failure though nothing changes. */
+static int64_t next_start(const run *r)
+{
+    const int64_t step = step_of(r);
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; (GAP(r) > 0) && (i < r->failing_count); i++) {
+        const int32_t index = r->failing[i];
+        if (may_go_on(r, index)) {
+            const int64_t ahead = (r->judges[index].failed_at - r->at.position) / step + 1;
+            found = least(found, r->at.position + ((ahead > 1) ? ahead : 1) * step);
+        }
+    }
+    return found;
+}
+
+/* The next position at which something can change without a further sample. */
+int64_t next_position(const run *r)
+{
+    const int64_t gap = GAP(r);
+    int64_t found = (gap > 1) ? r->at.awaited : NEVER;
+    if ((gap > 0) && r->at.started) {
+        int64_t change = timers_next(&r->wake);
+        if ((r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy) {
+            change = least(change, r->at.position + gap);
+        }
+        if (change < NEVER) {
+            found = least(found, position_from(r->at.position, gap, change));
+        }
+        if (r->failing_count > 0) {
+            found = least(found, next_start(r));
+        }
+        if ((r->cut < NEVER) && (r->cut > r->at.position)) {
+            found = least(found, r->cut);
+        }
+    }
+    return found;
+}
+
+static bool is_restless(const run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->restless_count; i++) {
+        if (r->judges[r->restless[i]].restless) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Set when to look again, of which the next position is known. */
+void set_alarm(run *r, int64_t position)
+{
+    if (!r->at.started) {
+        return;
+    }
+    r->at.alarm = least(position, timers_next(&r->rules));
+    if (GAP(r) == 0) {
+        const bool busy = (r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy
+                          || (r->part->plan->stateful.count > 0) || is_restless(r)
+                          || (r->failing_count > 0)
+                          || ((r->cut < NEVER) && (r->cut > r->at.position));
+        r->at.alarm = busy ? -LIMIT : least(r->at.alarm, timers_next(&r->wake));
+    }
+}
+
+/* What time alone changes by `t`. */
+static void ring(run *r, int64_t t)
+{
+    const int32_t nodes = r->part->plan->timers;
+    while (timers_next(&r->wake) <= t) {
+        const int32_t id = r->wake.ids[0];
+        timers_set(&r->wake, id, NEVER);
+        if (id < nodes) {
+            soil(r, r->part->timed[id]);
+        } else {
+            go_stale(r, id - nodes);
+        }
+    }
+}
+
+/* Whether the truth of its trigger may start attempts of a judge here, or end its episode; the
+ * formula that says so, or -1. */
+static int32_t followed(const run *r, int32_t index)
+{
+    const judge_plan *j = &r->part->judges[index];
+    if (r->part->plan->captured == 0) {
+        return j->trigger;
+    }
+    if (starts_here(r, index)) {
+        return (r->opens_at < NEVER) ? j->trigger : -1;
+    }
+    return (((r->judging >> index) & 1) != 0) ? j->running : -1;
+}
+
+static void touch_all(run *r, uint8_t what)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        touch(r, i, what);
+    }
+}
+
+/* Who is to look at the position at `t` whatever changes there. */
+static void call_up(run *r, int64_t t)
+{
+    int32_t kept = 0;
+    int32_t i;
+    int32_t count;
+    for (i = 0; i < r->repeating_count; i++) {
+        touch(r, r->repeating[i], TOUCHED_TRIGGER);
+    }
+    r->repeating_count = 0;
+    for (i = 0; i < r->restless_count; i++) {
+        const int32_t index = r->restless[i];
+        if (r->judges[index].restless) {
+            touch(r, index, TOUCHED_LETTER);
+            r->restless[kept] = index;
+            kept++;
+        } else {
+            r->judges[index].is_restless_listed = false;
+        }
+    }
+    r->restless_count = kept;
+    if (timers_next(&r->rules) <= t) {
+        count = timers_due(&r->rules, t, r->due_rules);
+        for (i = 0; i < count; i++) {
+            touch(r, r->due_rules[i], TOUCHED_LETTER);
+        }
+    }
+}
+
+/* The first position: everything is looked at. */
+static void start(run *r, int64_t t)
+{
+    int32_t i;
+    r->at.started = true;
+    r->at.starting = true;
+    r->at.origin = t;
+    for (i = 0; i < r->part->plan->atoms.count; i++) {
+        recheck(r, i);
+    }
+    soil_all(r);
+    touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
+}
+
+/* What those that were touched do, each kind of thing for all of them before the next. */
+static void have_judged(run *r, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < r->touched_count; i++) {
+        const int32_t index = r->touched[i];
+        if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && runs_on(r, index)) {
+            look_at(r, index, t);
+        }
+    }
+    for (i = 0; i < r->touched_count; i++) {
+        const int32_t index = r->touched[i];
+        if (((r->judges[index].touched & TOUCHED_LETTER) != 0)
+            && ((r->judges[index].first >= 0) || watches(r, index))) {
+            visit_judge(r, index, t);
+        }
+    }
+    for (i = 0; i < r->touched_count; i++) {
+        const int32_t index = r->touched[i];
+        const int32_t trigger = followed(r, index);
+        if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && (trigger >= 0)
+            && starts(r, index, r->truth[trigger])) {
+            begin(r, index, t, t);
+        }
+        r->judges[index].touched = 0;
+    }
+    r->touched_count = 0;
+    for (i = 0; i < r->failing_count; i++) {
+        const int32_t index = r->failing[i];
+        if (may_go_on(r, index) && (r->judges[index].failed_at < t)) {
+            begin_here(r, index, t, t);
+        }
+    }
+    tidy_failing(r);
+}
+
+/* Move to the position at `t`. */
+void visit(run *r, int64_t t)
+{
+    const bool apart = r->part->plan->captured > 0;
+    const int64_t gap = GAP(r);
+    if (apart) {
+        forget_last(r);
+    }
+    r->at.before = (gap > 0) ? t - gap : r->at.position;
+    if (!r->at.started) {
+        start(r, t);
+    } else {
+        r->at.starting = false;
+        if (gap == 0) {
+            const int32_t *nodes = LIST(PLAN(r), r->part->plan->stateful);
+            int32_t i;
+            for (i = 0; i < r->part->plan->stateful.count; i++) {
+                soil(r, nodes[i]);
+            }
+        }
+    }
+    recheck_fading(r);
+    ring(r, t);
+    if (r->opening && (t >= r->opens_at)) {
+        r->opening = false;
+        touch_all(r, TOUCHED_TRIGGER);
+    }
+    call_up(r, t);
+    work_out(r, t);
+    r->at.position = t;
+    r->at.awaited = NEVER;
+    have_judged(r, t);
+    settle_phase(r);
+    if (apart) {
+        r->over = r->over || r->at.gathered; /* who captures sees it until the next position */
+        r->at.gathered = false;
+        look_after(r, t);
+    } else if (r->at.gathered) {
+        r->at.gathered = false;
+        forget(r);
+    } else {
+        /* There is nothing to forget. */
+    }
+}
+
+/* Let time come to `t`, of which no position is known. */
+void reach(run *r, int64_t t)
+{
+    if (timers_next(&r->rules) <= t) {
+        const int32_t count = timers_due(&r->rules, t, r->due_rules);
+        int32_t i;
+        for (i = 0; i < count; i++) {
+            reach_judge(r, r->due_rules[i], t);
+        }
+    }
+}
+
+/* Let time pass up to `limit`, positions there included, without a further sample. If a sample
+ * `comes` behind it, what networks find can wait for that. */
+void through(run *r, int64_t limit, bool comes)
+{
+    const list networked = r->part->plan->networked;
+    const int32_t *index = LIST(PLAN(r), networked);
+    const int64_t gap = GAP(r);
+    const bool restarts = r->part->restarts && (gap > 0);
+    int64_t position;
+    int32_t i;
+    for (;;) {
+        int64_t until;
+        int64_t stop;
+        position = next_position(r);
+        until = least(position - 1, limit);
+        for (i = 0; (gap <= 1) && (comes || (position <= limit)) && (i < networked.count); i++) {
+            network_put_off(r, index[i], until);
+        }
+        for (i = 0; restarts && (i < networked.count); i++) {
+            network_approach(r, index[i], until);
+        }
+        /* What fails may be followed by another attempt at once. */
+        stop = restarts ? least(until, timers_next(&r->rules)) : until;
+        if (timers_next(&r->rules) <= stop) {
+            const int32_t count = timers_due(&r->rules, stop, r->due_rules);
+            for (i = 0; i < count; i++) {
+                pass_to(r, r->due_rules[i], stop);
+            }
+        }
+        if ((stop < until) || ((r->failing_count > 0) && (next_start(r) < position))) {
+            continue;
+        }
+        if (position > limit) {
+            break;
+        }
+        visit(r, position);
+    }
+    set_alarm(r, position);
+}
+
+/* Let time come to the tick before a sample. */
+void approach(run *r, int64_t t)
+{
+    if (t > r->at.alarm) {
+        through(r, t - 1, true);
+    }
+}
+
+/* Judge the instant of a sample, of which the updates are taken. */
+void arrive(run *r, int64_t t)
+{
+    const int64_t gap = GAP(r);
+    const bool dirty = r->at.dirty || is_soiled(r);
+    r->at.dirty = false;
+    r->at.after = t;
+    if (dirty || (t >= r->at.alarm)) {
+        if (gap > 1) {
+            r->at.awaited = position_from(0, gap, (t >= 0) ? t : 0);
+            if (t < 0) {
+                r->at.awaited = -((-t) / gap) * gap;
+            }
+            if (r->at.awaited == t) {
+                visit(r, t);
+            } else {
+                reach(r, t);
+            }
+        } else {
+            visit(r, t);
+        }
+        set_alarm(r, next_position(r));
+    }
+    if (gap == 0) {
+        r->at.position = t;
+    }
+}
+
+/* Settle all that are undecided, when time has come to the end. */
+void settle_all(run *r, int64_t end, int64_t reached)
+{
+    int32_t i;
+    int32_t at;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        if (is_networked(r, i)) {
+            network_close(r, i, end);
+        }
+        for (at = r->judges[i].first; at >= 0; at = attempt_at(r->home, at)->next) {
+            settle_attempt(r, i, at, end, reached);
+        }
+    }
+}
+
+/* The next instant at which something is decided if nothing comes. */
+int64_t next_decision(run *r)
+{
+    const list networked = r->part->plan->networked;
+    const int32_t *index = LIST(PLAN(r), networked);
+    int32_t i;
+    for (i = 0; i < networked.count; i++) {
+        network_foresee(r, index[i], LIMIT - 1);
+    }
+    return least(next_position(r), timers_next(&r->rules));
+}
+
+/* Whether the trigger of a judge was ever true or false. */
+bool was_heard(const run *r, int32_t index)
+{
+    const int32_t determined = r->part->judges[index].determined;
+    return r->at.started && ((determined < 0) || is_true(r, determined));
+}

@@ -1,0 +1,438 @@
+/* What an embedding program calls: see core.h. */
+#include "core.h"
+
+#include "state.h"
+
+#include <string.h>
+
+/* Tables of a part that are worked out once: which node a timer belongs to, and which signal. */
+static bool prepare_part(rv_monitor *m, part *p)
+{
+    int32_t i;
+    p->timed = arena_take(&m->memory, (size_t)(p->plan->timers + 1) * sizeof *p->timed);
+    p->perishable = arena_take(&m->memory, (size_t)(p->plan->perishable + 1) * sizeof *p->perishable);
+    if ((p->timed == NULL) || (p->perishable == NULL)) {
+        return false;
+    }
+    for (i = 0; i < p->plan->nodes.count; i++) {
+        if (p->nodes[i].timer >= 0) {
+            p->timed[p->nodes[i].timer] = i;
+        }
+    }
+    for (i = 0; i < p->plan->signals.count; i++) {
+        if (p->signals[i].perishable >= 0) {
+            p->perishable[p->signals[i].perishable] = i;
+        }
+    }
+    for (i = 0; i < p->plan->judges.count; i++) {
+        p->restarts = p->restarts || (p->judges[i].again >= 0);
+    }
+    return true;
+}
+
+static bool prepare(rv_monitor *m)
+{
+    const plan *p = &m->plan;
+    const int32_t names = p->header->signals + p->header->events;
+    int32_t i;
+    m->parts = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->parts);
+    m->homes = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->homes);
+    m->absent = arena_take(&m->memory, (size_t)names + 1);
+    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL)) {
+        return false;
+    }
+    for (i = 0; i < p->part_count; i++) {
+        part *one = &m->parts[i];
+        one->plan = &p->parts[i];
+        one->signals = &p->signals[one->plan->signals.first];
+        one->events = &p->events[one->plan->events.first];
+        one->atoms = &p->atoms[one->plan->atoms.first];
+        one->nodes = &p->nodes[one->plan->nodes.first];
+        one->judges = &p->judges[one->plan->judges.first];
+        one->forms = &p->forms[one->plan->forms.first];
+        m->homes[i].monitor = m;
+        m->homes[i].part = one;
+        if (!prepare_part(m, one)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Begin a run: nothing has come, nothing was recorded. */
+static bool begin_run(rv_monitor *m)
+{
+    const plan *p = &m->plan;
+    const int32_t names = p->header->signals + p->header->events;
+    int32_t i;
+    m->record_count = 0;
+    m->captured_count = 0;
+    m->sorted = 0;
+    m->began = RV_NO_TIME;
+    m->last = RV_NO_TIME;
+    m->after = -LIMIT;
+    m->reached = RV_NO_TIME;
+    m->finished = false;
+    m->spoilt = false;
+    for (i = 0; i < p->part_count; i++) {
+        if (!home_begin(&m->homes[i])) {
+            m->spoilt = true;
+            return false;
+        }
+    }
+    for (i = 0; i < names; i++) {
+        if (m->absent[i] != 0U) {
+            m->absent[i] = 0;
+            rv_set_absent(m, i);
+        }
+    }
+    return true;
+}
+
+rv_monitor *rv_new(const void *bytes, size_t size, rv_memory memory)
+{
+    arena a;
+    rv_monitor *m;
+    if (rv_plan_check(bytes, size) >= 0) {
+        return NULL;
+    }
+    (void)memset(&a, 0, sizeof a);
+    a.from = memory;
+    if (memory.block != NULL) {
+        const size_t off = (size_t)(16U - (uintptr_t)memory.block % 16U) % 16U;
+        a.free = (char *)memory.block + off;
+        a.left = (memory.size > off) ? memory.size - off : 0;
+        a.from.allocate = NULL;
+    }
+    m = arena_take(&a, sizeof *m);
+    if (m == NULL) {
+        arena_release(&a);
+        return NULL;
+    }
+    m->memory = a;
+    (void)plan_view(&m->plan, bytes, size);
+    if (!prepare(m) || !begin_run(m)) {
+        rv_free(m);
+        return NULL;
+    }
+    return m;
+}
+
+void rv_free(rv_monitor *m)
+{
+    if (m != NULL) {
+        arena a = m->memory; /* the monitor itself is in it */
+        arena_release(&a);
+    }
+}
+
+int rv_reset(rv_monitor *m)
+{
+    return begin_run(m) ? RV_OK : RV_NO_MEMORY;
+}
+
+/* The homes that read a name, one after the other. */
+static const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count)
+{
+    const int32_t first = m->plan.subscription_first[name];
+    *count = m->plan.subscription_first[name + 1] - first;
+    return &m->plan.subscriptions[first];
+}
+
+void rv_set_absent(rv_monitor *m, int32_t name)
+{
+    const bool event = name >= m->plan.header->signals;
+    int32_t count;
+    const subscription *s = subscriptions_of(m, name, &count);
+    int32_t i;
+    if (m->absent[name] == 0U) {
+        m->absent[name] = 1;
+        for (i = 0; i < count; i++) {
+            home_lack(&m->homes[s[i].part], event, s[i].local);
+        }
+    }
+}
+
+static bool is_in_range(int64_t t)
+{
+    return (t > -LIMIT) && (t < LIMIT);
+}
+
+/* Put the updates of a sample into the inboxes of those that read them. */
+static bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
+{
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < count; i++) {
+        const bool event = updates[i].name >= m->plan.header->signals;
+        int32_t readers;
+        const subscription *s = subscriptions_of(m, updates[i].name, &readers);
+        for (k = 0; k < readers; k++) {
+            home *h = &m->homes[s[k].part];
+            if (h->inbox_count == h->inbox_room) {
+                incoming *made = grown(m, h->inbox, &h->inbox_room, (int64_t)h->inbox_count + 1,
+                                       sizeof *made);
+                if (made == NULL) {
+                    return false;
+                }
+                h->inbox = made;
+            }
+            h->inbox[h->inbox_count].local = s[k].local;
+            h->inbox[h->inbox_count].event = event;
+            h->inbox[h->inbox_count].update = &updates[i];
+            h->inbox_count++;
+        }
+    }
+    return true;
+}
+
+int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+{
+    int32_t i;
+    if (m->finished) {
+        return RV_FINISHED;
+    }
+    if (!is_in_range(t)) {
+        return RV_OUT_OF_RANGE;
+    }
+    if (t <= m->after) {
+        return RV_TOO_EARLY;
+    }
+    if (!distribute(m, updates, count)) {
+        return RV_NO_MEMORY;
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        home *h = &m->homes[i];
+        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started) {
+            h->previous = m->last;
+            home_sample(h, t);
+        }
+    }
+    if (m->last == RV_NO_TIME) {
+        m->began = t;
+    }
+    m->last = t;
+    m->after = t;
+    m->reached = t;
+    if (m->record_count > m->sorted) {
+        sort_records(m);
+    }
+    return m->spoilt ? RV_NO_MEMORY : RV_OK;
+}
+
+int rv_advance(rv_monitor *m, int64_t t)
+{
+    int32_t i;
+    if (m->finished) {
+        return RV_FINISHED;
+    }
+    if (!is_in_range(t)) {
+        return RV_OUT_OF_RANGE;
+    }
+    if (t > m->reached) {
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_wait(&m->homes[i], t);
+        }
+        m->reached = t;
+        if (t - 1 > m->after) {
+            m->after = t - 1;
+        }
+        sort_records(m);
+    }
+    return m->spoilt ? RV_NO_MEMORY : RV_OK;
+}
+
+int64_t rv_end(const rv_monitor *m, int64_t t)
+{
+    int64_t end = m->last;
+    if (end != RV_NO_TIME) {
+        end = (t > end) ? t : end;
+        if ((m->plan.header->gap > 0) && (m->reached - 1 > end)) {
+            end = m->reached - 1;
+        }
+    }
+    return end;
+}
+
+int rv_finish(rv_monitor *m, int64_t t)
+{
+    const int64_t end = rv_end(m, t);
+    int32_t i;
+    if (m->finished) {
+        return RV_FINISHED;
+    }
+    if ((t != RV_NO_TIME) && !is_in_range(t)) {
+        return RV_OUT_OF_RANGE;
+    }
+    m->finished = true;
+    if (end != RV_NO_TIME) {
+        const int64_t reached = (m->reached > end) ? m->reached : end;
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_close(&m->homes[i], end, reached);
+        }
+        sort_records(m);
+    }
+    return m->spoilt ? RV_NO_MEMORY : RV_OK;
+}
+
+int64_t rv_next_due(rv_monitor *m)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; !m->finished && (i < m->plan.part_count); i++) {
+        found = least(found, home_due(&m->homes[i]));
+    }
+    return found;
+}
+
+rv_times rv_times_of(const rv_monitor *m)
+{
+    rv_times found;
+    found.began = m->began;
+    found.last = m->last;
+    found.reached = m->reached;
+    return found;
+}
+
+int64_t rv_records(const rv_monitor *m, const rv_record **records)
+{
+    *records = m->records;
+    return m->record_count;
+}
+
+const rv_number *rv_captured(const rv_monitor *m, const rv_record *record)
+{
+    return (record->captured < 0) ? NULL : &m->captured[record->captured];
+}
+
+void rv_forget_records(rv_monitor *m)
+{
+    m->record_count = 0;
+    m->captured_count = 0;
+    m->sorted = 0;
+}
+
+/* The record of an attempt that is open. */
+static rv_record open_record(const run *r, int32_t index, int32_t at)
+{
+    const attempt *x = attempt_at(r->home, at);
+    rv_record made;
+    (void)memset(&made, 0, sizeof made);
+    made.requirement = r->part->judges[index].requirement;
+    made.number = x->number;
+    if ((r->part->plan->captured > 0) && !x->sure) {
+        made.number = r->home->turns[at].doubt_number;
+    }
+    made.triggered = x->triggered;
+    made.captured = -1;
+    made.verdict = RV_INCONCLUSIVE;
+    made.decision = RV_OPEN;
+    made.in_doubt = x->sure ? 0 : 1;
+    return made;
+}
+
+void rv_each_open(const rv_monitor *m, rv_take take, void *user)
+{
+    int32_t i;
+    for (i = 0; i < m->plan.part_count; i++) {
+        const home *h = &m->homes[i];
+        const run *r;
+        for (r = h->root; r != NULL; r = following(h, r)) {
+            int32_t k;
+            for (k = 0; k < r->part->plan->judges.count; k++) {
+                int32_t at;
+                for (at = r->judges[k].first; at >= 0; at = attempt_at(h, at)->next) {
+                    const rv_record one = open_record(r, k, at);
+                    if (!take(user, &one, r->captured)) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/* Add what the runs of a home have of a requirement. */
+static void count_home(const home *h, int32_t requirement, rv_counts *counts)
+{
+    const run *r;
+    int32_t i;
+    if (h->part->plan->captured > 0) {
+        counts->failed += h->failed;
+        counts->passed += h->passed;
+        counts->inconclusive += h->inconclusive;
+    }
+    for (r = h->root; r != NULL; r = following(h, r)) {
+        const bool occurred = (r->rank == 0U) || (r->occurred <= r->at.position);
+        for (i = 0; i < h->part->plan->judges.count; i++) {
+            const judge *j = &r->judges[i];
+            if (h->part->judges[i].requirement != requirement) {
+                continue;
+            }
+            counts->open = counts->open || (j->first >= 0);
+            if (h->part->plan->captured > 0) {
+                counts->heard = counts->heard
+                                || ((i == 0) && (r->parent == NULL) && occurred && was_heard(r, i));
+            } else if (i < h->part->plan->requirements) {
+                counts->failed += j->failed;
+                counts->passed += j->passed;
+                counts->inconclusive += j->inconclusive;
+                counts->heard = was_heard(r, i);
+            } else {
+                /* Attempts in doubt count as those of their requirement. */
+            }
+        }
+    }
+}
+
+rv_counts rv_count(const rv_monitor *m, int32_t requirement)
+{
+    rv_counts counts;
+    int32_t i;
+    (void)memset(&counts, 0, sizeof counts);
+    for (i = 0; i < m->plan.part_count; i++) {
+        const part_plan *p = m->homes[i].part->plan;
+        if ((p->captured == 0) || (p->requirement == requirement)) {
+            count_home(&m->homes[i], requirement, &counts);
+        }
+    }
+    counts.open = counts.open && !m->finished;
+    return counts;
+}
+
+int rv_verdict(const rv_monitor *m, int32_t requirement)
+{
+    const rv_counts counts = rv_count(m, requirement);
+    if (counts.failed > 0) {
+        return RV_FAIL;
+    }
+    if ((counts.inconclusive > 0) || counts.open || m->spoilt) {
+        return RV_INCONCLUSIVE;
+    }
+    if (counts.passed > 0) {
+        return RV_PASS;
+    }
+    return counts.heard ? RV_NOT_TRIGGERED : RV_INCONCLUSIVE;
+}
+
+bool rv_spoilt(const rv_monitor *m)
+{
+    return m->spoilt;
+}
+
+rv_sizes rv_sizes_of(const rv_monitor *m)
+{
+    rv_sizes found;
+    found.signals = m->plan.header->signals;
+    found.events = m->plan.header->events;
+    found.fields = m->plan.header->fields;
+    found.requirements = m->plan.header->requirements;
+    found.captured = m->plan.header->captured;
+    return found;
+}
+
+int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first)
+{
+    *first = m->plan.field_first[event];
+    return m->plan.field_first[event + 1] - *first;
+}

@@ -1,0 +1,335 @@
+/* The attempts of a judge through positions and time. */
+#include "state.h"
+
+#include <string.h>
+
+enum { BY_STEP, BY_RUN, BY_TIME };
+
+void set_rule_due(run *r, int32_t index, int64_t due)
+{
+    timers_set(&r->rules, index, due);
+}
+
+void set_restless(run *r, int32_t index)
+{
+    judge *j = &r->judges[index];
+    j->restless = true;
+    if (!j->is_restless_listed) {
+        j->is_restless_listed = true;
+        r->restless[r->restless_count] = index;
+        r->restless_count++;
+    }
+}
+
+static int64_t drive_token(run *r, const machine *a, int32_t index, token *k, int32_t letter,
+                           int32_t how, int64_t from, int64_t t)
+{
+    int64_t due;
+    if (how == BY_STEP) {
+        const bool moved = step_token(a, k, t, letter);
+        if (k->location <= PASSED) {
+            due = t;
+        } else if (moved && !rests(a, k, t, letter)) {
+            set_restless(r, index);
+            due = t + 1;
+        } else {
+            due = next_cut(a, k, t, NULL);
+        }
+    } else if (how == BY_RUN) {
+        due = run_token(a, k, letter, from, t, &r->judges[index].slides);
+    } else {
+        due = settle_token(a, k, from, t);
+        if ((a->gap > 0) && (k->location > PASSED)) {
+            due = least(due, t); /* the position there is still to come */
+        }
+    }
+    return due;
+}
+
+/* Drive one attempt of which some reading of the unknown may differ; false if it was decided. */
+static bool drive_readings(run *r, const machine *a, int32_t index, int32_t at, int32_t how,
+                           int64_t from, int64_t t, int64_t *due)
+{
+    judge *j = &r->judges[index];
+    attempt *x = attempt_at(r->home, at);
+    const int32_t clocks = a->plan->clocks;
+    const int32_t width = r->part->plan->clocks;
+    token worse;
+    token better;
+    int64_t own = NEVER;
+    worse.location = x->location;
+    worse.clocks = x->clocks;
+    better.location = x->parted ? x->better : x->location;
+    better.clocks = x->clocks + width;
+    if (!x->parted) {
+        (void)memcpy(better.clocks, worse.clocks, (size_t)clocks * sizeof *worse.clocks);
+    }
+    if (worse.location != FAILED) {
+        own = drive_token(r, a, index, &worse, j->letter, how, from, t);
+        if (worse.location == PASSED) {
+            x->location = PASSED;
+            decide(r, index, at, true, own);
+            return false;
+        }
+        own = (worse.location == FAILED) ? NEVER : own;
+    }
+    if (better.location != PASSED) {
+        const int64_t other = drive_token(r, a, index, &better, j->other, how, from, t);
+        if (better.location == FAILED) {
+            decide(r, index, at, false, other);
+            return false;
+        }
+        own = (better.location == PASSED) ? own : least(own, other);
+    }
+    x->location = worse.location;
+    x->better = better.location;
+    x->parted = better.location != worse.location;
+    if (!x->parted) {
+        const int32_t used = a->whole->ints[a->plan->widths + worse.location];
+        x->parted = memcmp(better.clocks, worse.clocks, (size_t)used * sizeof *worse.clocks) != 0;
+    }
+    *due = own;
+    return true;
+}
+
+/* Drive one attempt; false if it was decided, else `due` says when it is due. */
+static bool drive(run *r, const machine *a, int32_t index, int32_t at, int32_t how, int64_t from,
+                  int64_t t, int64_t *due)
+{
+    judge *j = &r->judges[index];
+    attempt *x = attempt_at(r->home, at);
+    token k;
+    if (x->parted || (j->letter != j->other)) {
+        return drive_readings(r, a, index, at, how, from, t, due);
+    }
+    k.location = x->location;
+    k.clocks = x->clocks;
+    *due = drive_token(r, a, index, &k, j->letter, how, from, t);
+    x->location = k.location;
+    if (k.location <= PASSED) {
+        decide(r, index, at, k.location == PASSED, *due);
+        return false;
+    }
+    return true;
+}
+
+/* Drive all attempts; if the letter stays as it `was` and none slides, those that are not due by `t`
+ * stay as they are, too. */
+static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t t, bool was)
+{
+    judge *j = &r->judges[index];
+    const machine a = machine_of(r, index);
+    const bool some = (a.gap > 0) && was && j->sorted;
+    int64_t next_due = NEVER;
+    int64_t latest = INT64_MIN;
+    int32_t before = -1;
+    int32_t at = j->first;
+    j->sorted = true;
+    while (at >= 0) {
+        attempt *x = attempt_at(r->home, at);
+        const int32_t next = x->next;
+        const bool waits = some && (x->due > t); /* and so do all behind it */
+        if (waits || drive(r, &a, index, at, how, from, t, &x->due)) {
+            next_due = least(next_due, x->due);
+            j->sorted = j->sorted && (latest <= x->due);
+            latest = x->due;
+            before = at;
+        } else {
+            leave(r, index, before, at);
+        }
+        if (waits) {
+            break;
+        }
+        at = next;
+    }
+    set_rule_due(r, index, next_due);
+}
+
+/* Let time come to `t` with the letters as they are; positions up to there are stepped. */
+void pass_to(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    const int64_t position = j->position;
+    const int64_t step = step_of(r);
+    if (j->first < 0) {
+        set_rule_due(r, index, NEVER);
+    } else if (is_networked(r, index)) {
+        network_pass(r, index, t, true);
+    } else if (GAP(r) == 0) {
+        if (r->rules.due[index] <= t) {
+            set_restless(r, index);
+        }
+        drive_all(r, index, BY_TIME, position, t, false);
+    } else if (t > position) {
+        const bool slid = j->slides;
+        j->slides = false;
+        drive_all(r, index, BY_RUN, position + step, t, !slid);
+        j->position += (t - position) / step * step;
+        j->restless = false;
+    } else {
+        /* Time has come there before. */
+    }
+}
+
+/* Take all attempts of a judge to the position `t`, at which the truths are. */
+void visit_judge(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    int32_t letter;
+    int32_t other;
+    bool was;
+    if (is_networked(r, index)) {
+        network_come_to(r, index, t);
+        return;
+    }
+    letter = class_of_letter(r, index, false);
+    other = letter;
+    if ((j->worse != j->better) || (r->part->judges[index].diagram >= 0)) {
+        other = class_of_letter(r, index, true);
+    }
+    was = (GAP(r) > 0) && (letter == j->letter) && (other == j->other);
+    if (!was || (j->first < 0) || (r->rules.due[index] <= t) || j->restless || j->slides) {
+        if (j->slides || (r->rules.due[index] < t)) {
+            pass_to(r, index, t - 1);
+        }
+        was = was && !j->slides;
+        j->letter = letter;
+        j->other = other;
+        j->restless = false;
+        j->slides = false;
+        j->position = t;
+        drive_all(r, index, BY_STEP, t, t, was);
+    }
+    j->position = t;
+}
+
+/* Judge an attempt at the position at `t`, at which it begins; false if that decides it. */
+static bool remains(run *r, int32_t index, int32_t at, int64_t t)
+{
+    attempt *x = attempt_at(r->home, at);
+    machine a;
+    if (is_networked(r, index)) {
+        return network_enter(r, index, at, t);
+    }
+    a = machine_of(r, index);
+    return drive(r, &a, index, at, BY_STEP, t, t, &x->due);
+}
+
+/* Start an attempt that is judged in this run. */
+void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
+{
+    const judge_plan *judged = &r->part->judges[index];
+    judge *j = &r->judges[index];
+    attempt *x;
+    int32_t at;
+    if ((j->first < 0) || (j->position < t)) {
+        visit_judge(r, index, t);
+    }
+    at = place_taken(r);
+    if (at < 0) {
+        leave_episode(r, index); /* or it would be tried again at each position */
+        return;
+    }
+    x = attempt_at(r->home, at);
+    (void)memset(x, 0, r->home->stride);
+    x->triggered = triggered;
+    x->next = -1;
+    x->location = WAITING;
+    if (judged->automaton >= 0) {
+        x->location = PLAN(r)->automata[judged->automaton].initial;
+    }
+    x->sure = is_sure(r, index);
+    x->clouded = !x->sure;
+    if (r->part->plan->captured > 0) {
+        (void)memset(&r->home->turns[at], 0, sizeof *r->home->turns);
+        r->home->turns[at].judge = r;
+        x->hollow = r->cut < NEVER;
+        j->running = (judged->flags & JUDGE_EPISODIC) != 0;
+    }
+    number_attempt(r, index, at, triggered);
+    if (runs_on(r, index)) {
+        leave_episode(r, index);
+        j->current = at;
+    }
+    if (remains(r, index, at, t)) {
+        set_rule_due(r, index, least(r->rules.due[index], x->due));
+        if (j->last < 0) {
+            j->first = at;
+            j->sorted = true;
+        } else {
+            attempt *last = attempt_at(r->home, j->last);
+            last->next = at;
+            j->sorted = j->sorted && (last->due <= x->due);
+        }
+        j->last = at;
+    } else if (r->part->plan->captured == 0) {
+        give_back(r->home, at);
+    } else {
+        /* It is told of at the end of the call. */
+    }
+}
+
+/* Start an attempt at the position at `t`. */
+void begin(run *r, int32_t index, int64_t t, int64_t triggered)
+{
+    if ((r->part->plan->captures.count > 0) && starts_here(r, index)) {
+        begin_captured(r, index, t, triggered);
+    } else {
+        begin_here(r, index, t, triggered);
+    }
+}
+
+/* Let time come to `t`, of which the letter is not known, from the instant before. */
+void reach_judge(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    if (is_networked(r, index)) {
+        if (j->first >= 0) {
+            network_pass(r, index, t, false);
+        } else {
+            set_rule_due(r, index, NEVER);
+        }
+        return;
+    }
+    pass_to(r, index, t - 1);
+    if (r->rules.due[index] <= t) {
+        set_restless(r, index);
+    }
+    drive_all(r, index, BY_TIME, j->position, t, !j->slides);
+}
+
+/* Whether a judge has to see positions though no attempt is open. */
+bool watches(const run *r, int32_t index)
+{
+    const judge_plan *judged = &r->part->judges[index];
+    if ((judged->automaton >= 0) || (judged->form < 0) || (r->part->forms[judged->form].looks_back == 0)) {
+        return false;
+    }
+    return (r->part->plan->captured == 0) || (((r->judging >> index) & 1) != 0);
+}
+
+/* Whether the truth of its trigger starts an attempt of a judge. */
+bool starts(run *r, int32_t index, uint8_t truth)
+{
+    const judge_plan *judged = &r->part->judges[index];
+    const bool pulse = (judged->flags & JUDGE_PULSE) != 0;
+    judge *j = &r->judges[index];
+    bool start = (truth == IS_TRUE) && (pulse || (j->before == IS_FALSE));
+    if ((r->part->plan->captured > 0) && !starts_here(r, index) && !j->running) {
+        return false; /* its attempt has begun, and is over */
+    }
+    j->before = truth;
+    if ((judged->flags & JUDGE_EPISODIC) != 0) {
+        start = !j->running
+                && (((judged->flags & JUDGE_HIDDEN) != 0) ? (truth == IS_UNKNOWN)
+                                                        : (truth != IS_FALSE));
+        j->running = start || (j->running && (truth != IS_FALSE));
+    } else if (pulse && (truth == IS_TRUE)) {
+        /* It starts another one at the next position, if it is still true there. */
+        r->repeating[r->repeating_count] = index;
+        r->repeating_count++;
+    } else {
+        /* It waits for the next edge. */
+    }
+    return start;
+}

@@ -1,0 +1,188 @@
+/* The formulas of present and past as a graph: what depends on a change is worked out anew, operands
+ * before operators. */
+#include "state.h"
+
+#include <string.h>
+
+static int32_t lowest_bit(uint64_t word)
+{
+#if defined(__GNUC__)
+    return (int32_t)__builtin_ctzll(word);
+#else
+    int32_t i = 0;
+    while (((word >> i) & 1U) == 0U) {
+        i++;
+    }
+    return i;
+#endif
+}
+
+void soil(run *r, int32_t node)
+{
+    const int32_t word = node >> 6;
+    r->dirty[word] |= UINT64_C(1) << (node & 63);
+    r->dirty_words[word >> 6] |= UINT64_C(1) << (word & 63);
+}
+
+void soil_all(run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->nodes.count; i++) {
+        soil(r, i);
+    }
+}
+
+static uint8_t combined(const run *r, const node_plan *n)
+{
+    const int32_t *operands = LIST(PLAN(r), n->operands);
+    uint8_t found = r->truth[operands[0]];
+    int32_t i;
+    for (i = 1; i < n->operands.count; i++) {
+        const uint8_t one = r->truth[operands[i]];
+        if ((n->op == NODE_AND) ? (one < found) : (one > found)) {
+            found = one;
+        }
+    }
+    return found;
+}
+
+static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
+{
+    const int64_t due = sum(r->at.origin, n->low);
+    timers_set(&r->wake, n->timer, (t < due) ? due : NEVER);
+    return truth_if(t >= due);
+}
+
+static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
+{
+    const uint8_t value = r->seen[n->slot];
+    r->seen[n->slot] = operand;
+    timers_set(&r->wake, n->timer, (value != operand) ? t + step_of(r) : NEVER);
+    return value;
+}
+
+/* Without bounds: what the operands were is in the one value. */
+static uint8_t ever(run *r, const node_plan *n, uint8_t left, uint8_t right)
+{
+    uint8_t value = r->seen[n->slot];
+    value = (left < value) ? left : value;
+    value = (right > value) ? right : value;
+    r->seen[n->slot] = value;
+    return value;
+}
+
+static uint8_t evaluated(run *r, int32_t place, int64_t t)
+{
+    const node_plan *n = &r->part->nodes[place];
+    const int32_t *operands = LIST(PLAN(r), n->operands);
+    switch (n->op) {
+    case NODE_LEAF:
+    case NODE_UNBORN: return leaf_truth(r, n);
+    case NODE_CONSTANT: return (uint8_t)n->a;
+    case NODE_LAPSED: return truth_if(t >= r->cut);
+    case NODE_ELAPSED: return elapsed(r, n, t);
+    case NODE_NOT: return (uint8_t)(IS_TRUE - r->truth[operands[0]]);
+    case NODE_AND:
+    case NODE_OR: return combined(r, n);
+    case NODE_SURE: return truth_if(r->truth[operands[0]] == IS_TRUE);
+    case NODE_DOUBT: return node_doubt(r, n, place, t, r->truth[operands[0]]);
+    case NODE_PREVIOUS: return previous(r, n, t, r->truth[operands[0]]);
+    case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
+    default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
+    }
+}
+
+/* Store the truth of a node, and tell the judges that it is linked with. */
+static void store(run *r, int32_t place, uint8_t value)
+{
+    const node_plan *n = &r->part->nodes[place];
+    const uint8_t was = r->truth[place];
+    int32_t i;
+    r->truth[place] = value;
+    for (i = 0; i < n->links.count; i++) {
+        const link_plan *l = &PLAN(r)->links[n->links.first + i];
+        judge *j = &r->judges[l->judge];
+        if ((l->kind & LINK_LETTER) != 0) {
+            j->worse += l->worse[value] - l->worse[was];
+            j->better += l->better[value] - l->better[was];
+            touch(r, l->judge, TOUCHED_LETTER);
+        }
+        if ((l->kind & LINK_TRIGGER) != 0) {
+            touch(r, l->judge, TOUCHED_TRIGGER);
+        }
+        if (((l->kind & LINK_DETERMINED) != 0) && (value == IS_TRUE)) {
+            r->at.undetermined_left--;
+        }
+    }
+}
+
+bool is_soiled(const run *r)
+{
+    const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
+    int32_t upper;
+    for (upper = 0; upper < ((words + 63) >> 6); upper++) {
+        if (r->dirty_words[upper] != 0U) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void work_out(run *r, int64_t t)
+{
+    const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
+    int32_t upper;
+    for (upper = 0; upper < ((words + 63) >> 6); upper++) {
+        while (r->dirty_words[upper] != 0U) {
+            const int32_t word = upper * 64 + lowest_bit(r->dirty_words[upper]);
+            while (r->dirty[word] != 0U) {
+                const int32_t place = word * 64 + lowest_bit(r->dirty[word]);
+                uint8_t value;
+                r->dirty[word] &= r->dirty[word] - 1;
+                value = evaluated(r, place, t);
+                if (value != r->truth[place]) {
+                    const list parents = r->part->nodes[place].parents[r->at.phase];
+                    const int32_t *parent = LIST(PLAN(r), parents);
+                    int32_t i;
+                    store(r, place, value);
+                    for (i = 0; i < parents.count; i++) {
+                        soil(r, parent[i]);
+                    }
+                }
+            }
+            r->dirty_words[upper] &= ~(UINT64_C(1) << (word & 63));
+        }
+    }
+}
+
+/* Work out anew what depends on captured values; what remembers stands. */
+void vary(run *r, int64_t t, bool pending)
+{
+    const part_plan *p = r->part->plan;
+    const int32_t *atoms = LIST(PLAN(r), p->varying_atoms);
+    const int32_t *nodes = LIST(PLAN(r), p->varying_nodes);
+    int32_t i;
+    for (i = 0; i < p->varying_atoms.count; i++) {
+        reread(r, atoms[i], pending);
+    }
+    for (i = 0; i < p->varying_nodes.count; i++) {
+        const uint8_t value = evaluated(r, nodes[i], t);
+        if (value != r->truth[nodes[i]]) {
+            store(r, nodes[i], value);
+        }
+    }
+}
+
+/* Once all is born and determined, what asks for that is looked at no more. */
+void settle_phase(run *r)
+{
+    if ((r->at.phase == 0) && (r->at.births_left == 0) && (r->at.undetermined_left == 0)) {
+        const list dead = r->part->plan->dead_timers;
+        const int32_t *nodes = LIST(PLAN(r), dead);
+        int32_t i;
+        r->at.phase = 1;
+        for (i = 0; i < dead.count; i++) {
+            timers_set(&r->wake, r->part->nodes[nodes[i]].timer, NEVER);
+        }
+    }
+}

@@ -1,0 +1,577 @@
+/* Attempts that a delay network judges: each is a position of it, and the network is shared by all
+ * attempts of a judge. From the first unknown letter on there are two, the unknown taken for the worse
+ * and for the better.
+ *
+ * Letting time come to them: what is known depends on time and letters alone, so the instant at which
+ * an attempt was decided is found by taking a step back and trying smaller ones. */
+#include "state.h"
+
+#include <string.h>
+
+/* Instants that are tried at most before a search halves what is left. */
+#define GUESSES 16
+/* Calls after which a letter that has stayed is looked ahead for: one that changes often is not. */
+#define PATIENCE 16
+/* Letters after which what nobody can ask for is dropped. */
+#define TIDY_EVERY 8
+
+/* A judge with its network. */
+typedef struct {
+    run *r;
+    judge *j;
+    networks *net;
+    int32_t index;
+    form f;
+    int32_t root;              /* the operator that is the whole formula */
+} judging;
+
+bool is_networked(const run *r, int32_t index)
+{
+    return r->part->judges[index].automaton < 0;
+}
+
+form form_of(const run *r, int32_t index)
+{
+    form f;
+    f.plan = PLAN(r);
+    f.form = &r->part->forms[r->part->judges[index].form];
+    f.nodes = &f.plan->operators[f.form->operators.first];
+    f.gap = GAP(r);
+    f.step = step_of(r);
+    f.monitor = r->home->monitor;
+    return f;
+}
+
+static judging judging_of(run *r, int32_t index)
+{
+    judging g;
+    g.r = r;
+    g.j = &r->judges[index];
+    g.net = g.j->net;
+    g.index = index;
+    g.f = form_of(r, index);
+    g.root = g.f.form->operators.count - 1;
+    return g;
+}
+
+/* The networks of a judge, made when they are used first; NULL: memory is short. */
+static networks *made_networks(const form *f)
+{
+    const size_t size = (size_t)f->form->operators.count * sizeof(operator_state);
+    arena *a = &f->monitor->memory;
+    networks *made = arena_take(a, sizeof *made);
+    int32_t i;
+    if (made != NULL) {
+        made->turn = NEVER;
+        made->leaf = arena_take(a, (size_t)f->form->leaves + 1);
+        made->next_leaf = arena_take(a, (size_t)f->form->leaves + 1);
+        for (i = 0; i < 2; i++) {
+            made->readings[i].nodes = arena_take(a, size);
+        }
+    }
+    if ((made == NULL) || (made->leaf == NULL) || (made->next_leaf == NULL)
+        || (made->readings[0].nodes == NULL) || (made->readings[1].nodes == NULL)) {
+        f->monitor->spoilt = true;
+        return NULL;
+    }
+    return made;
+}
+
+static bool is_spoilt(const judging *g)
+{
+    return g->f.monitor->spoilt;
+}
+
+/* How many networks there are at present. */
+static int32_t readings(const judging *g)
+{
+    return g->net->parted ? 2 : 1;
+}
+
+static attempt *nth(const judging *g, int32_t at)
+{
+    return attempt_at(g->r->home, at);
+}
+
+static int64_t position_of(const attempt *x)
+{
+    return x->clocks[0];
+}
+
+/* Whether nothing more can be said of an attempt: it is unknown for good. */
+static bool is_moot(const attempt *x)
+{
+    return (x->location == FAILED) && x->parted;
+}
+
+static void set_due(judging *g, int64_t due)
+{
+    g->j->lag = 0;
+    set_rule_due(g->r, g->index, due);
+}
+
+static int64_t due_of(const judging *g)
+{
+    return g->r->rules.due[g->index];
+}
+
+/* Whether the letter that stays is another for the better than for the worse. */
+static bool parts(const judging *g)
+{
+    int32_t i;
+    for (i = 0; i < g->f.form->leaves; i++) {
+        if (g->net->leaf[i] == 2U) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Tidy up now and then. The networks may still have to be told of the letter up to here. */
+static void tidy_up(judging *g, int64_t position)
+{
+    int32_t at = g->j->first;
+    int32_t i;
+    g->net->visits++;
+    if (g->net->visits < TIDY_EVERY) {
+        return;
+    }
+    g->net->visits = 0;
+    while ((at >= 0) && is_moot(nth(g, at))) {
+        at = nth(g, at)->next;
+    }
+    for (i = 0; i < readings(g); i++) {
+        tidy(&g->f, &g->net->readings[i], (at >= 0) ? position_of(nth(g, at)) : position);
+    }
+    if (g->net->parted && !parts(g)
+        && networks_agree(&g->f, &g->net->readings[0], &g->net->readings[1])) {
+        g->net->parted = false;
+    }
+}
+
+/* What becomes of an attempt by what is known; false if it is decided. None is once memory was short:
+ * what then became known may be wrong. */
+static bool weigh(judging *g, int32_t at, int64_t t)
+{
+    attempt *x = nth(g, at);
+    const bool parted = g->net->parted;
+    const operator_state *worse = &g->net->readings[0].nodes[g->root];
+    const operator_state *better = &g->net->readings[parted ? 1 : 0].nodes[g->root];
+    if (is_moot(x) || is_spoilt(g)) {
+        return true;
+    }
+    if (knows(worse, 1U, position_of(x))) {
+        decide(g->r, g->index, at, true, t);
+        return false;
+    }
+    if (knows(better, 0U, position_of(x))) {
+        decide(g->r, g->index, at, false, t);
+        return false;
+    }
+    if (parted && knows(worse, 0U, position_of(x))) {
+        x->location = FAILED;
+    }
+    if (parted && knows(better, 1U, position_of(x))) {
+        x->better = PASSED;
+        x->parted = true;
+    }
+    return true;
+}
+
+/* The oldest attempt whose position is not before one; -1: there is none. */
+static int32_t attempt_from(const judging *g, int64_t position)
+{
+    int32_t at = g->j->first;
+    if ((at < 0) || (position_of(nth(g, g->j->last)) < position)) {
+        return -1;
+    }
+    while (position_of(nth(g, at)) < position) {
+        at = nth(g, at)->next;
+    }
+    return at;
+}
+
+/* The position of an attempt that what became known of a formula decides; NEVER: of none. */
+static int64_t decided_one(const judging *g)
+{
+    uint8_t value;
+    int32_t i;
+    for (value = 0; value < 2U; value++) {
+        const int32_t reading = (g->net->parted && (value == 0U)) ? 1 : 0;
+        const ranges *news = &g->net->readings[reading].nodes[g->root].news[value];
+        for (i = news->first; i < news->end; i++) {
+            int32_t at = attempt_from(g, news->at[i].first);
+            while ((at >= 0) && is_moot(nth(g, at))) {
+                at = nth(g, at)->next;
+            }
+            if ((at >= 0) && (position_of(nth(g, at)) <= news->at[i].last)) {
+                return position_of(nth(g, at));
+            }
+        }
+    }
+    return NEVER;
+}
+
+/* The first position from one on at which something became known of a formula; NEVER: there is none. */
+static int64_t next_new(const judging *g, int64_t position)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    int32_t j;
+    for (i = 0; i < 2 * readings(g); i++) {
+        const ranges *news = &g->net->readings[i / 2].nodes[g->root].news[i % 2];
+        for (j = news->first; j < news->end; j++) {
+            if (news->at[j].last >= position) {
+                const int64_t first = news->at[j].first;
+                found = least(found, (first > position) ? first : position);
+            }
+        }
+    }
+    return found;
+}
+
+/* Judge the attempts of which something became known, at `t`. */
+static void hear_news(judging *g, int64_t t)
+{
+    int64_t asked = -NEVER;
+    int32_t before = -1;
+    int32_t at = g->j->first;
+    if (!g->net->parted && (decided_one(g) == NEVER)) {
+        return;
+    }
+    g->net->calls = 0;
+    while (at >= 0) {
+        const int32_t next = nth(g, at)->next;
+        const int64_t position = position_of(nth(g, at));
+        if (position > asked) {
+            asked = next_new(g, position);
+            if (asked == NEVER) {
+                break;
+            }
+        }
+        if ((position < asked) || weigh(g, at, t)) {
+            before = at;
+        } else {
+            leave(g->r, g->index, before, at);
+        }
+        at = next;
+    }
+}
+
+static void learn_all(judging *g, int64_t now, int64_t last)
+{
+    int32_t i;
+    for (i = 0; i < readings(g); i++) {
+        learn(&g->f, g->net, i, now, last);
+    }
+}
+
+static void unlearn_all(judging *g)
+{
+    int32_t i;
+    for (i = 0; i < readings(g); i++) {
+        unlearn(&g->f, &g->net->readings[i]);
+    }
+}
+
+/* The last position of which the letter is known behind an instant. */
+static int64_t last_at(const judging *g, int64_t t)
+{
+    return (g->f.gap > 0) ? floored(t, g->f.step) : g->net->readings[0].last;
+}
+
+/* Guess when it was that a position of the formula became known, or what made it so, by `high`; what
+ * is likely comes last.
+ *
+ * What is new of a node goes up to a front, which moves with time, or did so till now. */
+static int32_t guess(const judging *g, int64_t position, int64_t high, int64_t *found)
+{
+    const int32_t operators = g->f.form->operators.count;
+    int32_t count = 0;
+    int32_t i;
+    int32_t j;
+    int32_t k;
+    for (i = 0; i < 2 * operators; i++) {
+        const bool itself = i >= operators;
+        const operator_plan *n = &g->f.nodes[i % operators];
+        for (j = 0; j < 2 * readings(g); j++) {
+            const network *w = &g->net->readings[j / 2];
+            const ranges *news = &w->nodes[i % operators].news[j % 2];
+            const int64_t front = (g->f.gap > 0) ? high - (w->now - w->last * g->f.step) : high;
+            for (k = news->first; (k < news->end) && (count + 2 <= GUESSES); k++) {
+                const range *on = &news->at[k];
+                const bool within = (on->first <= position) && (position <= on->last);
+                const int64_t first = itself ? position : on->first;
+                if (!itself || within) {
+                    found[count] = front - (on->last - first) * g->f.step;
+                    count++;
+                }
+                if ((!itself || within) && (n->kind == OP_WINDOW) && (n->over >= 0)) {
+                    found[count] = instant_of(&g->f, w, first) + n->over;
+                    count++;
+                }
+            }
+        }
+    }
+    return count;
+}
+
+/* Let time come to `now`, and the letter to positions up to `last`; but not behind the first instant
+ * at which an attempt is decided. Returns that; NEVER: none is. */
+static int64_t go(judging *g, int64_t now, int64_t last)
+{
+    int64_t found[GUESSES];
+    int64_t low = due_of(g) - g->j->lag - 1;
+    int64_t high = now;
+    int64_t at = now;
+    int64_t one;
+    int32_t tries = GUESSES;
+    int32_t count = 0;
+    learn_all(g, now, last);
+    one = decided_one(g);
+    if ((one == NEVER) || is_spoilt(g)) {
+        return NEVER; /* what did not fit is not known: nothing is found by steps */
+    }
+    if (high - low > 1) {
+        count = guess(g, one, high, found);
+    }
+    while (high - low > 1) {
+        int64_t middle = low + (high - low) / 2;
+        if ((count > 0) && (tries > 0)) {
+            count--;
+            middle = found[count];
+            if ((middle <= low) || (middle >= high)) {
+                continue;
+            }
+            tries--;
+        }
+        unlearn_all(g);
+        at = middle;
+        learn_all(g, at, last_at(g, at));
+        one = decided_one(g);
+        if (one == NEVER) {
+            low = middle;
+        } else {
+            high = middle;
+            count = guess(g, one, high, found);
+            if (count == GUESSES) {
+                count--;
+            }
+            found[count] = high - 1; /* it may be exact */
+            count++;
+        }
+    }
+    if (at != high) {
+        unlearn_all(g);
+        learn_all(g, high, (high == now) ? last : last_at(g, high));
+    }
+    return is_spoilt(g) ? NEVER : high;
+}
+
+static void foresee(judging *g, int64_t until)
+{
+    const int64_t decided = go(g, until, last_at(g, until));
+    unlearn_all(g);
+    set_due(g, (decided < NEVER) ? decided : until + 1);
+}
+
+/* Have a judge due at the next instant at which an attempt is decided if the letter stays, or behind
+ * `until`. */
+void network_foresee(run *r, int32_t index, int64_t until)
+{
+    judging g = judging_of(r, index);
+    if ((g.j->first >= 0) && (due_of(&g) <= until)) {
+        foresee(&g, until);
+    }
+}
+
+/* Nothing more is decided by `now`: of a letter that has stayed for some calls, see what it brings
+ * if it goes on to. */
+static void rest(judging *g, int64_t now)
+{
+    const int64_t stayed = now - g->j->position;
+    set_due(g, now + 1);
+    g->net->calls++;
+    if ((g->f.gap > 0) && (g->net->calls > PATIENCE)) {
+        const int64_t until = (stayed < LIMIT / 8) ? least(now + 4 * stayed, LIMIT - 1) : LIMIT - 1;
+        if (due_of(g) <= until) {
+            foresee(g, until);
+        }
+    }
+}
+
+/* Let time come to `now`, and the letter to positions up to `last`; attempts are decided meanwhile. */
+static void pass(judging *g, int64_t now, int64_t last)
+{
+    int64_t decided;
+    do {
+        decided = go(g, now, last);
+        hear_news(g, least(decided, now));
+        set_due(g, least(decided, now));
+    } while ((decided < now) && (g->j->first >= 0));
+    if (g->j->first < 0) {
+        set_due(g, NEVER);
+    } else if (last < last_at(g, now)) {
+        set_due(g, now); /* the position there is still to come */
+    } else {
+        rest(g, now);
+    }
+}
+
+void network_pass(run *r, int32_t index, int64_t now, bool is_position)
+{
+    judging g = judging_of(r, index);
+    pass(&g, now, last_at(&g, is_position ? now : now - 1));
+}
+
+/* Leave what is decided by `until` to the visit that follows: it finds when that was. It does not where
+ * an attempt may begin meanwhile, as the one of the episode that runs fails. */
+void network_put_off(run *r, int32_t index, int64_t until)
+{
+    judge *j = &r->judges[index];
+    const int64_t due = r->rules.due[index];
+    const bool alone = (j->current < 0) || (r->part->judges[index].again < 0);
+    if (alone && (j->first >= 0) && (due <= until)) {
+        j->lag += until + 1 - due;
+        set_rule_due(r, index, until + 1);
+    }
+}
+
+/* Let time come to `until`, but not to the first instant at which an attempt is decided: the judge is
+ * due then. */
+void network_approach(run *r, int32_t index, int64_t until)
+{
+    judging g = judging_of(r, index);
+    if ((g.j->first >= 0) && (due_of(&g) <= until)) {
+        const int64_t decided = go(&g, until, last_at(&g, until));
+        if (decided < NEVER) {
+            unlearn_all(&g);
+            set_due(&g, decided);
+        } else {
+            hear_news(&g, until);
+            rest(&g, until);
+        }
+    }
+}
+
+/* Take the letters; tells whether they are others. */
+static bool read_leaves(judging *g, bool *parted)
+{
+    bool changed = false;
+    int32_t i;
+    for (i = 0; i < g->f.form->operators.count; i++) {
+        const operator_plan *n = &g->f.nodes[i];
+        if (n->kind == OP_LEAF) {
+            const int32_t truth = (n->right < 0) ? 0 : (int32_t)g->r->truth[n->right];
+            const uint8_t value = (uint8_t)n->values[truth];
+            g->net->next_leaf[n->left] = value;
+            changed = changed || (value != g->net->leaf[n->left]);
+            *parted = *parted || (value == 1U) || (value == 2U);
+        }
+    }
+    return changed;
+}
+
+/* Have the letters that were read stay. */
+static void turn_to_next(judging *g)
+{
+    (void)memcpy(g->net->leaf, g->net->next_leaf, (size_t)g->f.form->leaves);
+    g->net->turn = NEVER;
+}
+
+/* Come to the position at `t`, at which the truths are. */
+static void come_to(judging *g, int64_t t)
+{
+    network *w = &g->net->readings[0];
+    const bool fresh = !g->net->begun || ((g->j->first < 0) && (g->f.form->looks_back == 0));
+    bool parted = false;
+    const bool changed = read_leaves(g, &parted);
+    int64_t position = (g->f.gap > 0) ? floored(t, g->f.step) : 0;
+    int32_t i;
+    if (fresh) {
+        start_over(&g->f, w, t, position);
+        g->net->begun = true;
+        g->net->parted = false;
+        set_due(g, t);
+    } else if (g->j->position == t) {
+        return;
+    } else if ((g->f.gap > 0) && !changed) {
+        pass(g, t, position);
+        return;
+    } else {
+        position = (g->f.gap > 0) ? position : w->last + 1;
+        tidy_up(g, position);
+    }
+    g->j->position = t;
+    g->net->calls = 0;
+    g->j->restless = false;
+    if (g->f.gap == 0) {
+        set_restless(g->r, g->index);
+    }
+    if (parted && !g->net->parted) {
+        copy_network(&g->f, &g->net->readings[1], w);
+        g->net->parted = true;
+    }
+    for (i = 0; (g->f.gap == 0) && (i < readings(g)); i++) {
+        ranges *samples = &g->net->readings[i].samples;
+        ranges_put(g->f.monitor, samples, samples->end, t, t);
+    }
+    if (is_spoilt(g)) {
+        return;
+    }
+    g->net->turn = position;
+    learn_all(g, t, position);
+    if ((due_of(g) - g->j->lag < t) && (decided_one(g) < NEVER)) {
+        /* See first what was decided by the letter that was. */
+        unlearn_all(g);
+        g->net->turn = NEVER;
+        pass(g, t - 1, position - 1);
+        g->net->turn = position;
+        learn_all(g, t, position);
+    }
+    turn_to_next(g);
+    hear_news(g, t);
+    set_due(g, (g->j->first < 0) ? NEVER : t + 1);
+}
+
+void network_come_to(run *r, int32_t index, int64_t t)
+{
+    judging g = judging_of(r, index);
+    if (g.net == NULL) {
+        g.net = made_networks(&g.f);
+        g.j->net = g.net;
+    }
+    if (g.net != NULL) {
+        come_to(&g, t);
+    }
+}
+
+/* Let an attempt begin at the position at `t`, to which its network has come. */
+bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
+{
+    judging g = judging_of(r, index);
+    if (g.net == NULL) {
+        return true; /* the run is spoilt */
+    }
+    g.net->calls = 0;
+    nth(&g, at)->due = t + 1;
+    nth(&g, at)->clocks[0] = g.net->readings[0].last;
+    return weigh(&g, at, t);
+}
+
+/* Apply the rule for the end of a trace; nothing more is learnt. */
+void network_close(run *r, int32_t index, int64_t end)
+{
+    judging g = judging_of(r, index);
+    if ((g.j->first >= 0) && (g.net != NULL)) {
+        g.net->readings[0].closed = end;
+        learn(&g.f, g.net, 0, g.net->readings[0].now, g.net->readings[0].last);
+    }
+}
+
+bool network_outlasts(run *r, int32_t index, const attempt *x)
+{
+    const judging g = judging_of(r, index);
+    return (g.net != NULL) && (x->location != FAILED) && !is_spoilt(&g)
+           && knows(&g.net->readings[0].nodes[g.root], 1U, position_of(x));
+}

@@ -1,0 +1,342 @@
+/* Numbers: binary64 and int64, compared exactly with each other; what is no number is unknown.
+ *
+ * Source: the law, section 5. */
+#include "state.h"
+
+#include <math.h>
+
+static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
+
+static rv_number whole(int64_t value)
+{
+    rv_number made;
+    made.kind = RV_WHOLE;
+    made.as.whole = value;
+    return made;
+}
+
+/* A result; one that is no finite number is unknown. */
+static rv_number real(double value)
+{
+    rv_number made = UNKNOWN_NUMBER;
+    if (value - value == 0.0) {
+        made.kind = RV_REAL;
+        made.as.real = value;
+    }
+    return made;
+}
+
+rv_number number_of_double(double x)
+{
+    rv_number made = UNKNOWN_NUMBER;
+    if (x == x) { /* what is read may be infinite */
+        made.kind = RV_REAL;
+        made.as.real = x;
+    }
+    return made;
+}
+
+static double as_double(const rv_number *x)
+{
+    return (x->kind == RV_WHOLE) ? (double)x->as.whole : x->as.real;
+}
+
+/* The sign of a whole number less a real one, exactly. */
+static int sign_beside(int64_t a, double b)
+{
+    int64_t floor_of_b;
+    double rest;
+    if (b >= 0x1p63) {
+        return -1;
+    }
+    if (b < -0x1p63) {
+        return 1;
+    }
+    floor_of_b = (int64_t)b; /* towards 0: the rest has the sign of b */
+    rest = b - (double)floor_of_b;
+    if (a != floor_of_b) {
+        return (a < floor_of_b) ? -1 : 1;
+    }
+    return (rest > 0.0) ? -1 : ((rest < 0.0) ? 1 : 0);
+}
+
+/* The sign of a difference. */
+static int order(const rv_number *a, const rv_number *b)
+{
+    if (a->kind == RV_REAL) {
+        if (b->kind == RV_REAL) {
+            return (a->as.real > b->as.real) - (a->as.real < b->as.real);
+        }
+        return -sign_beside(b->as.whole, a->as.real);
+    }
+    if (b->kind == RV_REAL) {
+        return sign_beside(a->as.whole, b->as.real);
+    }
+    return (a->as.whole > b->as.whole) - (a->as.whole < b->as.whole);
+}
+
+int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b)
+{
+    int sign;
+    bool holds;
+    if ((a->kind == RV_UNKNOWN) || (b->kind == RV_UNKNOWN)) {
+        return IS_UNKNOWN;
+    }
+    sign = order(a, b);
+    switch (how) {
+    case CMP_LT: holds = sign < 0; break;
+    case CMP_LE: holds = sign <= 0; break;
+    case CMP_EQ: holds = sign == 0; break;
+    case CMP_NE: holds = sign != 0; break;
+    case CMP_GE: holds = sign >= 0; break;
+    default: holds = sign > 0; break;
+    }
+    return holds ? IS_TRUE : IS_FALSE;
+}
+
+bool same_number(const rv_number *a, const rv_number *b)
+{
+    if (a->kind != b->kind) {
+        return false;
+    }
+    if (a->kind == RV_WHOLE) {
+        return a->as.whole == b->as.whole;
+    }
+    return (a->kind == RV_UNKNOWN) || (a->as.real == b->as.real);
+}
+
+static rv_number added(const rv_number *a, const rv_number *b)
+{
+    if ((a->kind == RV_WHOLE) && (b->kind == RV_WHOLE)) {
+        const int64_t x = a->as.whole;
+        const int64_t y = b->as.whole;
+        const bool fits = (y >= 0) ? (x <= INT64_MAX - y) : (x >= INT64_MIN - y);
+        return fits ? whole(x + y) : UNKNOWN_NUMBER;
+    }
+    return real(as_double(a) + as_double(b));
+}
+
+static rv_number subtracted(const rv_number *a, const rv_number *b)
+{
+    if ((a->kind == RV_WHOLE) && (b->kind == RV_WHOLE)) {
+        const int64_t x = a->as.whole;
+        const int64_t y = b->as.whole;
+        const bool fits = (y >= 0) ? (x >= INT64_MIN + y) : (x <= INT64_MAX + y);
+        return fits ? whole(x - y) : UNKNOWN_NUMBER;
+    }
+    return real(as_double(a) - as_double(b));
+}
+
+static uint64_t size_of(int64_t x)
+{
+    return (x < 0) ? UINT64_C(0) - (uint64_t)x : (uint64_t)x;
+}
+
+static rv_number multiplied(const rv_number *a, const rv_number *b)
+{
+    if ((a->kind == RV_WHOLE) && (b->kind == RV_WHOLE)) {
+        const uint64_t x = size_of(a->as.whole);
+        const uint64_t y = size_of(b->as.whole);
+        const bool negative = (a->as.whole < 0) != (b->as.whole < 0);
+        const uint64_t most = (uint64_t)INT64_MAX + (negative ? 1U : 0U);
+        uint64_t product;
+        if ((x != 0) && (y > most / x)) {
+            return UNKNOWN_NUMBER;
+        }
+        product = x * y;
+        if (!negative) {
+            return whole((int64_t)product);
+        }
+        return whole((product > (uint64_t)INT64_MAX) ? INT64_MIN : -(int64_t)product);
+    }
+    return real(as_double(a) * as_double(b));
+}
+
+/* The quotient of two sizes, rounded once, to even: so many binary digits that the last two only
+ * tell on which side of the middle it is. */
+static double quotient(uint64_t a, uint64_t b)
+{
+    uint64_t digits = a / b;
+    uint64_t rest = a % b;
+    int shift = 0;
+    while (digits < (UINT64_C(1) << 55)) {
+        digits <<= 1;
+        if (rest > UINT64_MAX - rest) { /* twice the rest does not fit: it is more than b */
+            digits |= 1U;
+            rest = rest - (b - rest);
+        } else {
+            rest *= 2;
+            if (rest >= b) {
+                digits |= 1U;
+                rest -= b;
+            }
+        }
+        shift++;
+        if (shift > 130) {
+            break;
+        }
+    }
+    return ldexp((double)(digits | ((rest != 0) ? 1U : 0U)), -shift);
+}
+
+static rv_number divided(const rv_number *a, const rv_number *b)
+{
+    if ((a->kind == RV_WHOLE) && (b->kind == RV_WHOLE)) {
+        const uint64_t x = size_of(a->as.whole);
+        const uint64_t y = size_of(b->as.whole);
+        double size;
+        if (y == 0) {
+            return UNKNOWN_NUMBER;
+        }
+        if ((x <= (UINT64_C(1) << 53)) && (y <= (UINT64_C(1) << 53))) {
+            size = (double)x / (double)y;
+        } else {
+            size = quotient(x, y);
+        }
+        return real(((a->as.whole < 0) != (b->as.whole < 0)) ? -size : size);
+    }
+    if (as_double(b) == 0.0) {
+        return UNKNOWN_NUMBER;
+    }
+    return real(as_double(a) / as_double(b));
+}
+
+static rv_number negated(const rv_number *a)
+{
+    if (a->kind == RV_WHOLE) {
+        return (a->as.whole == INT64_MIN) ? UNKNOWN_NUMBER : whole(-a->as.whole);
+    }
+    return real(-a->as.real);
+}
+
+static rv_number magnitude(const rv_number *a)
+{
+    if (a->kind == RV_WHOLE) {
+        return (a->as.whole < 0) ? negated(a) : *a;
+    }
+    return real(fabs(a->as.real));
+}
+
+/* An operand that is infinite is no finite result. */
+static rv_number picked(const rv_number *a)
+{
+    return (a->kind == RV_REAL) ? real(a->as.real) : *a;
+}
+
+/* The length of a vector, rounded once: a root, and what its square is off by in twice the digits.
+ * Large and small vectors are scaled by a power of two. */
+static double length(double a, double b)
+{
+    const double x0 = fabs(a);
+    const double y0 = fabs(b);
+    const double longer = (x0 > y0) ? x0 : y0;
+    const double shorter = (x0 > y0) ? y0 : x0;
+    const double scale = (longer > 0x1p500) ? 0x1p-600 : ((longer < 0x1p-400) ? 0x1p700 : 1.0);
+    const double x = longer * scale;
+    const double y = shorter * scale;
+    const double xx = x * x;
+    const double yy = y * y;
+    const double all = xx + yy;
+    const double lost = ((xx - all) + yy) + (fma(x, x, -xx) + fma(y, y, -yy));
+    const double root = sqrt(all);
+    const double square = root * root;
+    const double off = ((all - square) - fma(root, root, -square)) + lost;
+    return ((root > 0.0) ? root + off / (2.0 * root) : root) / scale;
+}
+
+static rv_number combined(int32_t op, const rv_number *a, const rv_number *b)
+{
+    if ((a->kind == RV_UNKNOWN) || (b->kind == RV_UNKNOWN)) {
+        return UNKNOWN_NUMBER;
+    }
+    switch (op) {
+    case CODE_ADD: return added(a, b);
+    case CODE_SUB: return subtracted(a, b);
+    case CODE_MUL: return multiplied(a, b);
+    case CODE_DIV: return divided(a, b);
+    case CODE_MIN: return picked((order(b, a) < 0) ? b : a);
+    case CODE_MAX: return picked((order(b, a) > 0) ? b : a);
+    default: return real(length(as_double(a), as_double(b)));
+    }
+}
+
+static rv_number applied(int32_t op, const rv_number *a)
+{
+    if (a->kind == RV_UNKNOWN) {
+        return UNKNOWN_NUMBER;
+    }
+    switch (op) {
+    case CODE_NEG: return negated(a);
+    case CODE_ABS: return magnitude(a);
+    default: return (as_double(a) < 0.0) ? UNKNOWN_NUMBER : real(sqrt(as_double(a)));
+    }
+}
+
+/* What is asked of the last two updates of a signal; `now` is its value. */
+static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
+{
+    rv_number found = UNKNOWN_NUMBER;
+    if ((h->updates == 2) && (now->kind != RV_UNKNOWN)) {
+        found = h->before;
+    }
+    if ((op != CODE_PREV) && (found.kind != RV_UNKNOWN)) {
+        found = subtracted(now, &found);
+        if ((op == CODE_RATE) && (found.kind != RV_UNKNOWN)) {
+            const rv_number second = whole(INT64_C(1000000000));
+            const rv_number span = whole(h->at - h->before_at);
+            found = multiplied(&found, &second);
+            found = (found.kind == RV_UNKNOWN) ? found : divided(&found, &span);
+        }
+    }
+    return found;
+}
+
+/* A field of an occurrence; `at` says per event which one is looked at, NULL: the last one. */
+static rv_number field_value(const run *r, int32_t event, int32_t field, const int32_t *at)
+{
+    const occurrences *o = &r->payloads[event];
+    const int32_t one = (at != NULL) ? at[event] : o->count - 1;
+    if ((one < 0) || (one >= o->count) || (o->known[one] == 0U) || (r->silent[event] == IS_UNKNOWN)) {
+        return UNKNOWN_NUMBER;
+    }
+    return o->fields[one * r->part->events[event].fields + field];
+}
+
+rv_number program_value(const run *r, int32_t place, const int32_t *at)
+{
+    rv_number stack[PROGRAM_DEPTH];
+    const plan *p = PLAN(r);
+    const int32_t *word = &p->code[place];
+    int32_t n = 0;
+    for (; (*word & 255) != CODE_END; word++) {
+        const int32_t op = *word & 255;
+        const int32_t arg = *word >> 8;
+        switch (op) {
+        case CODE_NUMBER:
+            stack[n].kind = (int32_t)p->numbers[arg].kind;
+            stack[n].as.whole = p->numbers[arg].as.whole;
+            if (stack[n].kind == RV_REAL) {
+                stack[n].as.real = p->numbers[arg].as.real;
+            }
+            n++;
+            break;
+        case CODE_SIGNAL: stack[n++] = r->value[arg]; break;
+        case CODE_CAPTURED: stack[n++] = r->captured[arg]; break;
+        case CODE_FIELD:
+            word++;
+            stack[n++] = field_value(r, arg, *word, at);
+            break;
+        case CODE_PREV:
+        case CODE_DELTA:
+        case CODE_RATE: stack[n++] = of_updates(op, &r->history[arg], &r->value[arg]); break;
+        case CODE_NEG:
+        case CODE_ABS:
+        case CODE_SQRT: stack[n - 1] = applied(op, &stack[n - 1]); break;
+        default:
+            n--;
+            stack[n - 1] = combined(op, &stack[n - 1], &stack[n]);
+            break;
+        }
+    }
+    return stack[0];
+}

@@ -1,0 +1,652 @@
+/* The state of a monitor, and what the files of the core call of each other. */
+#ifndef RVMON_STATE_H
+#define RVMON_STATE_H
+
+#include "plan.h"
+
+#define NEVER RV_NEVER
+#define LIMIT (INT64_C(1) << 62)
+
+/* Truth values; NONE is of nothing yet. */
+enum { IS_FALSE = 0, IS_UNKNOWN = 1, IS_TRUE = 2 };
+
+/* The two last locations of every automaton. */
+enum { FAILED = 0, PASSED = 1, WAITING = 2 };
+
+/* ---- memory.c: blocks of a few sizes, all given back at once */
+
+#define SIZE_CLASSES 256
+
+typedef struct chunk {
+    struct chunk *next;
+} chunk;
+
+typedef struct {
+    rv_memory from;
+    chunk *chunks;
+    char *free;
+    size_t left;
+    void *spare[SIZE_CLASSES];
+} arena;
+
+void *arena_take(arena *a, size_t size);          /* zeroed; NULL: there is none */
+void arena_give(arena *a, void *block, size_t size);
+void arena_release(arena *a);                     /* all of it */
+
+/* ---- plan.c: the plan, checked, with a pointer for each section */
+
+typedef struct {
+    const part_plan *plan;
+    const signal_plan *signals;
+    const event_plan *events;
+    const atom_plan *atoms;
+    const node_plan *nodes;
+    const judge_plan *judges;
+    const form_plan *forms;
+    int32_t *timed;            /* by timer, the node */
+    int32_t *perishable;       /* by number among these, the signal */
+    bool restarts;             /* whether some failure may be followed by another attempt */
+} part;
+
+typedef struct {
+    const plan_header *header;
+    const int32_t *field_first;
+    const int32_t *subscription_first;
+    const subscription *subscriptions;
+    const part_plan *parts;
+    const signal_plan *signals;
+    const event_plan *events;
+    const atom_plan *atoms;
+    const node_plan *nodes;
+    const link_plan *links;
+    const judge_plan *judges;
+    const automaton_plan *automata;
+    const form_plan *forms;
+    const operator_plan *operators;
+    const number_plan *numbers;
+    const int32_t *code;
+    const int32_t *lists;
+    const int32_t *ints;
+    const int64_t *ticks;
+    int64_t counts[SECTIONS];
+    int32_t part_count;
+} plan;
+
+bool plan_view(plan *p, const void *bytes, size_t size);
+
+/* ---- the state */
+
+typedef struct run run;
+typedef struct home home;
+
+/* Timers: an indexed heap of the ids that are due some time. */
+typedef struct {
+    int64_t *due;              /* by id */
+    int32_t *ids;              /* the heap */
+    int32_t *place;            /* by id, within the heap */
+    int32_t count;
+} timers;
+
+typedef struct {
+    rv_number last;
+    rv_number before;
+    int64_t at;
+    int64_t before_at;
+    int32_t updates;           /* 0, 1, or 2 for more */
+    int32_t spare;
+} history;
+
+/* Occurrences of one event at one position. */
+typedef struct {
+    rv_number *fields;
+    uint8_t *known;
+    int32_t count;
+    int32_t room;
+} occurrences;
+
+typedef struct {
+    int64_t begin;
+    int64_t end;
+} stretch;
+
+/* Stretches of instants at which a `since` in bounds holds, as a ring. */
+typedef struct {
+    stretch *at;
+    int32_t room;              /* a power of two, or 0 */
+    int32_t head;
+    int32_t count;
+    bool left;
+    bool right;
+    bool growing;              /* whether the end of the last one is still to come */
+    bool apart;                /* whether there is a second one, the unknown taken for the better */
+} stretches;
+
+typedef struct {
+    int64_t at;
+    bool left;
+    bool right;
+    bool apart;
+} edge;
+
+/* An open attempt; its clocks stand behind it, then those of its other reading. */
+typedef struct {
+    int64_t triggered;
+    int64_t due;
+    uint32_t number;
+    int32_t next;
+    int32_t location;
+    int32_t better;            /* its location if the unknown is taken for the better */
+    bool parted;               /* whether that reading is another */
+    bool sure;                 /* else it is in doubt whether there was a trigger */
+    bool clouded;              /* whether its trigger was unknown while it ran */
+    bool hollow;               /* over before all that it speaks of had a value */
+    int64_t clocks[];
+} attempt;
+
+/* What else an attempt of a part has whose attempts or instances have values of their own. */
+typedef struct {
+    run *judge;                /* that judges it; NULL: it is none */
+    int64_t became;            /* when it was sure, or in doubt */
+    int64_t decided;
+    int32_t next_sure;
+    int32_t next_doubt;
+    int32_t next_done;
+    int32_t rule;
+    uint32_t doubt_number;
+    uint8_t verdict;
+    uint8_t decision;
+} turn;
+
+/* Positions at which something is known. */
+typedef struct {
+    int64_t first;
+    int64_t last;
+} range;
+
+typedef struct {
+    range *at;
+    int32_t room;
+    int32_t first;             /* those before it were dropped */
+    int32_t end;
+} ranges;
+
+/* What is known of a part of a formula: by value, where it is false and where true. */
+typedef struct {
+    ranges known[2];
+    ranges news[2];            /* what became so last */
+    int64_t base;              /* the first position that was wanted and not known */
+    int64_t swept;             /* up to which its operands only lead on */
+    int64_t wanted;
+} operator_state;
+
+typedef struct {
+    operator_state *nodes;
+    ranges samples;            /* their instants, from the oldest that is kept on */
+    int64_t oldest;
+    int64_t now;
+    int64_t was_now;
+    int64_t first;
+    int64_t last;              /* the last position of which the letter is known */
+    int64_t was_last;
+    int64_t closed;            /* the end of the trace, or NEVER */
+} network;
+
+/* The network of a judge: two of them from the first unknown letter on. */
+typedef struct {
+    network readings[2];
+    uint8_t *leaf;             /* 1: true for the worse; 2: for the better */
+    uint8_t *next_leaf;        /* the same from the position `turn` on */
+    int64_t turn;
+    int32_t visits;
+    int32_t calls;             /* since the letter changed */
+    bool begun;
+    bool parted;
+} networks;
+
+/* What becomes of a judge at a position. */
+enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
+
+typedef struct {
+    int64_t position;          /* that its attempts have come to */
+    int64_t lag;               /* what is decided so long before it is due is still to be found */
+    int64_t failed_at;         /* when the attempt of the episode that runs did */
+    networks *net;
+    int32_t first;
+    int32_t last;
+    int32_t current;           /* the attempt of the episode that runs */
+    int32_t letter;            /* the class of letters that they stepped with */
+    int32_t other;             /* the same, the unknown taken for the better */
+    int32_t worse;             /* the letter as the nodes stand now, summed up */
+    int32_t better;
+    uint32_t count;
+    uint32_t doubts;
+    uint32_t passed;
+    uint32_t failed;
+    uint32_t inconclusive;
+    uint8_t before;            /* the truth of its trigger at the position before */
+    uint8_t touched;
+    bool running;
+    bool restless;             /* whether an attempt may move at the next position, whatever comes */
+    bool slides;
+    bool sorted;               /* whether no attempt is due before an older one */
+    bool is_restless_listed;
+    bool is_failing_listed;
+} judge;
+
+/* The state of a part: of all requirements without values of their own, of an instance, or of an
+ * attempt with captured values. What a fork copies stands in one block. */
+struct run {
+    home *home;
+    const part *part;
+    run *next;                 /* of the same list */
+    run *parent;               /* in which its attempt was triggered */
+    judge *judges;
+    timers rules;              /* by number of the judge */
+    int32_t *touched;
+    int32_t *restless;
+    int32_t *repeating;        /* pulses that were true at the position before */
+    int32_t *failing;          /* episodes whose attempt has failed */
+    int32_t *due_rules;        /* room for those that are due */
+    int32_t touched_count;
+    int32_t restless_count;
+    int32_t repeating_count;
+    int32_t failing_count;
+    /* Of an instance or an attempt with values of its own. */
+    int64_t opens_at;          /* nothing starts before; NEVER: nothing does */
+    int64_t cut;               /* from then on it is not known what was captured */
+    int64_t occurred;          /* when the value did first of which it is the instance */
+    uint32_t rank;             /* of its instance; 0: none, or of unknown value */
+    int32_t key;               /* the place of that value */
+    int32_t judged;            /* the judge of its attempt, if values are captured */
+    int32_t children;          /* runs of attempts that were triggered in it */
+    int32_t starters;          /* the judges of which attempts start here, as bits */
+    int32_t judging;           /* those of which attempts are judged here */
+    bool opening;              /* whether attempts start from the next position on */
+    bool over;                 /* whether what occurred belongs to the last position */
+    bool watched;              /* whether it is seen to whether its values stay known */
+    bool blurs;                /* whether that can end */
+    bool touched_now;          /* whether it came to a position in this call */
+    bool doubted;              /* whether it is not known that there is such an instance */
+    bool stays_busy;           /* whether the next position matters to what was captured here */
+    /* The arrays of a part's size. */
+    size_t copied;             /* bytes of the block that a fork copies as they stand */
+    char *block;
+    rv_number *captured;
+    rv_number *value;
+    history *history;
+    occurrences *payloads;
+    int32_t *chosen;           /* by event, the occurrence that a comparison looks at */
+    stretches *past;
+    edge *edges;
+    timers wake;               /* nodes, then perishable signals */
+    uint64_t *dirty;           /* nodes to be worked out, as bits */
+    uint64_t *dirty_words;     /* words of that which are not 0, as bits */
+    int32_t *fading;           /* atoms that speak of the last position only */
+    int32_t *fresh;            /* the same of the next one */
+    int32_t *marks;            /* names of which something is to be forgotten after the position */
+    uint8_t *marked;
+    uint8_t *truth;
+    uint8_t *atom;
+    uint8_t *momentary;
+    uint8_t *is_fading;
+    uint8_t *is_fresh;
+    uint8_t *births;
+    uint8_t *updated;
+    uint8_t *changed;
+    uint8_t *occurs;
+    uint8_t *silent;
+    uint8_t *absent;
+    uint8_t *seen;
+    /* What is copied with them. */
+    struct progress {
+        int64_t origin;
+        int64_t position;
+        int64_t before;
+        int64_t alarm;         /* before that nothing happens without a change */
+        int64_t after;         /* the last sample that was taken */
+        int64_t awaited;       /* the tick of a clock that what was taken belongs to */
+        int32_t fading_count;
+        int32_t fresh_count;
+        int32_t marks_count;
+        int32_t births_left;
+        int32_t undetermined_left;
+        int32_t phase;         /* 1: all is born and determined */
+        bool started;
+        bool starting;         /* at the first position */
+        bool gathered;
+        bool dirty;            /* a position is to be looked at though no node is dirty */
+    } at;
+};
+
+/* A value of `for each` that occurred. */
+typedef struct {
+    rv_number value;
+    int64_t occurred;
+    run *open;                 /* its instance; NULL: that is over */
+    uint32_t rank;
+    int32_t next;              /* of those with the same hash */
+    int32_t older;             /* of those that are over */
+    int32_t newer;
+} key;
+
+/* An update of a part: the number there, and what it says. */
+typedef struct {
+    int32_t local;
+    bool event;
+    const rv_update *update;
+} incoming;
+
+/* A sample that is kept for those that look at what was before. */
+typedef struct {
+    int64_t t;
+    rv_number value;
+    const rv_number *fields;
+    int32_t local;
+    bool event;
+    int32_t says;
+    bool last;                 /* of its sample */
+} past_update;
+
+/* What the runs of a part share. */
+struct home {
+    rv_monitor *monitor;
+    const part *part;
+    run *root;                 /* without captured values */
+    run *last_root;            /* behind it the instances */
+    run *captured;             /* the first of an attempt */
+    run *last_captured;
+    run *spare;
+    char *pool;                /* attempts */
+    turn *turns;
+    size_t stride;
+    int32_t capacity;
+    int32_t used;
+    int32_t free_slot;
+    incoming *inbox;
+    int32_t inbox_count;
+    int32_t inbox_room;
+    int64_t previous;          /* the instant of the sample before the one at hand */
+    int64_t alarm;
+    /* Of a part whose attempts or instances have values of their own. */
+    uint32_t count;
+    uint32_t doubts;
+    uint32_t passed;
+    uint32_t failed;
+    uint32_t inconclusive;
+    rv_number *room;           /* for values that are captured to be compared */
+    int32_t sure[2];           /* what became so and is not numbered: first and last */
+    int32_t doubtful[2];
+    int32_t done[2];           /* what was decided and is not told */
+    past_update *past;
+    int32_t past_count;
+    int32_t past_room;
+    key *keys;
+    int32_t *heads;            /* the first key by hash; -1: none */
+    int32_t key_room;
+    int32_t key_count;
+    int32_t free_key;
+    int32_t oldest;            /* of those that are over; -1: none */
+    int32_t newest;
+    int32_t over_count;
+    uint32_t last_rank;
+};
+
+struct rv_monitor {
+    arena memory;
+    plan plan;
+    part *parts;
+    home *homes;
+    rv_record *records;
+    rv_number *captured;
+    uint8_t *absent;
+    int64_t record_count;
+    int64_t record_room;
+    int64_t sorted;            /* so many records are in order */
+    int64_t captured_count;
+    int64_t captured_room;
+    int64_t began;
+    int64_t last;
+    int64_t after;             /* a sample has to be later */
+    int64_t reached;
+    bool finished;
+    bool spoilt;
+};
+
+#define GAP(r) ((r)->home->monitor->plan.header->gap)
+#define LIST(p, l) (&(p)->lists[(l).first])
+#define PLAN(r) (&(r)->home->monitor->plan)
+#define JUDGE_ALIVE(r, i) ((r)->judges[i].first >= 0)
+
+static inline int64_t step_of(const run *r)
+{
+    const int64_t gap = GAP(r);
+    return (gap > 0) ? gap : 1;
+}
+
+static inline int64_t least(int64_t a, int64_t b)
+{
+    return (a < b) ? a : b;
+}
+
+/* Have a judge look at the position at hand. */
+static inline void touch(run *r, int32_t index, uint8_t what)
+{
+    judge *j = &r->judges[index];
+    if (j->touched == 0U) {
+        r->touched[r->touched_count] = index;
+        r->touched_count++;
+    }
+    j->touched |= what;
+}
+
+static inline uint8_t truth_if(bool value)
+{
+    return value ? IS_TRUE : IS_FALSE;
+}
+
+/* An instant so much after another one, which is less than LIMIT. */
+static inline int64_t sum(int64_t t, int64_t duration)
+{
+    return (duration >= LIMIT) ? NEVER : t + duration;
+}
+
+static inline attempt *attempt_at(const home *h, int32_t i)
+{
+    return (attempt *)(void *)(h->pool + h->stride * (size_t)i);
+}
+
+/* A larger array with what stood in the old one; NULL if memory is short, which spoils the run. */
+void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
+
+/* ---- timers.c */
+void timers_set(timers *h, int32_t id, int64_t due);
+void timers_clear(timers *h, int32_t ids);
+static inline int64_t timers_next(const timers *h)
+{
+    return (h->count > 0) ? h->due[h->ids[0]] : NEVER;
+}
+/* The ids that are due by `t`, into `found`; returns how many. */
+int32_t timers_due(const timers *h, int64_t t, int32_t *found);
+
+/* ---- numbers.c */
+int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b); /* a truth */
+bool same_number(const rv_number *a, const rv_number *b);
+rv_number program_value(const run *r, int32_t place, const int32_t *at);
+rv_number number_of_double(double x);
+
+/* ---- values.c: samples, held values, what occurred */
+void take_update(run *r, int64_t t, const incoming *in);
+void forget(run *r);
+void go_stale(run *r, int32_t perishable);
+void lack(run *r, bool event, int32_t local);
+
+/* ---- atoms.c */
+void recheck(run *r, int32_t atom);
+void recheck_list(run *r, list l);
+void recheck_fading(run *r);
+void reread(run *r, int32_t atom, bool pending);
+uint8_t leaf_truth(const run *r, const node_plan *n);
+
+/* ---- past.c */
+uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
+uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
+
+/* ---- graph.c: the nodes of a part */
+void soil(run *r, int32_t node);
+void soil_all(run *r);
+void work_out(run *r, int64_t t);
+bool is_soiled(const run *r);
+void vary(run *r, int64_t t, bool pending);
+void settle_phase(run *r);
+
+/* ---- automata.c: one attempt through positions and time */
+typedef struct {
+    const automaton_plan *plan;
+    const plan *whole;
+    int64_t step;
+    int64_t gap;
+} machine;
+
+typedef struct {
+    int32_t location;
+    int64_t *clocks;
+} token;
+
+machine machine_of(const run *r, int32_t index);
+int32_t class_of_letter(const run *r, int32_t index, bool better);
+bool step_token(const machine *a, token *k, int64_t t, int32_t letter);
+bool rests(const machine *a, const token *k, int64_t t, int32_t letter);
+int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *before);
+int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until);
+int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,
+                  bool *slides);
+bool holds_at_end(const machine *a, const attempt *x, int64_t end, int64_t reached);
+
+#define CLOCKS_MOST 64
+
+/* ---- attempts.c */
+bool is_true(const run *r, int32_t node);
+bool is_current(const run *r, int32_t index, int32_t at);
+int32_t place_taken(run *r);
+void give_back(home *h, int32_t at);
+void number_attempt(run *r, int32_t index, int32_t at, int64_t t);
+bool is_sure(const run *r, int32_t index);
+bool runs_on(const run *r, int32_t index);
+void leave_episode(run *r, int32_t index);
+void look_at(run *r, int32_t index, int64_t t);
+void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
+void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
+void leave(run *r, int32_t index, int32_t before, int32_t at);
+void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
+
+/* ---- records.c */
+void report(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
+void sort_records(rv_monitor *m);
+
+/* ---- drive.c: attempts of a judge through time */
+void set_rule_due(run *r, int32_t index, int64_t due);
+void set_restless(run *r, int32_t index);
+void pass_to(run *r, int32_t index, int64_t t);
+void visit_judge(run *r, int32_t index, int64_t t);
+void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
+void begin(run *r, int32_t index, int64_t t, int64_t triggered);
+void reach_judge(run *r, int32_t index, int64_t t);
+bool starts(run *r, int32_t index, uint8_t truth);
+bool watches(const run *r, int32_t index);
+
+/* ---- clock.c */
+void clear_run(run *r);
+void clear_judges(run *r);
+void visit(run *r, int64_t t);
+void reach(run *r, int64_t t);
+void through(run *r, int64_t limit, bool comes);
+void approach(run *r, int64_t t);
+void arrive(run *r, int64_t t);
+void set_alarm(run *r, int64_t position);
+int64_t next_position(const run *r);
+int64_t next_decision(run *r);
+void settle_all(run *r, int64_t end, int64_t reached);
+bool was_heard(const run *r, int32_t index);
+
+/* ---- ranges.c */
+int32_t range_from(const ranges *r, int64_t position);
+int32_t range_around(const ranges *r, int64_t position);
+int64_t last_up_to(const ranges *r, int64_t position);
+void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t last);
+void ranges_insert(rv_monitor *m, ranges *r, int32_t i, int64_t first, int64_t last);
+void ranges_cut(rv_monitor *m, ranges *r, int64_t first, int64_t last);
+void ranges_drop(ranges *r, int64_t before);
+void ranges_empty(ranges *r);
+void ranges_copy(rv_monitor *m, ranges *made, const ranges *r);
+bool ranges_alike(const ranges *one, const ranges *other);
+
+/* ---- network_nodes.c, network_state.c: what is known of a formula */
+typedef struct {
+    const plan *plan;
+    const form_plan *form;
+    const operator_plan *nodes;
+    int64_t gap;
+    int64_t step;
+    rv_monitor *monitor;
+} form;
+
+form form_of(const run *r, int32_t index);
+int64_t floored(int64_t t, int64_t step);
+int64_t instant_of(const form *f, const network *w, int64_t position);
+int64_t position_by(const form *f, const network *w, int64_t t);
+int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance);
+int64_t up_to(const form *f, const network *w, int64_t position, int64_t distance);
+bool knows(const operator_state *o, uint8_t value, int64_t position);
+void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t last);
+void unlearn(const form *f, network *w);
+void start_over(const form *f, network *w, int64_t t, int64_t position);
+void copy_network(const form *f, network *made, const network *w);
+bool networks_agree(const form *f, const network *one, const network *other);
+void tidy(const form *f, network *w, int64_t position);
+
+/* ---- network_judge.c: attempts that a network judges */
+bool is_networked(const run *r, int32_t index);
+void network_pass(run *r, int32_t index, int64_t now, bool is_position);
+void network_put_off(run *r, int32_t index, int64_t until);
+void network_approach(run *r, int32_t index, int64_t until);
+void network_foresee(run *r, int32_t index, int64_t until);
+void network_come_to(run *r, int32_t index, int64_t t);
+bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
+void network_close(run *r, int32_t index, int64_t end);
+bool network_outlasts(run *r, int32_t index, const attempt *x);
+
+/* ---- runs.c: made, forked, replayed, let go */
+run *new_run(home *h);
+run *forked(const run *r);
+void set_aside(home *h, run *r);
+void give(run *r, int64_t t, const incoming *in, int32_t count);
+void keep_updates(home *h, int64_t t);
+void replay(run *r);
+
+/* ---- captured.c: attempts with captured values */
+bool starts_here(const run *r, int32_t index);
+void note_turn(run *r, int32_t at, int64_t t);
+void note_done(run *r, int32_t at);
+void flush_turns(home *h);
+void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered);
+void look_after(run *r, int64_t t);
+void forget_last(run *r);
+bool is_idle(const run *r);
+
+/* ---- keys.c: instances of a `for each` */
+bool begin_keys(home *h);
+void open_instances(home *h, int64_t t);
+void close_instances(home *h);
+void open_at(run *r, int64_t t);
+int32_t concerning(const run *r, const rv_update *u);
+
+/* ---- homes.c: all runs of a part */
+bool home_begin(home *h);
+void home_lack(home *h, bool event, int32_t local);
+void home_sample(home *h, int64_t t);
+void home_wait(home *h, int64_t t);
+void home_close(home *h, int64_t end, int64_t reached);
+int64_t home_due(home *h);
+run *following(const home *h, const run *r);
+
+#endif

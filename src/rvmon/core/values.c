@@ -1,0 +1,207 @@
+/* What a sample says: held values, births, updates, occurrences. */
+#include "state.h"
+
+#include <string.h>
+
+static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
+
+/* Remember to forget what is said of a name once its position is over. Signals come first. */
+static void mark(run *r, int32_t name)
+{
+    if (r->marked[name] == 0U) {
+        r->marked[name] = 1;
+        r->marks[r->at.marks_count] = name;
+        r->at.marks_count++;
+    }
+    r->at.gathered = true;
+}
+
+void forget(run *r)
+{
+    const int32_t signals = r->part->plan->signals.count;
+    int32_t i;
+    for (i = 0; i < r->at.marks_count; i++) {
+        const int32_t name = r->marks[i];
+        r->marked[name] = 0;
+        r->updated[name] = 0;
+        if (name < signals) {
+            r->changed[name] = IS_FALSE;
+        } else {
+            r->occurs[name - signals] = r->silent[name - signals];
+            r->payloads[name - signals].count = 0;
+        }
+    }
+    r->at.marks_count = 0;
+}
+
+/* Take an update; tells whether it brought another value. */
+static uint8_t remember(history *h, int64_t t, const rv_number *value)
+{
+    const bool first = h->updates == 0;
+    h->before = h->last;
+    h->before_at = h->at;
+    h->last = *value;
+    h->at = t;
+    h->updates = first ? 1 : 2;
+    if (first) {
+        return IS_FALSE;
+    }
+    if ((value->kind == RV_UNKNOWN) || (h->before.kind == RV_UNKNOWN)) {
+        return IS_UNKNOWN;
+    }
+    return truth_if(!same_number(value, &h->before));
+}
+
+/* Hold a value; what reads it is looked at again if it is another one. */
+static void hold(run *r, int32_t local, const rv_number *value)
+{
+    if (!same_number(value, &r->value[local])) {
+        r->value[local] = *value;
+        recheck_list(r, r->part->signals[local].on_change[r->at.phase]);
+    }
+}
+
+static void come_to_birth(run *r, int32_t local, bool known)
+{
+    const signal_plan *s = &r->part->signals[local];
+    if ((r->births[local] < s->births) && (known || (r->births[local] > 0))) {
+        const int32_t *nodes = LIST(PLAN(r), s->on_birth);
+        int32_t i;
+        r->births[local]++;
+        if (r->births[local] == s->births) {
+            r->at.births_left--;
+        }
+        for (i = 0; i < s->on_birth.count; i++) {
+            soil(r, nodes[i]);
+        }
+    }
+}
+
+static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value)
+{
+    const signal_plan *s = &r->part->signals[local];
+    const bool known = value->kind != RV_UNKNOWN;
+    if (!known && ((s->flags & SIGNAL_IGNORES_NAN) != 0)) {
+        return;
+    }
+    if ((s->flags & SIGNAL_CAPTURED) != 0) {
+        r->at.dirty = true; /* another value may be captured */
+    }
+    if (s->perishable >= 0) {
+        const int64_t stale_at = sum(t, s->stale_after + 1);
+        timers_set(&r->wake, r->part->plan->timers + s->perishable, stale_at);
+        /* The update may change no value: then nothing else has the timer seen to. */
+        r->at.alarm = least(r->at.alarm, stale_at);
+    }
+    if (s->births != 0) {
+        come_to_birth(r, local, known);
+    }
+    if ((s->flags & (SIGNAL_MARKS | SIGNAL_HISTORY)) != 0) {
+        r->updated[local] = 1;
+        mark(r, local);
+        if ((s->flags & SIGNAL_HISTORY) != 0) {
+            const uint8_t changed = remember(&r->history[local], t, value);
+            r->changed[local] = (changed > r->changed[local]) ? changed : r->changed[local];
+        }
+        r->at.dirty = true;
+        hold(r, local, value);
+        recheck_list(r, s->on_update[r->at.phase]);
+    } else {
+        hold(r, local, value);
+    }
+}
+
+/* Keep the payload of an occurrence. */
+static void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
+{
+    occurrences *o = &r->payloads[local];
+    const int32_t width = r->part->events[local].fields;
+    rv_monitor *m = r->home->monitor;
+    if (o->count == o->room) {
+        int32_t room = o->room;
+        int32_t same = o->room;
+        uint8_t *flags = grown(m, o->known, &room, (int64_t)o->count + 1, 1);
+        rv_number *values;
+        if (flags == NULL) {
+            return;
+        }
+        o->known = flags;
+        values = grown(m, o->fields, &same, room, sizeof *values * (size_t)((width > 0) ? width : 1));
+        if (values == NULL) {
+            return;
+        }
+        o->fields = values;
+        o->room = room;
+    }
+    o->known[o->count] = known ? 1U : 0U;
+    if (width > 0) {
+        rv_number *own = &o->fields[o->count * width];
+        int32_t i;
+        for (i = 0; i < width; i++) {
+            own[i] = (known && (fields != NULL)) ? fields[i] : UNKNOWN_NUMBER;
+        }
+    }
+    o->count++;
+}
+
+static void take_event(run *r, int32_t local, int32_t says, const rv_number *fields)
+{
+    const event_plan *e = &r->part->events[local];
+    const int32_t name = r->part->plan->signals.count + local;
+    if ((e->flags & EVENT_MARKS) != 0) {
+        r->updated[name] = 1;
+        mark(r, name);
+        r->at.dirty = true;
+    }
+    if (says != RV_SAYS_NO) {
+        const bool known = says == RV_SAYS_YES;
+        const uint8_t occurs = known ? IS_TRUE : IS_UNKNOWN;
+        mark(r, name);
+        r->occurs[local] = (occurs > r->occurs[local]) ? occurs : r->occurs[local];
+        if ((e->flags & EVENT_FIELDS) != 0) {
+            keep_payload(r, local, known, fields);
+        }
+        r->at.dirty = true;
+    }
+    recheck_list(r, e->on_occurrence[r->at.phase]);
+}
+
+void take_update(run *r, int64_t t, const incoming *in)
+{
+    const rv_update *u = in->update;
+    if (!in->event) {
+        take_signal(r, t, in->local, (u->says == RV_SAYS_YES) ? &u->value : &UNKNOWN_NUMBER);
+    } else if ((r->part->events[in->local].flags & EVENT_KEY) != 0) {
+        const int32_t says = concerning(r, u);
+        if (says >= 0) {
+            take_event(r, in->local, says, u->fields);
+        }
+    } else {
+        take_event(r, in->local, u->says, u->fields);
+    }
+}
+
+void go_stale(run *r, int32_t perishable)
+{
+    hold(r, r->part->perishable[perishable], &UNKNOWN_NUMBER);
+}
+
+void lack(run *r, bool event, int32_t local)
+{
+    const part *p = r->part;
+    const int32_t name = event ? p->plan->signals.count + local : local;
+    const list needs = event ? p->events[local].needs : p->signals[local].needs;
+    const int32_t *atoms = LIST(PLAN(r), needs);
+    int32_t i;
+    if (r->absent[name] != 0U) {
+        return;
+    }
+    r->absent[name] = 1;
+    if (event) {
+        r->silent[local] = IS_UNKNOWN;
+        r->occurs[local] = IS_UNKNOWN;
+    }
+    for (i = 0; i < needs.count; i++) {
+        r->momentary[atoms[i]]--;
+    }
+}
