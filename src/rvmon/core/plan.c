@@ -168,17 +168,17 @@ static bool check_subscriptions(const plan *p)
         const bool event = name >= p->header->signals;
         for (i = p->subscription_first[name]; i < p->subscription_first[name + 1]; i++) {
             const subscription *s = &p->subscriptions[i];
-            const part_plan *part;
+            const part_plan *owner;
             int32_t own;
             if (!is_within(s->part, 0, p->part_count)) {
                 return false;
             }
-            part = &p->parts[s->part];
-            if (!is_within(s->local, 0, event ? part->events.count : part->signals.count)) {
+            owner = &p->parts[s->part];
+            if (!is_within(s->local, 0, event ? owner->events.count : owner->signals.count)) {
                 return false;
             }
-            own = event ? p->events[part->events.first + s->local].name
-                        : p->signals[part->signals.first + s->local].name;
+            own = event ? p->events[owner->events.first + s->local].name
+                        : p->signals[owner->signals.first + s->local].name;
             if (own != name) {
                 return false;
             }
@@ -354,7 +354,7 @@ static bool check_operands(const plan *p, const part_plan *x, const node_plan *n
 }
 
 /* The memory that a node has, and its timer; each timer is one node's. */
-static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timers)
+static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_nodes)
 {
     int32_t slots = 0;
     bool timed = true;
@@ -376,8 +376,8 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timers
     if (!timed) {
         return n->timer == -1;
     }
-    (*timers)++;
-    return n->timer == *timers - 1;
+    (*timed_nodes)++;
+    return n->timer == *timed_nodes - 1;
 }
 
 static bool check_links(const plan *p, const part_plan *x, list links)
@@ -396,12 +396,12 @@ static bool check_links(const plan *p, const part_plan *x, list links)
 
 static bool check_nodes(const plan *p, const part_plan *x)
 {
-    int32_t timers = 0;
+    int32_t timed_nodes = 0;
     int32_t i;
     for (i = 0; i < x->nodes.count; i++) {
         const node_plan *n = &p->nodes[x->nodes.first + i];
         if (!is_within(n->op, 0, NODES) || !check_operands(p, x, n, i)
-            || !check_memory(x, n, &timers) || !both(p, n->parents, (int64_t)i + 1, x->nodes.count)
+            || !check_memory(x, n, &timed_nodes) || !both(p, n->parents, (int64_t)i + 1, x->nodes.count)
             || !check_links(p, x, n->links) || (n->low < 0) || (n->high < 0)
             || ((n->op == NODE_LEAF)
                 && (!is_within(n->a, 0, x->atoms.count) || !is_within(n->b, 0, 3)))
@@ -414,7 +414,7 @@ static bool check_nodes(const plan *p, const part_plan *x)
             return false;
         }
     }
-    return timers == x->timers;
+    return timed_nodes == x->timers;
 }
 
 static bool has_ints(const plan *p, int64_t first, int64_t count)
