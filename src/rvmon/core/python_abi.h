@@ -65,6 +65,7 @@ typedef PyObject *(*PyCFunction)(PyObject *, PyObject *);
 typedef PyObject *(*allocfunc)(PyTypeObject *, Py_ssize_t);
 typedef PyObject *(*getter)(PyObject *, void *);
 typedef PyObject *(*newfunc)(PyTypeObject *, PyObject *, PyObject *);
+typedef int (*descrsetfunc)(PyObject *, PyObject *, PyObject *);
 typedef int (*inquiry)(PyObject *);
 typedef int (*setter)(PyObject *, PyObject *, void *);
 typedef int (*visitproc)(PyObject *, void *);
@@ -164,6 +165,8 @@ typedef struct bufferinfo {
 #define Py_tp_alloc 47
 #define Py_tp_clear 51
 #define Py_tp_dealloc 52
+#define Py_tp_descr_get 54
+#define Py_tp_descr_set 55
 #define Py_tp_doc 56
 #define Py_tp_init 60
 #define Py_tp_methods 64
@@ -231,6 +234,7 @@ extern PyTypeObject PyFloat_Type;
 extern PyTypeObject PyList_Type;
 extern PyTypeObject PyLong_Type;
 extern PyTypeObject PyTuple_Type;
+extern PyTypeObject PyType_Type;
 extern PyTypeObject PyUnicode_Type;
 
 int _PyArg_ParseTuple_SizeT(PyObject *, const char *, ...);
