@@ -32,7 +32,7 @@ check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, C by gcc and clang, t
 	@$(BIN)/rvmon format --check $$(find specs examples -name '*.rv')
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
-	@$(BIN)/python -m tests.tools.lint_c
+	@$(BIN)/python -m tests.tools.lint_c $(WARNINGS)
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
 
 sanitize: $(VENV)/.dev  ## run the tests of the native core with what watches memory and undefined behaviour
