@@ -5,7 +5,11 @@ BIN := $(VENV)/bin
 # What Python makes of files is kept, whatever is the custom here: else each program that tests start makes it anew.
 TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-.PHONY: help demo test quick check docs format bench claims fuzz release clean
+# What the native core is built from: where one of these changed, it is built anew.
+CORE := $(wildcard src/rvmon/core/*.[ch]) hatch_build.py
+WARNINGS := -Wall -Wextra -Wconversion -Wshadow -pedantic -Werror
+
+.PHONY: help demo core test quick check sanitize docs format bench claims fuzz release clean
 
 help:  ## show this list
 	@awk -F':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -13,19 +17,26 @@ help:  ## show this list
 demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; results in out/demo
 	@$(BIN)/handover demo --out out/demo
 
+core: | $(BIN)/python  ## compile the native core in place, a second; warnings are errors
+	@CFLAGS="$(WARNINGS) $$CFLAGS" $(BIN)/python hatch_build.py
+
 test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the seconds of each folder
 	@$(TESTED)
 
 quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, half a minute on 2 cores
 	@$(TESTED) -m "not (browser or campaign or compiler or law or process or slow)" tests
 
-check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, the documentation without warnings
+check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, C by gcc and clang, the documentation without warnings
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/rvmon format --check $$(find specs examples -name '*.rv')
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
+	@$(BIN)/python -m tests.tools.lint_c $(WARNINGS)
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
+
+sanitize: $(VENV)/.dev  ## run the tests of the native core with what watches memory and undefined behaviour
+	@$(BIN)/python -m tests.tools.sanitize
 
 docs: $(VENV)/.docs  ## make the documentation site, without warnings: out/docs/index.html
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
@@ -53,17 +64,17 @@ fuzz: $(VENV)/.dev  ## feed damaged input to all readers for SECONDS=600, and Py
 	@$(BIN)/python -m fuzz --seconds $(or $(SECONDS),600)
 
 clean:  ## remove the environment and all output
-	rm -rf $(VENV) out dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) out dist .mypy_cache .pytest_cache .ruff_cache .hypothesis src/rvmon/core/_core.*so
 
 $(BIN)/python:
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 	  echo "rvmon: '$(PYTHON) -m venv' does not work here. Mend: sudo apt-get install python3-venv"; exit 1; }
 
-$(VENV)/.demo: pyproject.toml | $(BIN)/python
+$(VENV)/.demo: pyproject.toml $(CORE) | $(BIN)/python
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[handover]'
 	@touch $@
 
-$(VENV)/.dev: pyproject.toml | $(BIN)/python
+$(VENV)/.dev: pyproject.toml $(CORE) | $(BIN)/python
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
 	@touch $@ $(VENV)/.demo
 

@@ -1,5 +1,7 @@
 """Build wheel and sdist into `dist`, check them, install each extra alone and import its doors.
 
+The native core is compiled, but not run, for the systems of `TARGETS`, by the package `ziglang`.
+
     python -m benchmarks.release [--only EXTRA …] [--no-pythons]
 
 Prints what each installation takes on the disk and its doors to import, and names what was not
@@ -23,7 +25,7 @@ ROOT = Path(__file__).parents[1]
 DIST = ROOT / "dist"
 PYTHONS = ("3.11", "3.12", "3.13")
 DOORS = {
-    "": "rvmon rvmon.cli rvmon.live rvmon.testing.oracle",
+    "": "rvmon rvmon.core rvmon.cli rvmon.live rvmon.testing.oracle",
     "cdv": "rvmon.cdv coverage",
     "handover": "handover.cli handover.driver pymunk",
     "arrow": "rvmon.readers.parquet pyarrow.parquet",
@@ -40,6 +42,9 @@ DOORS = {
 }
 """What has to import where only this extra is installed; the core alone has no name."""
 
+CORE = ROOT / "src" / "rvmon" / "core"
+TARGETS = ("x86_64-windows", "aarch64-macos", "aarch64-linux", "wasm32-wasi")
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror")
 REPEATS = 5
 IMPORT = "import time; began = time.process_time(); {}; print(1000 * (time.process_time() - began))"
 
@@ -65,6 +70,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         try:
             wheel = _built(Path(folder) / "tools")
+            print(_compiled_elsewhere(Path(folder) / "tools"))
         except ReleaseError as error:
             print(error, file=sys.stderr)
             return 1
@@ -101,6 +107,8 @@ def _built(tools: Path) -> Path:
         tops = {name.split("/")[0] for name in names if ".dist-info/" not in name}
     if tops != {"rvmon", "handover"} or "handover/specs/handover.rv" not in names:
         raise ReleaseError(f"the wheel holds {sorted(tops)}, or lacks handover/specs")
+    if "-cp311-abi3-" not in wheel.name or "rvmon/core/_core.abi3.so" not in names:
+        raise ReleaseError(f"{wheel.name} holds no native core for all versions of Python")
     with tarfile.open(sdist) as archive:
         folders = {name.split("/")[1] for name in archive.getnames() if "/" in name}
     lacking = {"src", "specs", "tests", "benchmarks", "docs", "examples", "Makefile"} - folders
@@ -109,6 +117,19 @@ def _built(tools: Path) -> Path:
     for path in (wheel, sdist):
         print(f"{path.name}: {path.stat().st_size / 1e6:.1f} MB")
     return wheel
+
+
+def _compiled_elsewhere(tools: Path) -> str:
+    """A line about the core, but for what knows of Python, compiled for other systems."""
+    python = tools / "bin" / "python"
+    _run([python, "-m", "pip", "install", "-q", "ziglang>=0.13,<1"])
+    sources = [path for path in sorted(CORE.glob("*.c")) if path.name != "module.c"]
+    for target in TARGETS:
+        for source in sources:
+            made = tools / f"{target}-{source.stem}.o"
+            line = [python, "-m", "ziglang", "cc", "-target", target, *FLAGS, "-c", source]
+            _run([*line, "-o", made])
+    return f"core: {len(sources)} files of C compile for {', '.join(TARGETS)}"
 
 
 def _installed(wheel: Path, extra: str, python: str, folder: Path) -> str:

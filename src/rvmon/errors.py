@@ -12,7 +12,8 @@
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
     ├── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
     ├── WorkerLostError              a process that shared the work was ended from outside
-    └── OverlapError(RuntimeError)   a monitor was called while another call of it was under way
+    ├── OverlapError(RuntimeError)   a monitor was called while another call of it was under way
+    └── CoreError(ImportError)       the native core is not built, or not from its sources
 """
 
 from __future__ import annotations
@@ -90,6 +91,10 @@ class WorkerLostError(RvmonError):
 
 class OverlapError(RvmonError, RuntimeError):
     """A monitor was called while another call of it was under way; this one changed nothing."""
+
+
+class CoreError(RvmonError, ImportError):
+    """The native core is not built, or was built from other sources than those beside it."""
 
 
 EXTRAS = {

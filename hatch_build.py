@@ -1,0 +1,192 @@
+"""Compiles the native core when the package is built, and in place: `python hatch_build.py`.
+
+Every `src/rvmon/core/*.c` is compiled and linked to one extension, `rvmon.core._core`. The compiler
+is `$CC`, Python's own, `cc`, `gcc` or `clang`; where none works, the build asks for the package
+`ziglang`, which brings one. Where Python's headers are missing, the C takes its own declarations
+(`python_abi.h`). `$CFLAGS` and `$LDFLAGS` are added.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.machinery
+import os
+import platform
+import runpy
+import shlex
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+try:
+    from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+except ImportError:  # run as a program, which needs Python alone
+    BuildHookInterface = object
+
+CORE = Path(__file__).resolve().parent / "src" / "rvmon" / "core"
+ZIG = "ziglang>=0.13,<1"
+LIMITED_API = "0x030B0000"
+"""The stable ABI of Python 3.11, which one extension for all later versions needs."""
+FLAGS = ("-std=c99", "-O2", "-fvisibility=hidden", "-fno-fast-math", "-ffp-contract=off")
+"""Numbers are binary64 and rounded after each operation, whatever `$CFLAGS` says before."""
+PROBE = "#include <math.h>\n#include <stdlib.h>\nint probe(void);\nint probe(void) { return 0; }\n"
+
+
+class CoreBuildHook(BuildHookInterface):
+    """Puts the extension into wheels, and beside its sources for editable installations."""
+
+    PLUGIN_NAME = "custom"
+
+    def dependencies(self) -> list[str]:
+        """What the build needs besides: a compiler, where there is none."""
+        return [] if compiler() else [ZIG]
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Compile before the files of the wheel are collected."""
+        if version == "editable":
+            build(CORE)
+            return
+        self._made = tempfile.TemporaryDirectory()
+        made = build(Path(self._made.name))
+        build_data["force_include"][str(made)] = f"rvmon/core/{made.name}"
+        build_data["pure_python"] = False
+        build_data["tag"] = wheel_tag()
+
+    def finalize(self, version: str, _data: dict[str, Any], _artifact: str) -> None:
+        """Remove what was compiled for the wheel, which has it now."""
+        if version != "editable":
+            self._made.cleanup()
+
+
+def compiler() -> list[str]:
+    """The command of a C compiler that works; empty if none does, as found, not as hoped.
+
+    `$CC` is taken at its word: who names a compiler does not want another.
+    """
+    if named := os.environ.get("CC"):
+        return shlex.split(named)
+    for command in (sysconfig.get_config_var("CC") or "cc", "cc", "gcc", "clang"):
+        if _works(shlex.split(command)):
+            return shlex.split(command)
+    return []
+
+
+def _works(command: Sequence[str]) -> bool:
+    """Whether it compiles and links: Debian's gcc comes without the headers of C."""
+    if not shutil.which(command[0]):
+        return False
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "probe.c").write_text(PROBE, encoding="ascii")
+        line = [*command, "-fPIC", "-shared", "probe.c", "-o", "probe.so"]
+        return subprocess.run(line, cwd=folder, capture_output=True, check=False).returncode == 0
+
+
+def free_threaded() -> bool:
+    """Whether this Python has no GIL, and with it no stable ABI."""
+    return bool(sysconfig.get_config_var("Py_GIL_DISABLED"))
+
+
+def file_name() -> str:
+    """The name of the extension: of the stable ABI, or of this Python alone if free-threaded."""
+    if free_threaded():
+        return "_core" + importlib.machinery.EXTENSION_SUFFIXES[0]
+    return "_core.pyd" if os.name == "nt" else "_core.abi3.so"
+
+
+def wheel_tag() -> str:
+    """Python, ABI and platform that a wheel with the extension is for."""
+    from packaging.tags import platform_tags  # comes with hatchling
+
+    name = next(name for name in platform_tags() if "manylinux" not in name and "musl" not in name)
+    if free_threaded():
+        own = f"cp{sys.version_info.major}{sys.version_info.minor}"
+        return f"{own}-{own}t-{name}"
+    return f"cp311-abi3-{name}"
+
+
+def build(folder: Path) -> Path:
+    """Compile the core into a folder; returns the extension. An older one there is replaced whole.
+
+    Raises:
+        SystemExit: the compiler failed; the text is what it said.
+    """
+    command = compiler() or [sys.executable, "-m", "ziglang", "cc"]
+    flags = [*shlex.split(os.environ.get("CFLAGS", "")), *FLAGS, *_flags_of_python(), *_machine()]
+    target = folder / file_name()
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made, _threads() as threads:
+        sources = sorted(path.name for path in CORE.glob("*.c"))
+        objects = [str(Path(made, source).with_suffix(".o")) for source in sources]
+        lines = [
+            [*command, *flags, "-c", source, "-o", object_]
+            for source, object_ in zip(sources, objects, strict=True)
+        ]
+        list(threads.map(_run, lines))
+        linked = Path(made, target.name)
+        _run([*command, *flags, *_link(), *objects, "-o", str(linked), "-lm", *_link_last()])
+        os.replace(linked, target)  # programs that run keep the old one whole
+    return target
+
+
+def _flags_of_python() -> list[str]:
+    """Where the headers of Python are and which ABI is meant."""
+    include = {sysconfig.get_path("include"), sysconfig.get_path("platinclude")}
+    flags = [f'-DRVMON_SOURCE_HASH="{_source_hash()}"']
+    if any(Path(folder, "Python.h").exists() for folder in include):
+        flags += [part for folder in sorted(include) for part in ("-isystem", folder)]
+    elif free_threaded():
+        sys.exit(
+            "rvmon: a free-threaded Python has no stable ABI: its headers (Python.h) are needed"
+        )
+    else:
+        flags.append("-DRVMON_OWN_PYTHON_H")
+    return flags if free_threaded() else [*flags, f"-DPy_LIMITED_API={LIMITED_API}"]
+
+
+def _source_hash() -> str:
+    """As the package computes it at import; the package itself needs what is not installed yet."""
+    return str(runpy.run_path(str(CORE / "sources.py"))["source_hash"]())
+
+
+def _machine() -> list[str]:
+    """Flags for what it runs on. Of old, 32-bit x86 computes with 80 bits: never here."""
+    flags = [] if os.name == "nt" else ["-fPIC"]
+    if sys.maxsize < 2**32 and platform.machine().lower() in {"i386", "i586", "i686", "x86_64"}:
+        flags += ["-msse2", "-mfpmath=sse"]
+    return flags
+
+
+def _link() -> list[str]:
+    """Flags that make an extension of objects; Python's own names are found when it is loaded."""
+    mac = ["-bundle", "-undefined", "dynamic_lookup"]
+    return mac if sys.platform == "darwin" else ["-shared"]
+
+
+def _link_last() -> list[str]:
+    """Libraries and `$LDFLAGS`: on Windows, Python's names have to be found when it is linked."""
+    flags = shlex.split(os.environ.get("LDFLAGS", ""))
+    if os.name != "nt":
+        return flags
+    library = "python3t" if free_threaded() else "python3"
+    return [*flags, f"-L{Path(sys.base_prefix, 'libs')}", f"-l{library}"]
+
+
+def _threads() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(os.cpu_count() or 1)
+
+
+def _run(line: Sequence[str]) -> None:
+    done = subprocess.run(line, cwd=CORE, capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(f"rvmon: the native core did not compile\n{shlex.join(line)}\n{done.stderr}")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Compile the native core.")
+    parser.add_argument("--into", type=Path, default=CORE, metavar="FOLDER", help="else in place")
+    print(build(parser.parse_args().into))

@@ -1,0 +1,76 @@
+"""Compile all C of the core, by gcc, by clang, and for 32 bits.
+
+    python -m tests.tools.lint_c [WARNING …]
+
+`module.c` is compiled twice: with Python's headers, and with the declarations of its own.
+A compiler that is missing is named and passed over, in CI (`$CI`) it is an error.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+CORE = Path(__file__).parents[2] / "src" / "rvmon" / "core"
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # some warnings come with optimising alone
+TRIAL = "#include <stdint.h>\n#include <stdlib.h>\nint main(void) { return 0; }\n"
+COMPILERS = {"gcc": "gcc", "clang": "clang", "gcc -m32 -msse2 -mfpmath=sse": "gcc-multilib"}
+"""Each compiler and the package of Debian that brings it."""
+
+
+def main(warnings: list[str]) -> int:
+    """Compile everything; print what was wrong. The exit code is 1 if anything was."""
+    lines: list[list[str]] = []
+    missing: list[str] = []
+    for command, package in COMPILERS.items():
+        if not _compiles(command):
+            missing.append(f"C is not checked with `{command}`: no such compiler ({package})")
+            continue
+        start = [*command.split(), *FLAGS, *warnings, "-c"]
+        for source in sorted(path.name for path in CORE.glob("*.c")):
+            lines += [[*start, source, *way] for way in _ways(source, command)]
+    with ThreadPoolExecutor(os.cpu_count() or 1) as threads:
+        failures = [text for text in threads.map(_complaint, lines) if text]
+    print(*missing, *failures, sep="\n", end="\n" if missing or failures else "")
+    return int(bool(failures or (missing and os.environ.get("CI"))))
+
+
+def _ways(source: str, command: str) -> list[list[str]]:
+    """The options by which a source is compiled, one list for each time."""
+    if source != "module.c":
+        return [[]]
+    include = sysconfig.get_path("include")
+    own = ["-DRVMON_OWN_PYTHON_H"]
+    if "-m32" in command or not Path(include, "Python.h").exists():
+        return [own]
+    free_threaded = sysconfig.get_config_var("Py_GIL_DISABLED")
+    return [own, ["-isystem", include, *([] if free_threaded else ["-DPy_LIMITED_API=0x030B0000"])]]
+
+
+def _compiles(command: str) -> bool:
+    """Whether the compiler is there, with the headers and libraries of its machine."""
+    with tempfile.TemporaryDirectory() as folder:
+        trial = Path(folder, "trial.c")
+        trial.write_text(TRIAL, encoding="ascii")
+        try:
+            line = [*command.split(), str(trial), "-o", str(Path(folder, "trial"))]
+            return subprocess.run(line, capture_output=True, check=False).returncode == 0
+        except FileNotFoundError:
+            return False
+
+
+def _complaint(line: list[str]) -> str:
+    done = subprocess.run(
+        [*line, "-o", os.devnull], cwd=CORE, capture_output=True, text=True, check=False
+    )
+    return f"{shlex.join(line)}\n{done.stderr}" if done.returncode else ""
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
