@@ -1,0 +1,135 @@
+"""The automata of a plan as tables, those of one shape once, and diagrams of letters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.end import end_clauses
+from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram, Tree
+from rvmon.core.sections import Section, Sections
+from rvmon.formula.alphabet import Alphabet
+
+
+class Automata:
+    """Packs automata.
+
+    Args:
+        sections: of the plan.
+    """
+
+    def __init__(self, sections: Sections) -> None:
+        self._sections = sections
+        self._packed: dict[int, tuple[Automaton, int]] = {}
+
+    def place(self, automaton: Automaton) -> int:
+        """The place of an automaton, which it shares with all of the same tables."""
+        known = self._packed.get(id(automaton))
+        if known is None:
+            known = self._packed[id(automaton)] = automaton, self._place(automaton)
+        return known[1]
+
+    def _place(self, automaton: Automaton) -> int:
+        width = max(automaton.clocks, 1)
+        classes = [0] if _is_lone(automaton.class_of) else _table(automaton.class_of)
+        cut_first, cuts, strides = _regions(automaton, width)
+        clause_first, test_first, tests, ages = _clauses(automaton)
+        ints = self._ints
+        return self._sections.shared(
+            Section.AUTOMATA,
+            automaton.initial,
+            len(automaton.locations),
+            width,
+            automaton.classes,
+            len(classes),
+            len(automaton.time_values),
+            max(len(automaton.targets), 1),
+            ints(classes),
+            ints(automaton.bases),
+            ints([len(location.cuts) for location in automaton.locations]),
+            ints(strides),
+            ints(cut_first),
+            self._sections.run(Section.TICKS, cuts),
+            ints([max(edge, 0) for edge in automaton.edges]),  # where no run comes, any will do
+            ints(automaton.targets or [0]),
+            ints([one for own in automaton.sources or [()] for one in _padded(own, width)]),
+            ints(tuple(automaton.time_values)),  # as numbers, not as bytes
+            ints(clause_first),
+            ints(test_first),
+            ints(tests),
+            self._sections.run(Section.TICKS, ages),
+            0,
+        )
+
+    def _ints(self, values: Sequence[int]) -> int:
+        return self._sections.run(Section.INTS, values)
+
+    def diagram(self, class_of: LetterClasses, alphabet: Alphabet) -> int:
+        """The place of the diagram that classes letters; −1 if a table does.
+
+        Args:
+            class_of: of an automaton.
+            alphabet: of the same.
+        """
+        if not isinstance(class_of, LetterDiagram) or _is_lone(class_of):
+            return -1
+        levels = {stride: level for level, stride in enumerate(alphabet.strides)}
+        made: dict[int, int] = {}
+
+        def place(node: Tree) -> int:
+            if isinstance(node, int):
+                return ~node
+            found = made.get(id(node))
+            if found is None:
+                stride, children = node
+                level = levels[stride]
+                digits = [
+                    weight // stride
+                    for weights in (alphabet.pessimistic[level], alphabet.optimistic[level])
+                    for weight in weights
+                ]
+                below = [place(child) for child in children]
+                found = made[id(node)] = self._ints([level, *digits, len(below), *below])
+            return found
+
+        return place(class_of.root)
+
+
+def _is_lone(class_of: LetterClasses) -> bool:
+    """Whether a diagram has all letters in one class."""
+    return isinstance(class_of, LetterDiagram) and isinstance(class_of.root, int)
+
+
+def _table(class_of: LetterClasses) -> Sequence[int]:
+    """The class of each letter; none if a diagram has them."""
+    return () if isinstance(class_of, LetterDiagram) else class_of
+
+
+def _padded(values: Sequence[int], width: int) -> list[int]:
+    return [*values, *[0] * (width - len(values))]
+
+
+def _regions(automaton: Automaton, width: int) -> tuple[list[int], list[int], list[int]]:
+    """Per location and clock: where its cuts begin, these, and the stride of its regions."""
+    first, cuts, strides = [0], list[int](), list[int]()
+    for location, own in zip(automaton.locations, automaton.strides, strict=True):
+        strides += _padded(own, width)
+        for clock in range(width):
+            if clock < len(location.cuts):
+                cuts += location.cuts[clock]
+            first.append(len(cuts))
+    return first, cuts, strides
+
+
+def _clauses(automaton: Automaton) -> tuple[list[int], list[int], list[int], list[int]]:
+    """The rule for the end: where clauses of locations and their tests begin; tests; ages."""
+    clause_first, test_first = [0], [0]
+    tests, ages = list[int](), list[int]()
+    for location in automaton.locations:
+        for clause in end_clauses(location.residual):
+            for clock, age, at_end in clause:
+                tests += [clock, int(at_end)]
+                ages.append(age)
+            test_first.append(len(ages))
+        clause_first.append(len(test_first) - 1)
+    return clause_first, test_first, tests, ages

@@ -1,0 +1,153 @@
+"""What judges the attempts of requirements, and what it hears of nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cache
+
+from rvmon.automaton.letter_classes import LetterDiagram
+from rvmon.core.automata import Automata
+from rvmon.core.forms import add_form
+from rvmon.core.sections import Section, Sections
+from rvmon.dataflow.network_plan import plan_of
+from rvmon.formula.state import State
+from rvmon.plan.plan import Plan, PlannedRule
+from rvmon.spec.checked.specification import EndPolicy, Mode
+from rvmon.verdict.attempt import Decision
+from rvmon.verdict.end import settle_at_end
+from rvmon.verdict.verdict import Verdict
+
+_VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
+_DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
+
+_LETTER, _TRIGGER, _DETERMINED = 1, 2, 4
+_PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _IN_RUNS = 1, 2, 4, 8, 16
+
+_NOTHING = ((0, 0, 0), (0, 0, 0))
+
+Weights = tuple[Sequence[int], Sequence[int]]
+"""What FALSE, UNKNOWN and TRUE add to a letter, for the worse and for the better."""
+
+
+class Judges:
+    """Packs the judges of a part.
+
+    Args:
+        sections: of the plan.
+        automata: of the plan.
+        plan: of the part.
+        numbers: of the requirements of its rules, among all.
+
+    Attributes:
+        networked: the numbers of those without an automaton.
+        forms: how many formulas they have.
+        clocks: the most that an automaton of them has.
+        undetermined: how many tell whether their trigger was ever true or false.
+    """
+
+    def __init__(
+        self, sections: Sections, automata: Automata, plan: Plan, numbers: Sequence[int]
+    ) -> None:
+        self._sections = sections
+        self._plan = plan
+        self._index = plan.graph.index
+        self.networked: list[int] = []
+        self.clocks = 0
+        self._links: dict[int, dict[int, tuple[int, Weights]]] = {}
+        self.undetermined = sum(rule.determined is not None for _, rule in plan.judges)
+        for number, (owner, rule) in enumerate(plan.judges):
+            place = form = diagram = -1
+            if rule.automaton is None:
+                form = len(self.networked)
+                self.networked.append(number)
+                add_form(sections, plan_of(rule.owed, plan.gap), self._index)
+            else:
+                place = automata.place(rule.automaton)
+                diagram = automata.diagram(rule.automaton.class_of, rule.alphabet)
+                self.clocks = max(self.clocks, rule.automaton.clocks, 1)
+            self._hear(number, rule)
+            self._add(number, rule, owner, numbers[owner], (place, form, diagram))
+
+    def links(self, place: int) -> Iterator[tuple[int, ...]]:
+        """What a node tells judges, as records."""
+        for judge, (kind, (worse, better)) in self._links.get(place, {}).items():
+            yield (judge, kind, *worse, *better)
+
+    def _hear(self, number: int, rule: PlannedRule) -> None:
+        alphabet = rule.alphabet
+        tabled = rule.automaton is not None and not isinstance(
+            rule.automaton.class_of, LetterDiagram
+        )
+        for place, state in enumerate(alphabet.propositions):
+            weights = _NOTHING
+            if tabled:
+                weights = alphabet.pessimistic[place], alphabet.optimistic[place]
+            self._link(state, number, _LETTER, weights)
+        self._link(rule.trigger, number, _TRIGGER)
+        self._link(rule.running, number, _TRIGGER)
+        self._link(rule.determined, number, _DETERMINED)
+
+    def _link(
+        self, state: State | None, number: int, kind: int, weights: Weights = _NOTHING
+    ) -> None:
+        if state is not None:
+            own = self._links.setdefault(self._index[state], {})
+            before, known = own.get(number, (0, weights))
+            own[number] = before | kind, known
+
+    def _place(self, state: State | None) -> int:
+        return -1 if state is None else self._index[state]
+
+    def _add(
+        self,
+        number: int,
+        rule: PlannedRule,
+        owner: int,
+        requirement: int,
+        judged_by: tuple[int, int, int],
+    ) -> None:
+        place = self._place
+        running = rule.running if rule.requirement.captures else rule.trigger
+        propositions: Sequence[int] = ()
+        if judged_by[2] >= 0:
+            propositions = [self._index[state] for state in rule.alphabet.propositions]
+        self._sections.add(
+            Section.JUDGES,
+            *map(place, (rule.trigger, rule.again, rule.unborn, rule.determined)),
+            place(running),
+            place(rule.blurs),
+            owner,
+            requirement,
+            _flags(rule, hidden=number >= len(self._plan.rules)),
+            *judged_by,
+            *self._sections.listed(propositions),
+            *outcomes(rule.requirement.at_end),
+        )
+
+
+def _flags(rule: PlannedRule, *, hidden: bool) -> int:
+    requirement = rule.requirement
+    found = _PULSE if requirement.pulse else 0
+    found |= _EPISODIC if hidden or requirement.mode is Mode.WHENEVER else 0
+    found |= _HIDDEN if hidden else 0
+    found |= _BLURS_ANYWHERE if rule.blurs_anywhere else 0
+    return found | (_IN_RUNS if rule.in_runs else 0)
+
+
+@cache
+def outcomes(policy: EndPolicy) -> tuple[int, ...]:
+    """What becomes of an undecided attempt: verdict plus 4 times the decision.
+
+    Counted through in binary: whether it holds by the rule for the end (1), can pass no more (2),
+    can fail no more (4).
+    """
+    found = []
+    for state in range(8):
+        verdict, decision = settle_at_end(
+            policy,
+            held=bool(state & 1),
+            cannot_pass=bool(state & 2),
+            cannot_fail=bool(state & 4),
+        )
+        found.append(_VERDICTS.index(verdict) + 4 * _DECISIONS.index(decision))
+    return tuple(found)

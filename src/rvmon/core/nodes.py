@@ -1,0 +1,261 @@
+"""The state formulas of a part of a plan as nodes: their memories, timers, and when they matter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import IntEnum, auto
+
+from rvmon.core.atoms import Atoms
+from rvmon.core.programs import Names
+from rvmon.formula.numeric import signals_of
+from rvmon.formula.state import (
+    FALSE,
+    TRUE,
+    UNKNOWN,
+    Elapsed,
+    Lapsed,
+    Lost,
+    State,
+    StateOp,
+    Unborn,
+)
+from rvmon.plan.graph import Graph
+from rvmon.plan.plan import Plan, PlannedRule
+from rvmon.spec.checked.formula import Compare, Constant, SignalAtom
+
+NEVER = (1 << 63) - 1
+"""No instant, or no bound."""
+
+
+class NodeOp(IntEnum):
+    """Kinds of nodes."""
+
+    LEAF = 0
+    CONSTANT = auto()
+    UNBORN = auto()
+    LAPSED = auto()
+    ELAPSED = auto()
+    NOT = auto()
+    AND = auto()
+    OR = auto()
+    SURE = auto()
+    DOUBT = auto()
+    PREVIOUS = auto()
+    EVER = auto()
+    EDGE = auto()
+    STRETCH = auto()
+
+
+SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
+"""The nodes that remember a truth."""
+
+TIMED = (NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE, NodeOp.STRETCH)
+"""The nodes that time alone can change."""
+
+_PLAIN = {
+    StateOp.NOT: NodeOp.NOT,
+    StateOp.AND: NodeOp.AND,
+    StateOp.OR: NodeOp.OR,
+    StateOp.SURE: NodeOp.SURE,
+    StateOp.PREVIOUS: NodeOp.PREVIOUS,
+}
+
+
+@dataclass(slots=True)
+class Node:
+    """A state formula; see `node_plan` in plan.h.
+
+    Attributes:
+        op: what kind of node it is.
+        operands: places of nodes; of a leaf and of what is not born, signals times 2, plus 1 if an
+            update after the first value is asked for.
+    """
+
+    op: NodeOp
+    a: int = 0
+    b: int = 0
+    low: int = 0
+    high: int = 0
+    operands: Sequence[int] = ()
+    slot: int = -1
+    timer: int = -1
+
+
+class Nodes:
+    """The nodes of a part.
+
+    Args:
+        plan: of the part.
+        names: of the part.
+        atoms: of the part; those that leaves show are added.
+
+    Attributes:
+        all: of them, operands first.
+        seen: how many remember a truth.
+        edges: how many remember an instant.
+        stretches: how many remember stretches of time.
+        timers: how many time alone can change.
+        needed: those that matter once all is born and determined.
+    """
+
+    def __init__(self, plan: Plan, names: Names, atoms: Atoms) -> None:
+        self._names = names
+        self._atoms = atoms
+        self.graph = plan.graph
+        self.all = [
+            self._node(state, operands)
+            for state, operands in zip(plan.graph.nodes, plan.graph.operands, strict=True)
+        ]
+        self.seen = _count_slots(self.all, SEEN)
+        self.edges = _count_slots(self.all, [NodeOp.EDGE])
+        self.stretches = _count_slots(self.all, [NodeOp.STRETCH])
+        timed = [node for node in self.all if node.op in TIMED]
+        for number, node in enumerate(timed):
+            node.timer = number
+        self.timers = len(timed)
+        self.needed = _needed(plan)
+
+    def leaves(self, live: bool) -> list[list[int]]:
+        """Per atom, the leaves that show it.
+
+        Args:
+            live: those only that matter once all is born and determined.
+        """
+        found: list[list[int]] = [[] for _ in self._atoms.all]
+        for place, node in enumerate(self.all):
+            if node.op is NodeOp.LEAF and (not live or place in self.needed):
+                found[node.a].append(place)
+        return found
+
+    def parents(self, place: int) -> tuple[Sequence[int], Sequence[int]]:
+        """Of which nodes a node is an operand: at first, and once all is born and determined."""
+        found = self.graph.parents[place]
+        if place not in self.needed:
+            return found, ()
+        return found, [parent for parent in found if parent in self.needed]
+
+    def born_with(self) -> Iterator[tuple[int, int, bool]]:
+        """The nodes that births change: the place, the signal, and whether twice over."""
+        for place, node in enumerate(self.all):
+            if node.op in (NodeOp.LEAF, NodeOp.UNBORN):
+                for operand in node.operands:
+                    yield place, operand // 2, operand % 2 == 1
+
+    def stateful(self) -> list[int]:
+        """The nodes to be worked out at each sample, if only these are positions."""
+        lasting = (NodeOp.DOUBT, NodeOp.EVER)
+        return [place for place in self.graph.stateful if self.all[place].op not in lasting]
+
+    def _births(self, signals: Iterable[tuple[str, bool]]) -> list[int]:
+        return [2 * self._names.signals[name] + moved for name, moved in signals]
+
+    def _node(self, state: State, operands: Sequence[int]) -> Node:
+        match state.op:
+            case StateOp.LEAF:
+                return self._leaf(state)
+            case StateOp.DOUBT:
+                return Node(NodeOp.DOUBT, state.pulse, state.every, operands=operands)
+            case StateOp.SINCE:
+                high = NEVER if state.high is None else state.high
+                return Node(_since(state), low=state.low, high=high, operands=operands)
+            case _:
+                return Node(_PLAIN[state.op], operands=operands)
+
+    def _leaf(self, state: State) -> Node:
+        leaf = state.leaf
+        match leaf:
+            case None:
+                raise ValueError("a leaf reads something")
+            case Constant(value=value):
+                return Node(NodeOp.CONSTANT, TRUE if value else FALSE)
+            case Lost():
+                return Node(NodeOp.CONSTANT, UNKNOWN)
+            case Lapsed():
+                return Node(NodeOp.LAPSED)
+            case Elapsed(duration=duration):
+                return Node(NodeOp.ELAPSED, low=duration)
+            case Unborn(signals=signals):
+                return Node(NodeOp.UNBORN, operands=self._births(signals))
+            case SignalAtom() | Compare() if state.unborn != UNKNOWN:
+                births = self._births(signals_of(leaf).items())
+                unborn = state.unborn if births else UNKNOWN
+                return Node(NodeOp.LEAF, self._atoms.number(leaf), unborn, operands=births)
+            case _:
+                return Node(NodeOp.LEAF, self._atoms.number(leaf), UNKNOWN)
+
+
+def _since(state: State) -> NodeOp:
+    """A `since` by what it has to remember."""
+    if state.low == 0:
+        return NodeOp.EVER if state.high is None else NodeOp.EDGE
+    return NodeOp.EDGE if state.high is None else NodeOp.STRETCH
+
+
+def _count_slots(nodes: Iterable[Node], kinds: Sequence[NodeOp]) -> int:
+    """Number the memories of nodes of some kinds; returns how many there are."""
+    count = 0
+    for node in nodes:
+        if node.op in kinds:
+            node.slot = count
+            count += 1
+    return count
+
+
+def _needed(plan: Plan) -> frozenset[int]:
+    """The nodes that matter once every signal is born and every trigger was true or false."""
+    graph = plan.graph
+    settled = _settled(plan)
+    stack = [
+        graph.index[state]
+        for _, rule in plan.judges
+        for state in _asked(rule)
+        if settled[graph.index[state]] is None
+    ]
+    needed: set[int] = set()
+    while stack:
+        place = stack.pop()
+        if place not in needed:
+            needed.add(place)
+            stack += [one for one in graph.operands[place] if settled[one] is None]
+    return frozenset(needed)
+
+
+def _asked(rule: PlannedRule) -> Iterator[State]:
+    """The state formulas of a rule that matter also when its trigger was true or false."""
+    named = (rule.trigger, rule.again, rule.unborn, rule.running, rule.blurs)
+    yield from (state for state in named if state is not None)
+    yield from rule.alphabet.propositions
+    yield from rule.asked
+
+
+def _settled(plan: Plan) -> list[int | None]:
+    """The truths that nodes have from then on; `None`: they go on changing."""
+    graph: Graph = plan.graph
+    determined = {graph.index[one.determined] for one in plan.rules if one.determined is not None}
+    found: list[int | None] = []
+    for place, state in enumerate(graph.nodes):
+        if place in determined:
+            found.append(TRUE)
+        else:
+            found.append(_truth(state, [found[one] for one in graph.operands[place]]))
+    return found
+
+
+def _truth(state: State, operands: Sequence[int | None]) -> int | None:
+    known = [one for one in operands if one is not None]
+    match state.op:
+        case StateOp.LEAF:
+            if isinstance(state.leaf, Constant):
+                return TRUE if state.leaf.value else FALSE
+            return {Unborn: FALSE, Lost: UNKNOWN}.get(type(state.leaf))
+        case StateOp.NOT if known:
+            return TRUE - known[0]
+        case StateOp.SURE if known:
+            return TRUE if known[0] == TRUE else FALSE
+        case StateOp.AND if FALSE in known or len(known) == len(operands):
+            return min(known)
+        case StateOp.OR if TRUE in known or len(known) == len(operands):
+            return max(known)
+        case _:
+            return None

@@ -1,0 +1,136 @@
+"""The bytes of a plan: records of fixed size in sections, and lists, each once. See plan.h."""
+
+from __future__ import annotations
+
+import struct
+from array import array
+from collections.abc import Iterable, Sequence
+from enum import IntEnum, auto
+from itertools import accumulate
+
+MAGIC = b"rvmonpl1"
+ORDER = 0x01020304
+"""What a number of four bytes looks like to who has another order of bytes."""
+
+HEADER = struct.Struct("=8sIiqQq6i")
+_ENTRY = struct.Struct("=2q")
+"""Where a section begins, and how many records it has."""
+
+
+class Section(IntEnum):
+    """The sections of a plan by number."""
+
+    FIELD_FIRST = 0
+    SUBSCRIPTION_FIRST = auto()
+    SUBSCRIPTIONS = auto()
+    PARTS = auto()
+    SIGNALS = auto()
+    EVENTS = auto()
+    ATOMS = auto()
+    NODES = auto()
+    LINKS = auto()
+    JUDGES = auto()
+    AUTOMATA = auto()
+    FORMS = auto()
+    OPERATORS = auto()
+    NUMBERS = auto()
+    CODE = auto()
+    LISTS = auto()
+    INTS = auto()
+    TICKS = auto()
+
+
+RECORDS = {
+    Section.FIELD_FIRST: struct.Struct("=i"),
+    Section.SUBSCRIPTION_FIRST: struct.Struct("=i"),
+    Section.SUBSCRIPTIONS: struct.Struct("=2i"),
+    Section.PARTS: struct.Struct("=46i"),
+    Section.SIGNALS: struct.Struct("=q16iq"),
+    Section.EVENTS: struct.Struct("=10i"),
+    Section.ATOMS: struct.Struct("=d12iq"),
+    Section.NODES: struct.Struct("=2q14i"),
+    Section.LINKS: struct.Struct("=8i"),
+    Section.JUDGES: struct.Struct("=22i"),
+    Section.AUTOMATA: struct.Struct("=22i"),
+    Section.FORMS: struct.Struct("=4i"),
+    Section.OPERATORS: struct.Struct("=3q10i"),
+    Section.NUMBERS: struct.Struct("=2q"),
+    Section.CODE: struct.Struct("=i"),
+    Section.LISTS: struct.Struct("=i"),
+    Section.INTS: struct.Struct("=i"),
+    Section.TICKS: struct.Struct("=q"),
+}
+"""The fields of a record, in the order of its type in C."""
+
+Listed = tuple[int, int]
+"""The first of some values that stand one behind the other, and how many they are."""
+
+
+class Sections:
+    """The sections of a plan while it is made."""
+
+    def __init__(self) -> None:
+        self._bytes = {section: bytearray() for section in Section}
+        self._records: dict[tuple[Section, tuple[int, ...]], int] = {}
+        self._runs: dict[tuple[Section, bytes], int] = {}
+
+    def count(self, section: Section) -> int:
+        """How many records a section has."""
+        return len(self._bytes[section]) // RECORDS[section].size
+
+    def add(self, section: Section, *fields: float) -> int:
+        """Add a record; returns its place."""
+        data, record = self._bytes[section], RECORDS[section]
+        place = len(data) // record.size
+        data += record.pack(*fields)
+        return place
+
+    def shared(self, section: Section, *fields: int) -> int:
+        """The place of a record that is there once, whoever asks for it."""
+        key = section, fields
+        place = self._records.get(key)
+        if place is None:
+            place = self._records[key] = self.add(section, *fields)
+        return place
+
+    def run(self, section: Section, values: Iterable[int]) -> int:
+        """The place of some numbers one behind the other, which are there once."""
+        data = array("q" if section is Section.TICKS else "i", values).tobytes()
+        if not data:
+            return 0
+        place = self._runs.get((section, data))
+        if place is None:
+            place = self._runs[section, data] = self.count(section)
+            self._bytes[section] += data
+        return place
+
+    def listed(self, places: Sequence[int]) -> Listed:
+        """A list of indices."""
+        return self.run(Section.LISTS, places), len(places)
+
+    def data(self, gap: int, sizes: Sequence[int]) -> bytes:
+        """All of it.
+
+        Args:
+            gap: ticks between two positions; 0 if only samples are positions.
+            sizes: the numbers of signals, events, fields, requirements, captured values.
+        """
+        padded = [bytes(data) + bytes(-len(data) % 8) for data in self._bytes.values()]
+        begin = HEADER.size + len(padded) * _ENTRY.size
+        offsets = accumulate(map(len, padded), initial=begin)
+        entries = [
+            _ENTRY.pack(offset, self.count(section))
+            for section, offset in zip(Section, offsets, strict=False)
+        ]
+        body = b"".join([*entries, *padded])
+        size = HEADER.size + len(body)
+        header = HEADER.pack(*(MAGIC, ORDER, len(padded), size, hash_of(body), gap), *sizes, 0)
+        return header + body
+
+
+def hash_of(data: bytes) -> int:
+    """FNV-1a of some bytes, 64 bits."""
+    found = 0xCBF29CE484222325
+    for byte in data:
+        found = (found ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return found

@@ -1,0 +1,141 @@
+"""What a requirement with captured values asks of its attempts and instances.
+
+Each attempt of a `let`, and each instance of a `for each`, is a monitor of its own, which begins as
+that stands which it comes from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+from rvmon.core.atoms import Atoms
+from rvmon.core.nodes import NodeOp, Nodes
+from rvmon.core.programs import Names, Programs
+from rvmon.core.sections import Sections
+from rvmon.dataflow.network_plan import plan_of
+from rvmon.formula.state import State
+from rvmon.plan.graph import graph_of
+from rvmon.plan.instances import Reach, reach_of, varying
+from rvmon.plan.plan import Plan, PlannedRule
+from rvmon.spec.checked.specification import Mode
+
+_REPLAYS, _FRESH, _FORGETS, _KEEPS_PAST = 1, 2, 4, 8
+
+SHARED = (0, 0, -1, 0, 0, 0, -1, -1, *([0] * 10))
+"""The fields of a part of which no requirement has captured values."""
+
+
+class Unit:
+    """A requirement with captured values.
+
+    Args:
+        plan: of that requirement alone.
+        number: of that, among all.
+    """
+
+    def __init__(self, plan: Plan, number: int) -> None:
+        self._plan = plan
+        (self._rule,) = plan.rules
+        self._number = number
+        self._requirement = self._rule.requirement
+
+    def fields(
+        self, sections: Sections, names: Names, programs: Programs, nodes: Nodes, atoms: Atoms
+    ) -> Iterator[int]:
+        """The fields of its part, from `captured` to `lapsed`."""
+        key = names.key
+        yield len(self._rule.captured)
+        yield self._requirement.for_each is not None
+        yield self._number
+        yield self._flags
+        yield from self._starters
+        yield -1 if key is None else names.events[key.event]
+        yield -1 if key is None else names.field(key.event, key.field)
+        graph = self._plan.graph
+        vary = sorted(varying(graph))
+        lapsed = [place for place, node in enumerate(nodes.all) if node.op is NodeOp.LAPSED]
+        lists: Sequence[Sequence[int]] = (
+            [programs.place(capture.value) for capture in self._requirement.captures],
+            [number for number, atom in enumerate(atoms.all) if atom.captured],
+            [place for place in vary if place not in graph.stateful],
+            vary,
+            lapsed,
+        )
+        for places in lists:
+            yield from sections.listed(places)
+
+    @property
+    def _flags(self) -> int:
+        reach = self._reach
+        replays, fresh = self._replays, self._is_fresh
+        found = _REPLAYS if replays else 0
+        found |= _FRESH if fresh else 0
+        found |= _FORGETS if fresh and reach is not None and reach.begins else 0
+        return found | (_KEEPS_PAST if replays or (reach is not None and not fresh) else 0)
+
+    @property
+    def _replays(self) -> bool:
+        """Whether a captured attempt has to look at what was before its values were."""
+        if not self._requirement.captures:
+            return False
+        judged = [rule for _, rule in self._plan.judges]
+        return self._looks_back or any(
+            graph_of(_consequent(rule)).remembers_captured for rule in judged
+        )
+
+    @cached_property
+    def _looks_back(self) -> bool:
+        plan = self._plan
+        return any(plan_of(rule.owed, plan.gap).looks_back for _, rule in plan.judges)
+
+    @cached_property
+    def _reach(self) -> Reach | None:
+        each = self._requirement.for_each
+        if each is None:
+            return None
+        states = [state for _, rule in self._plan.judges for state in self._shared(rule)]
+        looks_back = self._looks_back
+        return reach_of(graph_of(states), each, self._rule.trigger, looks_back=looks_back)
+
+    @property
+    def _is_fresh(self) -> bool:
+        """Whether an instance can be made from what the first monitor stands at.
+
+        Between two ticks of a clock that has gone on to what the next tick sees: what its trigger
+        was at the last one, which an edge asks for, is gone. It is not asked for where attempts
+        begin whatever the trigger was.
+        """
+        reach = self._reach
+        if reach is None or not reach.is_fresh:
+            return False
+        no_edge = self._requirement.pulse or self._requirement.mode is Mode.WHENEVER
+        return self._plan.gap in (None, 1) or (reach.begins and no_edge)
+
+    def _shared(self, rule: PlannedRule) -> Iterator[State]:
+        """The state formulas of an instance."""
+        if not self._requirement.captures:
+            yield from rule.states
+        named = (rule.trigger, rule.determined, rule.blurs)
+        yield from (state for state in named if state is not None)
+
+    @property
+    def _starters(self) -> tuple[int, int]:
+        """The judges of which attempts start in the first monitor, and in instances, as bits."""
+        bits = {rule: 1 << index for index, (_, rule) in enumerate(self._plan.judges)}
+        known = bits[self._rule]
+        hidden, doubted = self._rule.hidden, self._rule.doubted
+        if hidden is not None:
+            known |= bits[hidden]
+        if doubted is not None and self._requirement.mode is Mode.UPON:
+            return bits[doubted], known
+        return known, known
+
+
+def _consequent(rule: PlannedRule) -> Iterator[State]:
+    """The state formulas of an attempt."""
+    yield from rule.alphabet.propositions
+    named = [rule.again, rule.unborn]
+    if rule.requirement.mode is Mode.WHENEVER:
+        named += [rule.trigger, rule.running]
+    yield from (state for state in named if state is not None)
