@@ -136,17 +136,19 @@ static bool is_free(const monitor *c)
     return !c->busy;
 }
 
-/* judge(t, values): whether the sample, which Python has looked at if it says so, was taken. */
+/* judge(t, values, looked): whether the sample was taken, at which Python has looked if it says so. */
 static PyObject *judge_of(monitor *c, PyObject *args)
 {
     long long t;
     PyObject *values;
     int looked;
-    int done;
-    if (!PyArg_ParseTuple(args, "LO!p", &t, &PyDict_Type, &values, &looked)) {
+    int done = LEFT;
+    if (!PyArg_ParseTuple(args, "LOp", &t, &values, &looked)) {
         return NULL;
     }
-    done = take(c, (int64_t)t, values, looked != 0);
+    if (PyDict_CheckExact(values)) {
+        done = take(c, (int64_t)t, values, looked != 0);
+    }
     return (done == FAILED) ? NULL : Py_NewRef((done == TAKEN) ? Py_True : Py_False);
 }
 
@@ -172,6 +174,7 @@ static PyObject *finish_of(monitor *c, PyObject *until)
 {
     int64_t t = RV_NO_TIME;
     int64_t end;
+    int code;
     if (until != Py_None) {
         t = (int64_t)PyLong_AsLongLong(until);
         if ((t == -1) && (PyErr_Occurred() != NULL)) {
@@ -179,7 +182,9 @@ static PyObject *finish_of(monitor *c, PyObject *until)
         }
     }
     end = rv_end(c->m, t);
-    return is_done(rv_finish(c->m, t)) ? instant(end, RV_NO_TIME) : NULL;
+    code = rv_spoilt(c->m) ? RV_NO_MEMORY : rv_finish(c->m, t);
+    /* What comes after it may have been interrupted, and is done again. */
+    return ((code == RV_FINISHED) || is_done(code)) ? instant(end, RV_NO_TIME) : NULL;
 }
 
 static PyObject *reset_of(monitor *c, PyObject *unused)
