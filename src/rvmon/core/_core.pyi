@@ -1,1 +1,87 @@
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from rvmon.verdict.attempt import Attempt
+
 source_hash: str
+
+class Monitor:
+    """A run of a packed plan; what a call does that is not explained here, `core.h` says.
+
+    Args:
+        plan: the bytes.
+        reading: the numbers of the names that can come; per signal, event and field a number for
+            each label or field, or `None`; of each what it is, in the order of `Kind`; of each name
+            whether only one occurrence of it can be judged at an instant.
+        absent: of each name whether it has no source.
+        look_closer: take the samples that are not plain values in a `dict`, at seconds, at ticks.
+        attempts: the type, the descriptors of its fields, ids of requirements, verdicts, decisions,
+            what gives an attempt its other fields, how many values each requirement captures.
+
+    Raises:
+        ValueError: the plan is damaged, or all this does not fit it.
+    """
+
+    def __new__(
+        cls,
+        plan: bytes,
+        reading: tuple[dict[str, int], tuple[Mapping[str, int] | None, ...], bytes, bytes],
+        absent: bytes,
+        look_closer: tuple[Any, Any],
+        attempts: tuple[
+            type[Attempt],
+            tuple[Any, ...],
+            tuple[str, ...],
+            tuple[Any, ...],
+            tuple[Any, ...],
+            Callable[[Attempt, Any], Mapping[str, Any]],
+            tuple[int, ...],
+        ],
+        /,
+    ) -> Monitor: ...
+    def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]: ...
+    def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]: ...
+    def judge(self, t: int, values: Mapping[str, Any], looked: bool, /) -> bool:
+        """Take a sample; false, and nothing happened, if it is not plain or not in order.
+
+        `looked`: it is known that all its occurrences can be judged.
+        """
+
+    def rows(self, times: Any, columns: tuple[tuple[int, int, Any, Any], ...], /) -> int:
+        """Judge rows; how many were: fewer than given if one is not later than all before.
+
+        Args:
+            times: int64[n] ticks.
+            columns: of names number, kind (`RV_COLUMN_…`), of signals values, and uint8[n] of what
+                each row says or `None`.
+        """
+
+    def advance(self, t: int, /) -> None: ...
+    def finish(self, until: int | None, /) -> int | None:
+        """End the run; gives the last instant of the trace."""
+
+    def reset(self) -> None: ...
+    def flush(self) -> Sequence[Attempt]:
+        """The attempts that were decided since the last call."""
+
+    def open(self) -> list[Attempt]:
+        """The attempts that are undecided now, and those that will stay so."""
+
+    def records(self) -> tuple[bytes, bytes]:
+        """All records as `rv_record`, and as many `rv_number` for each as any captures."""
+
+    def counts(self) -> list[tuple[int, int, int, int]]:
+        """Of each requirement how many attempts failed, passed, stayed open.
+
+        The last number is 1 if its trigger was ever true or false.
+        """
+
+    def times(self) -> tuple[int | None, int | None, int | None]:
+        """The instants of the first and the last sample, and that which time has come to."""
+
+    def next_due(self) -> int | None: ...
+    def hold(self, held: bool, /) -> bool:
+        """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly.
+
+        False, and nothing is done, amid another call.
+        """

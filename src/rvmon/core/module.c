@@ -1,18 +1,519 @@
-/* rvmon.core._core for CPython. */
-#include "python_abi.h"
+/* rvmon.core._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
+ * columns, and gives out attempts. The only file of the core that knows of Python. */
+#include "module_attempts.h"
+#include "module_intake.h"
+#include "module_rows.h"
 
 #ifndef RVMON_SOURCE_HASH
 #define RVMON_SOURCE_HASH "" /* compiled by hand */
 #endif
 
-static int execute(PyObject *module)
+enum { TAKEN, LEFT, FAILED };
+
+/* Take a sample of plain values that is in order; if it is left nothing happened. No code in Python
+ * runs in here, so that no other call of its thread can come in between. */
+static int take(monitor *c, int64_t t, PyObject *values, bool looked)
 {
-    return PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH);
+    int code = RV_FINISHED;
+    bool laid;
+    c->busy = true;
+    Py_BEGIN_CRITICAL_SECTION(values);
+    laid = lay(&c->in, values, looked);
+    Py_END_CRITICAL_SECTION();
+    c->busy = false;
+    if (laid) {
+        code = rv_step(c->m, t, c->in.updates, (int32_t)c->in.count);
+    }
+    if (code == RV_NO_MEMORY) {
+        (void)PyErr_NoMemory();
+        return FAILED;
+    }
+    return (code == RV_OK) ? TAKEN : (PyErr_Occurred() != NULL) ? FAILED : LEFT;
 }
 
-static PyModuleDef_Slot slots[] = {{Py_mod_exec, RVMON_SLOT(execute)}, {0, NULL}};
+/* Have Python take a sample. */
+static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssize_t count,
+                               PyObject *names)
+{
+    const Py_ssize_t named = (names == NULL) ? 0 : PyTuple_Size(names);
+    PyObject *by_place = PyTuple_New(count);
+    PyObject *by_name = PyDict_New();
+    PyObject *made = NULL;
+    bool done = (by_place != NULL) && (by_name != NULL);
+    Py_ssize_t i;
+    if (function == NULL) {
+        PyErr_SetString(PyExc_RuntimeError, "this monitor was collected");
+        done = false;
+    }
+    for (i = 0; done && (i < count); i++) {
+        done = PyTuple_SetItem(by_place, i, Py_NewRef(args[i])) == 0;
+    }
+    for (i = 0; done && (i < named); i++) {
+        done = PyDict_SetItem(by_name, PyTuple_GetItem(names, i), args[count + i]) == 0;
+    }
+    if (done) {
+        Py_INCREF(function);
+        made = PyObject_Call(function, by_place, by_name);
+        Py_DECREF(function);
+    }
+    Py_XDECREF(by_place);
+    Py_XDECREF(by_name);
+    return made;
+}
+
+/* Take a sample quickly, and give out what it decided; NULL without an error if it is left. */
+static PyObject *step_quickly(monitor *c, int64_t t, PyObject *values)
+{
+    PyObject *made = NULL;
+    Py_BEGIN_CRITICAL_SECTION(c);
+    if (!c->held && !c->busy && PyDict_CheckExact(values) && (take(c, t, values, false) == TAKEN)) {
+        made = decided_since(c);
+    }
+    Py_END_CRITICAL_SECTION();
+    return made;
+}
+
+static PyObject *monitor_step_ns(PyObject *self, PyObject *const *args, Py_ssize_t count,
+                                 PyObject *names)
+{
+    monitor *c = (monitor *)self;
+    if ((count == 2) && (names == NULL) && PyLong_CheckExact(args[0])) {
+        int beyond = 0;
+        const long long t = PyLong_AsLongLongAndOverflow(args[0], &beyond);
+        if (beyond == 0) {
+            PyObject *made = step_quickly(c, (int64_t)t, args[1]);
+            if ((made != NULL) || (PyErr_Occurred() != NULL)) {
+                return made;
+            }
+        }
+    }
+    return looked_closer(c->look_closer_ns, args, count, names);
+}
+
+/* The same in seconds, where it is certain what the nearest nanosecond is; the difference is exact,
+ * the product nearly. */
+static PyObject *monitor_step(PyObject *self, PyObject *const *args, Py_ssize_t count,
+                              PyObject *names)
+{
+    monitor *c = (monitor *)self;
+    if ((count == 2) && (names == NULL) && PyFloat_CheckExact(args[0])) {
+        const double seconds = PyFloat_AsDouble(args[0]);
+        if ((seconds > -4e9) && (seconds < 4e9)) {
+            const int64_t whole = (int64_t)seconds;
+            const double part = (seconds - (double)whole) * 1e9;
+            const int64_t rest = (int64_t)(part + ((part < 0.0) ? -0.5 : 0.5));
+            const double off = part - (double)rest;
+            if ((off > -0.4999) && (off < 0.4999)) {
+                const int64_t t = whole * INT64_C(1000000000) + rest;
+                PyObject *made = step_quickly(c, t, args[1]);
+                if ((made != NULL) || (PyErr_Occurred() != NULL)) {
+                    return made;
+                }
+            }
+        }
+    }
+    return looked_closer(c->look_closer, args, count, names);
+}
+
+/* Calls of one thread at a time: each of these functions as a method. */
+#define METHOD(name)                                            \
+    static PyObject *monitor_##name(PyObject *self, PyObject *arg) \
+    {                                                           \
+        PyObject *made = NULL;                                  \
+        Py_BEGIN_CRITICAL_SECTION(self);                        \
+        if (is_free((monitor *)self)) {                         \
+            made = name##_of((monitor *)self, arg);             \
+        }                                                       \
+        Py_END_CRITICAL_SECTION();                              \
+        return made;                                            \
+    }
+
+static bool is_free(const monitor *c)
+{
+    if (c->busy) {
+        PyErr_SetString(PyExc_RuntimeError, "another call is under way");
+    }
+    return !c->busy;
+}
+
+/* judge(t, values, looked): whether the sample was taken, at which Python has looked if it says so. */
+static PyObject *judge_of(monitor *c, PyObject *args)
+{
+    long long t;
+    PyObject *values;
+    int looked;
+    int done = LEFT;
+    if (!PyArg_ParseTuple(args, "LOp", &t, &values, &looked)) {
+        return NULL;
+    }
+    if (PyDict_CheckExact(values)) {
+        done = take(c, (int64_t)t, values, looked != 0);
+    }
+    return (done == FAILED) ? NULL : Py_NewRef((done == TAKEN) ? Py_True : Py_False);
+}
+
+static PyObject *advance_of(monitor *c, PyObject *until)
+{
+    const long long t = PyLong_AsLongLong(until);
+    int code;
+    if ((t == -1) && (PyErr_Occurred() != NULL)) {
+        return NULL;
+    }
+    code = rv_advance(c->m, (int64_t)t);
+    /* Time that has come already changes nothing. */
+    return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
+}
+
+static PyObject *instant(int64_t t, int64_t none)
+{
+    return (t == none) ? Py_NewRef(Py_None) : PyLong_FromLongLong((long long)t);
+}
+
+/* End the run, at an instant or None; gives the last instant, None if there is none. */
+static PyObject *finish_of(monitor *c, PyObject *until)
+{
+    int64_t t = RV_NO_TIME;
+    int64_t end;
+    int code;
+    if (until != Py_None) {
+        t = (int64_t)PyLong_AsLongLong(until);
+        if ((t == -1) && (PyErr_Occurred() != NULL)) {
+            return NULL;
+        }
+    }
+    end = rv_end(c->m, t);
+    code = rv_spoilt(c->m) ? RV_NO_MEMORY : rv_finish(c->m, t);
+    /* What comes after it may have been interrupted, and is done again. */
+    return ((code == RV_FINISHED) || is_done(code)) ? instant(end, RV_NO_TIME) : NULL;
+}
+
+static PyObject *reset_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    c->given = 0;
+    rv_forget_records(c->m);
+    return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
+}
+
+static PyObject *flush_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return rv_spoilt(c->m) ? PyErr_NoMemory() : decided_since(c);
+}
+
+/* The attempts that are undecided now, and those that will stay so. */
+static PyObject *open_of(monitor *c, PyObject *unused)
+{
+    gathering g = {c, NULL, NULL, 0, 0, false};
+    (void)unused;
+    gather_records(c, 0, true, &g);
+    if (!g.failed) {
+        rv_each_open(c->m, gather, &g);
+    }
+    return listed(&g);
+}
+
+/* All records as bytes, and as many captured values for each of them as any has. */
+static PyObject *records_of(monitor *c, PyObject *unused)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(c->m, &records);
+    const Py_ssize_t most = (Py_ssize_t)c->sizes.captured;
+    PyObject *one = PyBytes_FromStringAndSize((const char *)records,
+                                              (Py_ssize_t)count * (Py_ssize_t)sizeof *records);
+    PyObject *other = PyBytes_FromStringAndSize(
+        NULL, (Py_ssize_t)count * most * (Py_ssize_t)sizeof(rv_number));
+    PyObject *made = NULL;
+    (void)unused;
+    if ((one != NULL) && (other != NULL)) {
+        rv_number *to = (rv_number *)(void *)PyBytes_AsString(other);
+        int64_t i;
+        (void)memset(to, 0, (size_t)PyBytes_Size(other));
+        for (i = 0; i < count; i++) {
+            copy_captured(c, &records[i], rv_captured(c->m, &records[i]), &to[i * most]);
+        }
+        made = PyTuple_Pack(2, one, other);
+    }
+    Py_XDECREF(one);
+    Py_XDECREF(other);
+    return made;
+}
+
+/* How many attempts of each requirement failed, passed, and stayed open, and whether its trigger was
+ * ever true or false. */
+static PyObject *counts_of(monitor *c, PyObject *unused)
+{
+    PyObject *made = rv_spoilt(c->m) ? PyErr_NoMemory() : PyList_New(0);
+    int32_t i;
+    (void)unused;
+    for (i = 0; (made != NULL) && (i < c->sizes.requirements); i++) {
+        const rv_counts found = rv_count(c->m, i);
+        PyObject *own = Py_BuildValue("LLLi", (long long)found.failed, (long long)found.passed,
+                                      (long long)found.inconclusive, found.heard ? 1 : 0);
+        if ((own == NULL) || (PyList_Append(made, own) < 0)) {
+            Py_CLEAR(made);
+        }
+        Py_XDECREF(own);
+    }
+    return made;
+}
+
+/* The first sample's instant, the last one's, and the instant that time has come to. */
+static PyObject *times_of(monitor *c, PyObject *unused)
+{
+    const rv_times found = rv_times_of(c->m);
+    (void)unused;
+    return Py_BuildValue("NNN", instant(found.began, RV_NO_TIME), instant(found.last, RV_NO_TIME),
+                         instant(found.reached, RV_NO_TIME));
+}
+
+static PyObject *next_due_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return instant(rv_next_due(c->m), RV_NEVER);
+}
+
+METHOD(judge)
+METHOD(advance)
+METHOD(finish)
+METHOD(reset)
+METHOD(flush)
+METHOD(open)
+METHOD(records)
+METHOD(counts)
+METHOD(times)
+METHOD(next_due)
+METHOD(rows)
+
+/* Begin or end a call of which Python does a part; false amid another one. */
+static PyObject *monitor_hold(PyObject *self, PyObject *held)
+{
+    monitor *c = (monitor *)self;
+    bool done;
+    Py_BEGIN_CRITICAL_SECTION(self);
+    done = !c->busy;
+    if (done) {
+        c->held = held == Py_True;
+    }
+    Py_END_CRITICAL_SECTION();
+    return Py_NewRef(done ? Py_True : Py_False);
+}
+
+/* The type. */
+
+static int monitor_traverse(PyObject *self, visitproc visit, void *arg)
+{
+    Py_VISIT(Py_TYPE(self));
+    Py_VISIT(((monitor *)self)->owner);
+    return 0;
+}
+
+/* All that is borrowed goes with its owner: nothing but the end can be done any more. */
+static int monitor_clear(PyObject *self)
+{
+    monitor *c = (monitor *)self;
+    c->busy = true;
+    c->look_closer = NULL;
+    c->look_closer_ns = NULL;
+    Py_CLEAR(c->owner);
+    return 0;
+}
+
+static void monitor_dealloc(PyObject *self)
+{
+    monitor *c = (monitor *)self;
+    PyTypeObject *type = Py_TYPE(self);
+    PyObject_GC_UnTrack(self);
+    (void)monitor_clear(self);
+    if (c->m != NULL) {
+        rv_free(c->m);
+    }
+    free_intake(&c->in);
+    PyMem_Free(c->captured);
+    free(c->plan);
+    PyObject_GC_Del(self);
+    Py_DECREF(type);
+}
+
+/* Open the plan in some bytes; false with an error. */
+static bool open_plan(monitor *c, PyObject *data)
+{
+    const rv_memory heap = {malloc, free, NULL, 0};
+    const size_t size = (size_t)PyBytes_Size(data);
+    const void *plan = PyBytes_AsString(data);
+    if ((uintptr_t)plan % 8U != 0U) {
+        c->plan = malloc(size + 1U);
+        if (c->plan == NULL) {
+            (void)PyErr_NoMemory();
+            return false;
+        }
+        plan = memcpy(c->plan, plan, size);
+    }
+    c->m = rv_new(plan, size, heap);
+    if (c->m == NULL) {
+        const int32_t wrong = rv_plan_check(plan, size);
+        if (wrong >= 0) {
+            (void)PyErr_Format(PyExc_ValueError, "the plan is damaged (section %d)", (int)wrong);
+        } else {
+            (void)PyErr_NoMemory();
+        }
+        return false;
+    }
+    c->sizes = rv_sizes_of(c->m);
+    return true;
+}
+
+/* Learn what attempts are made of; false with an error. */
+static bool find_slots(monitor *c, PyObject *descriptors)
+{
+    int i;
+    if (PyTuple_Size(descriptors) != SLOT_COUNT) {
+        PyErr_SetString(PyExc_ValueError, "not the fields of an attempt");
+        return false;
+    }
+    for (i = 0; i < SLOT_COUNT; i++) {
+        c->slots[i] = PyTuple_GetItem(descriptors, i);
+        c->set[i] = (descrsetfunc)(uintptr_t)PyType_GetSlot(Py_TYPE(c->slots[i]),
+                                                           Py_tp_descr_set);
+        if (c->set[i] == NULL) {
+            PyErr_SetString(PyExc_TypeError, "no field of an attempt");
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Learn how many values each requirement captures; false with an error. */
+static bool find_captured(monitor *c, PyObject *counts)
+{
+    int32_t i;
+    if ((PyTuple_Size(counts) != c->sizes.requirements)
+        || (PyTuple_Size(c->ids) != c->sizes.requirements)) {
+        PyErr_SetString(PyExc_ValueError, "not the requirements of the plan");
+        return false;
+    }
+    c->captured = PyMem_Calloc((size_t)c->sizes.requirements + 1U, sizeof *c->captured);
+    if (c->captured == NULL) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    for (i = 0; i < c->sizes.requirements; i++) {
+        const long count = PyLong_AsLong(PyTuple_GetItem(counts, i));
+        if ((count < 0) || (count > c->sizes.captured)) {
+            if (PyErr_Occurred() == NULL) {
+                PyErr_SetString(PyExc_ValueError, "more captured values than in the plan");
+            }
+            return false;
+        }
+        c->captured[i] = (int32_t)count;
+    }
+    return true;
+}
+
+/* Say which names have no source; false with an error. */
+static bool set_absent(const monitor *c, PyObject *absent)
+{
+    int32_t i;
+    if (PyBytes_Size(absent) != c->in.names) {
+        PyErr_SetString(PyExc_ValueError, "not the names of the plan");
+        return false;
+    }
+    for (i = 0; i < c->in.names; i++) {
+        if (PyBytes_AsString(absent)[i] != 0) {
+            rv_set_absent(c->m, i);
+        }
+    }
+    return true;
+}
+
+/* Monitor(plan, (numbers, words, kinds, single), absent, (look_closer, look_closer_ns),
+ *         (attempt, descriptors, ids, verdicts, decisions, details, captured)) */
+static PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
+{
+    PyObject *data;
+    PyObject *numbers;
+    PyObject *words;
+    PyObject *kinds;
+    PyObject *single;
+    PyObject *absent;
+    PyObject *descriptors;
+    PyObject *captured;
+    monitor *c = (monitor *)PyType_GenericAlloc(type, 0);
+    (void)unused;
+    if (c == NULL) {
+        return NULL;
+    }
+    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O!OO!)", &PyBytes_Type, &data,
+                         &PyDict_Type, &numbers, &PyTuple_Type, &words, &PyBytes_Type, &kinds,
+                         &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->look_closer,
+                         &c->look_closer_ns, &PyType_Type, &c->attempt, &PyTuple_Type, &descriptors,
+                         &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
+                         &c->decisions, &c->details, &PyTuple_Type, &captured)) {
+        c->owner = Py_NewRef(args);
+        if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
+            && find_slots(c, descriptors) && find_captured(c, captured) && set_absent(c, absent)) {
+            return (PyObject *)c;
+        }
+    }
+    Py_DECREF(c);
+    return NULL;
+}
+
+#define FUNCTION(name) (PyCFunction)(void (*)(void))monitor_##name
+
+static PyMethodDef monitor_methods[] = {
+    {"step", FUNCTION(step), METH_FASTCALL | METH_KEYWORDS,
+     "step(t, values)\n--\n\nTake one sample, at seconds; see `rvmon.Monitor`."},
+    {"step_ns", FUNCTION(step_ns), METH_FASTCALL | METH_KEYWORDS,
+     "step_ns(t_ns, values)\n--\n\nTake one sample, at ticks; see `rvmon.Monitor`."},
+    {"judge", monitor_judge, METH_VARARGS, NULL},
+    {"rows", monitor_rows, METH_VARARGS, NULL},
+    {"advance", monitor_advance, METH_O, NULL},
+    {"finish", monitor_finish, METH_O, NULL},
+    {"flush", monitor_flush, METH_NOARGS, NULL},
+    {"open", monitor_open, METH_NOARGS, NULL},
+    {"records", monitor_records, METH_NOARGS, NULL},
+    {"counts", monitor_counts, METH_NOARGS, NULL},
+    {"times", monitor_times, METH_NOARGS, NULL},
+    {"next_due", monitor_next_due, METH_NOARGS, NULL},
+    {"hold", monitor_hold, METH_O, NULL},
+    {"reset", monitor_reset, METH_NOARGS, NULL},
+    {NULL, NULL, 0, NULL},
+};
+
+static PyType_Slot monitor_slots[] = {
+    {Py_tp_new, RVMON_SLOT(monitor_new)},
+    {Py_tp_dealloc, RVMON_SLOT(monitor_dealloc)},
+    {Py_tp_traverse, RVMON_SLOT(monitor_traverse)},
+    {Py_tp_clear, RVMON_SLOT(monitor_clear)},
+    {Py_tp_methods, monitor_methods},
+    {0, NULL},
+};
+
+static PyType_Spec monitor_spec = {
+    "rvmon.core._core.Monitor", sizeof(monitor), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_IMMUTABLETYPE, monitor_slots,
+};
+
+static int execute(PyObject *module)
+{
+    PyObject *type = PyType_FromModuleAndSpec(module, &monitor_spec, NULL);
+    const bool done = (type != NULL) && (PyModule_AddObjectRef(module, "Monitor", type) == 0);
+    Py_XDECREF(type);
+    return done ? PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH) : -1;
+}
+
+static PyModuleDef_Slot slots[] = {
+    {Py_mod_exec, RVMON_SLOT(execute)},
+#ifdef Py_GIL_DISABLED
+    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
+#endif
+    {0, NULL},
+};
+
 static PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "_core", NULL, 0, NULL, slots, NULL, NULL, NULL};
+    PyModuleDef_HEAD_INIT, "_core", NULL, 0, NULL, slots, NULL, NULL, NULL,
+};
 
 PyMODINIT_FUNC PyInit__core(void);
 PyMODINIT_FUNC PyInit__core(void)

@@ -1,4 +1,4 @@
-"""The engine `c`: compiled C, whose records have no reasons."""
+"""The engine `c`: the core, whose records have no reasons."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class C:
-    """Judges by what a C compiler makes of the requirements; what that needs is imported late."""
+    """Judges by the core; what that needs is imported late."""
 
     name = "c"
 
@@ -32,38 +32,34 @@ class C:
     def online(self, compiled: CompiledSpec, asked: Asked) -> Monitor:
         """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
         chosen = compiled.chosen(asked.only)
-        if not chosen:  # nothing to compile
+        if not chosen:  # nothing to judge
             return engine_named("auto").online(compiled, asked)
-        from rvmon.monitor.c.monitor import compiled_monitor
         from rvmon.monitor.compiled.refusal import no_dropping
+        from rvmon.monitor.core.monitor import CoreMonitor
+        from rvmon.monitor.core.planned import planned_core
 
         if asked.keep is not None:
             raise no_dropping(self.name)
-        monitor = compiled_monitor(compiled, chosen, asked.settle, asked.sources)
+        planned = planned_core(compiled, chosen)
+        monitor = CoreMonitor(planned, compiled, chosen, asked.settle, asked.sources)
         monitor.judged_by = self.name
         return monitor
 
     def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-        """By a program for one recording alone, else by columns, else by samples laid as such."""
-        if asked.only == ():
+        """By columns, else by samples."""
+        chosen = compiled.chosen(asked.only)
+        if not chosen:
             return engine_named("auto").judge(compiled, source, asked)
-        if source.is_alone:
-            from rvmon.monitor.c.program import judged_by_program
+        from rvmon.monitor.core.planned import planned_core
+        from rvmon.monitor.core.recording import judge_columns, judge_samples
 
-            try:
-                return replace(judged_by_program(compiled, source, asked.only), engine=self.name)
-            except NotPlainError:
-                pass
-        from rvmon.monitor.c.batch import evaluate_columns, evaluate_samples, library_of
-
-        checked, library = compiled.checked, library_of(compiled, asked.only)
+        planned = planned_core(compiled, chosen)
         try:
             columns = columns_of(compiled, source, asked)
-            report = evaluate_columns(checked, library, columns, source.end)
+            report = judge_columns(planned, columns, source.end)
         except NotPlainError:
-            chosen = compiled.chosen(asked.only)
             single = frozenset().union(*(one.single_payloads for one in chosen))
-            report = evaluate_samples(checked, library, source, single)
+            report = judge_samples(compiled.checked, planned, source, single)
         return replace(report, engine=self.name)
 
 

@@ -1,0 +1,327 @@
+/* How module.c takes samples from Python: dictionaries of plain values become updates. Included there
+ * alone.
+ *
+ * What is not plain (None is; an instance of a subclass, a NumPy scalar, an unknown name is not) is
+ * left, before anything is written: Python has a closer look, and gives it back plain or raises. */
+#ifndef RVMON_MODULE_INTAKE_H
+#define RVMON_MODULE_INTAKE_H
+
+#include "core.h"
+#include "python_abi.h"
+
+/* What the values of a signal or field are. */
+enum { IS_BOOLEAN, IS_WHOLE, IS_REAL, IS_LABEL };
+
+/* How a signal, an event, a field is read; of events, `words` are fields by name. */
+typedef struct {
+    PyObject *words;           /* borrowed: a number for each label; NULL: it has none */
+    int32_t kind;              /* of a signal or field */
+    int32_t fields;            /* of an event: so many */
+    int32_t single;            /* and whether only one occurrence of it can be judged at an instant */
+} reading;
+
+/* The names of a monitor, and the sample that is laid out. */
+typedef struct {
+    PyObject *numbers;         /* borrowed: of the names that can come */
+    int32_t signals;
+    int32_t names;             /* signals, then events */
+    reading *readings;         /* of names, then of fields */
+    int32_t *first_fields;     /* of events, among those */
+    int32_t *order;            /* the numbers of the names, as they came last */
+    PyObject **came;           /* the names themselves, as they came last */
+    rv_update *updates;
+    int64_t count;
+    int64_t room;
+    rv_number *fields;         /* of all events that occur */
+    int64_t fields_count;
+    int64_t fields_room;
+    int64_t fields_most;       /* if each occurs once */
+} intake;
+
+/* The number of a value; false if that takes a closer look. */
+static bool number_of(PyObject *value, const reading *as, rv_number *number)
+{
+    int beyond = 0;
+    if (as->kind == IS_BOOLEAN) {
+        number->kind = RV_WHOLE;
+        number->as.whole = (value == Py_True) ? 1 : 0;
+        return (value == Py_True) || (value == Py_False);
+    }
+    if (as->kind == IS_LABEL) {
+        PyObject *found = NULL;
+        if (PyUnicode_CheckExact(value)) {
+            found = PyDict_GetItemWithError(as->words, value);
+        }
+        number->kind = RV_WHOLE;
+        number->as.whole = (found == NULL) ? 0 : PyLong_AsLongLong(found);
+        return found != NULL;
+    }
+    if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
+        number->as.real = PyFloat_AsDouble(value);
+        number->kind = (number->as.real == number->as.real) ? RV_REAL : RV_UNKNOWN;
+        return true;
+    }
+    if (!PyLong_CheckExact(value)) {
+        return false;
+    }
+    number->kind = RV_WHOLE;
+    number->as.whole = PyLong_AsLongLongAndOverflow(value, &beyond);
+    if (as->kind == IS_REAL) {
+        number->kind = RV_REAL;
+        number->as.real = (double)number->as.whole;
+    }
+    return beyond == 0;
+}
+
+/* The number of the name that came as so manyth; -1 if none can come that is so called.
+ *
+ * Mostly the same objects come in the same order. */
+static int32_t number_of_name(intake *in, PyObject *name, int32_t place)
+{
+    PyObject *found = NULL;
+    long number;
+    if (place >= in->names) {
+        return -1;
+    }
+    if (in->came[place] == name) {
+        return in->order[place];
+    }
+    if (PyUnicode_CheckExact(name)) {
+        found = PyDict_GetItemWithError(in->numbers, name);
+    }
+    number = (found == NULL) ? -1 : PyLong_AsLong(found);
+    if ((number < 0) || (number >= in->names)) {
+        return -1;
+    }
+    Py_INCREF(name);
+    Py_XDECREF(in->came[place]);
+    in->came[place] = name;
+    in->order[place] = (int32_t)number;
+    return in->order[place];
+}
+
+static rv_update *further_update(intake *in, int32_t name)
+{
+    rv_update *update = &in->updates[in->count];
+    in->count++;
+    update->name = name;
+    update->says = RV_SAYS_YES;
+    update->fields = NULL;
+    return update;
+}
+
+static bool lay_signal(intake *in, int32_t signal, PyObject *value)
+{
+    rv_update *update = further_update(in, signal);
+    update->value.kind = RV_UNKNOWN;
+    if ((value != Py_None) && !number_of(value, &in->readings[signal], &update->value)) {
+        return false;
+    }
+    if (update->value.kind == RV_UNKNOWN) {
+        update->says = RV_SAYS_UNKNOWN;
+    }
+    return true;
+}
+
+static bool lay_fields(const intake *in, int32_t name, PyObject *payload, rv_number *fields)
+{
+    const reading *event = &in->readings[name];
+    const reading *readings = &in->readings[in->names + in->first_fields[name - in->signals]];
+    PyObject *key;
+    PyObject *value;
+    Py_ssize_t at = 0;
+    while (PyDict_Next(payload, &at, &key, &value) != 0) {
+        PyObject *found = NULL;
+        long field;
+        if (PyUnicode_CheckExact(key)) {
+            found = PyDict_GetItemWithError(event->words, key);
+        }
+        field = (found == NULL) ? -1 : PyLong_AsLong(found);
+        if ((field < 0) || (field >= event->fields)
+            || ((value != Py_None) && !number_of(value, &readings[field], &fields[field]))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool lay_payload(intake *in, int32_t name, PyObject *payload)
+{
+    const int32_t count = in->readings[name].fields;
+    rv_number *fields = &in->fields[in->fields_count];
+    bool done;
+    int32_t i;
+    if (!PyDict_CheckExact(payload)) {
+        return false;
+    }
+    in->fields_count += count;
+    for (i = 0; i < count; i++) {
+        fields[i].kind = RV_UNKNOWN;
+    }
+    further_update(in, name)->fields = fields;
+    Py_BEGIN_CRITICAL_SECTION(payload);
+    done = lay_fields(in, name, payload, fields);
+    Py_END_CRITICAL_SECTION();
+    return done;
+}
+
+/* Make room for so many occurrences of an event, and one of each name behind them. */
+static bool make_room(intake *in, int64_t count, int32_t fields)
+{
+    const int64_t updates = in->count + count + in->names;
+    const int64_t numbers = in->fields_count + count * fields + in->fields_most;
+    if (updates > in->room) {
+        rv_update *made = PyMem_Realloc(in->updates, (size_t)updates * sizeof *made);
+        if (made == NULL) {
+            return false;
+        }
+        in->updates = made;
+        in->room = updates;
+    }
+    if (numbers > in->fields_room) {
+        rv_number *made = PyMem_Malloc((size_t)numbers * sizeof *made);
+        int64_t i;
+        if (made == NULL) {
+            return false;
+        }
+        (void)memcpy(made, in->fields, (size_t)in->fields_count * sizeof *made);
+        for (i = 0; i < in->count; i++) {
+            if (in->updates[i].fields != NULL) {
+                in->updates[i].fields = made + (in->updates[i].fields - in->fields);
+            }
+        }
+        PyMem_Free(in->fields);
+        in->fields = made;
+        in->fields_room = numbers;
+    }
+    return true;
+}
+
+/* Lay out an event that occurs several times; false with an error if memory is short. */
+static bool lay_payloads(intake *in, int32_t name, PyObject *payloads, bool looked)
+{
+    const Py_ssize_t count = PyTuple_Size(payloads);
+    bool done = true;
+    Py_ssize_t i;
+    if ((count > 1) && (in->readings[name].single != 0) && !looked) {
+        return false;
+    }
+    if ((count > INT32_MAX / 2) || ((count > 1) && !make_room(in, count, in->readings[name].fields))) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    if (count == 0) {
+        further_update(in, name)->says = RV_SAYS_NO;
+    }
+    for (i = 0; done && (i < count); i++) {
+        done = lay_payload(in, name, PyTuple_GetItem(payloads, i));
+    }
+    return done;
+}
+
+static bool lay_event(intake *in, int32_t name, PyObject *value, bool looked)
+{
+    if (value == Py_True) {
+        (void)further_update(in, name);
+    } else if (value == Py_False) {
+        further_update(in, name)->says = RV_SAYS_NO;
+    } else if (value == Py_None) {
+        further_update(in, name)->says = RV_SAYS_UNKNOWN;
+    } else if (PyTuple_CheckExact(value)) {
+        return lay_payloads(in, name, value, looked);
+    } else {
+        return lay_payload(in, name, value);
+    }
+    return true;
+}
+
+/* Lay out a sample; false if it takes a closer look, or with an error if memory is short. No code in
+ * Python runs meanwhile. */
+static bool lay(intake *in, PyObject *values, bool looked)
+{
+    PyObject *name;
+    PyObject *value;
+    Py_ssize_t at = 0;
+    int32_t place = 0;
+    bool done = true;
+    in->count = 0;
+    in->fields_count = 0;
+    while (done && (PyDict_Next(values, &at, &name, &value) != 0)) {
+        const int32_t number = number_of_name(in, name, place);
+        if (number < 0) {
+            done = false;
+        } else if (number < in->signals) {
+            done = lay_signal(in, number, value);
+        } else {
+            done = lay_event(in, number, value, looked);
+        }
+        place++;
+    }
+    return done;
+}
+
+static void free_intake(intake *in)
+{
+    int32_t i;
+    for (i = 0; (in->came != NULL) && (i < in->names); i++) {
+        Py_XDECREF(in->came[i]);
+    }
+    PyMem_Free(in->readings);
+    PyMem_Free(in->first_fields);
+    PyMem_Free(in->order);
+    PyMem_Free(in->came);
+    PyMem_Free(in->updates);
+    PyMem_Free(in->fields);
+    (void)memset(in, 0, sizeof *in);
+}
+
+/* Learn how names and fields are read; false with an error. `words` and `kinds` are of signals,
+ * events, fields; `single` is of names. */
+static bool make_intake(intake *in, const rv_monitor *m, PyObject *numbers, PyObject *words,
+                        PyObject *kinds, PyObject *single)
+{
+    const rv_sizes sizes = rv_sizes_of(m);
+    const int32_t names = sizes.signals + sizes.events;
+    const int32_t all = names + sizes.fields;
+    int32_t i;
+    if ((PyTuple_Size(words) != all) || (PyBytes_Size(kinds) != all)
+        || (PyBytes_Size(single) != names)) {
+        PyErr_SetString(PyExc_ValueError, "not the names of the plan");
+        return false;
+    }
+    in->numbers = numbers;
+    in->signals = sizes.signals;
+    in->names = names;
+    in->fields_most = sizes.fields;
+    in->room = names + 1;
+    in->fields_room = sizes.fields + 1;
+    in->readings = PyMem_Calloc((size_t)all + 1, sizeof *in->readings);
+    in->first_fields = PyMem_Calloc((size_t)sizes.events + 1, sizeof *in->first_fields);
+    in->order = PyMem_Calloc((size_t)names + 1, sizeof *in->order);
+    in->came = PyMem_Calloc((size_t)names + 1, sizeof *in->came);
+    in->updates = PyMem_Calloc((size_t)in->room, sizeof *in->updates);
+    in->fields = PyMem_Calloc((size_t)in->fields_room, sizeof *in->fields);
+    if ((in->readings == NULL) || (in->first_fields == NULL) || (in->order == NULL)
+        || (in->came == NULL) || (in->updates == NULL) || (in->fields == NULL)) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    for (i = 0; i < all; i++) {
+        reading *own = &in->readings[i];
+        const bool is_event = (i >= sizes.signals) && (i < names);
+        own->words = PyTuple_GetItem(words, (Py_ssize_t)i);
+        own->kind = PyBytes_AsString(kinds)[i];
+        own->single = (i < names) ? PyBytes_AsString(single)[i] : 0;
+        if (is_event) {
+            const int32_t event = i - sizes.signals;
+            own->fields = rv_fields_of(m, event, &in->first_fields[event]);
+        }
+        if ((is_event || (own->kind == IS_LABEL)) && !PyDict_CheckExact(own->words)) {
+            PyErr_SetString(PyExc_ValueError, "labels and fields come with a number for each");
+            return false;
+        }
+    }
+    return true;
+}
+
+#endif

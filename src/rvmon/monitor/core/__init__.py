@@ -1,0 +1,1 @@
+"""What the core judges: of streams, of columns; and its records as reports."""

@@ -1,0 +1,190 @@
+"""Some requirements of a specification, packed for the core, and how samples of them are read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from rvmon.core._core import Monitor as Run
+from rvmon.core.plan import Packed, pack
+from rvmon.errors import TraceError
+from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.monitor.core.captured import CapturedValues
+from rvmon.plan.plan import Plan
+from rvmon.spec.checked.specification import Type
+from rvmon.trace.sample import Payload, Scalar, Value
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import format_ticks
+from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.monitor.compiled.specification import CompiledSpec
+
+VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
+DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
+"""In the order of `core.h`; so are the verdicts."""
+
+_KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
+"""In the order of `module_intake.h`."""
+
+_SLOTS = (
+    *("requirement", "number", "triggered", "decided", "verdict", "decision"),
+    *("in_doubt", "_details", "_noted"),
+)
+"""The fields of an attempt that are set in C, in the order of `module_attempts.h`."""
+
+_LATER = tuple(one.name for one in fields(Attempt) if one.name not in _SLOTS)
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedCore:
+    """A packed plan, from which monitors are made.
+
+    Attributes:
+        packed: the plan as bytes, and what its numbers stand for.
+        captured: reads the values that attempts captured.
+        numbers: of names: signals first, then events.
+        words: of signals, events, fields: a number for each label, or field.
+        kinds: of the same; of events they mean nothing.
+        single: of each name, whether only one payload of it can be judged at one instant.
+    """
+
+    packed: Packed
+    captured: CapturedValues
+    numbers: Mapping[str, int]
+    words: tuple[Mapping[str, int] | None, ...]
+    kinds: bytes
+    single: bytes
+
+    def monitor(
+        self,
+        absent: frozenset[str],
+        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]] | None = None,
+        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]] | None = None,
+    ) -> Run:
+        """Begin a run.
+
+        Args:
+            absent: the names without a source.
+            look_closer: judges the samples that are not plain values in a `dict`, at seconds.
+            look_closer_ns: the same at ticks.
+        """
+        coming = {name: number for name, number in self.numbers.items() if name not in absent}
+        attempts = (
+            Attempt,
+            tuple(getattr(Attempt, name) for name in _SLOTS),
+            self.packed.ids,
+            VERDICTS,
+            DECISIONS,
+            self._details,
+            self.captured.counts,
+        )
+        return Run(
+            self.packed.data,
+            (coming, self.words, self.kinds, self.single),
+            bytes(name in absent for name in self.numbers),
+            (look_closer, look_closer_ns),
+            attempts,
+        )
+
+    def plain(self, t: int, values: Mapping[str, Value]) -> dict[str, Value]:
+        """A checked sample as the core takes it.
+
+        Raises:
+            TraceError: a whole number is too large.
+        """
+        # It takes `str` alone, no subclasses of it, such as members of an enumeration.
+        return {str.__str__(name): self._plain(name, value, t) for name, value in values.items()}
+
+    def _plain(self, name: str, value: Value, t: int) -> Value:
+        if isinstance(value, tuple):
+            return tuple(self._payload(name, payload, t) for payload in value)
+        if isinstance(value, Mapping):
+            return self._payload(name, value, t)
+        kind = self.packed.signals.get(name)
+        return value if kind is None else _number(name, value, kind, t)
+
+    def _payload(self, event: str, payload: Payload, t: int) -> Payload:
+        kinds = self.packed.fields
+        return {
+            str.__str__(field): _number(f"{event}.{field}", value, kinds[event, field], t)
+            for field, value in payload.items()
+        }
+
+    def _details(self, attempt: Attempt, noted: tuple[float | None, ...] | None) -> dict[str, Any]:
+        """The fields of an attempt that are not set in C: nothing, but for captured values."""
+        bare = Attempt(attempt.requirement, 0, 0, None, attempt.verdict)
+        found = {name: getattr(bare, name) for name in _LATER}
+        if noted is not None:
+            number = self.packed.ids.index(attempt.requirement)
+            found["captured"] = self.captured.of(number, noted)
+        return found
+
+
+def planned_core(
+    compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]
+) -> PlannedCore:
+    """The packed plan of some requirements; made once for a specification.
+
+    Args:
+        compiled: the specification.
+        requirements: chosen from it.
+
+    Raises:
+        RvmonError: a requirement is beyond the core.
+    """
+    ids = tuple(one.requirement.id for one in requirements)
+    found = compiled.forms.get(("core", ids))
+    if not isinstance(found, PlannedCore):
+        single = frozenset().union(*(one.single_payloads for one in requirements))
+        found = compiled.forms["core", ids] = _planned(plan_alone(compiled, ids), single)
+    return found
+
+
+def _planned(plan: Plan, single: frozenset[str]) -> PlannedCore:
+    packed, spec = pack(plan), plan.spec
+
+    def labels(type_: Type) -> Mapping[str, int] | None:
+        if type_.kind is not Kind.LABEL:
+            return None
+        return {label: packed.labels[label] for label in type_.labels}
+
+    names = (*packed.signals, *packed.events)
+    payloads = [spec.events[name].fields for name in packed.events]
+    types = [type_ for payload in payloads for type_ in payload.values()]
+    kinds = [*packed.signals.values(), *(Kind.BOOL for _ in payloads), *packed.fields.values()]
+    return PlannedCore(
+        packed,
+        CapturedValues(plan, packed.labels),
+        {name: number for number, name in enumerate(names)},
+        (
+            *(labels(spec.signals[name].type) for name in packed.signals),
+            *({field: place for place, field in enumerate(payload)} for payload in payloads),
+            *map(labels, types),
+        ),
+        bytes(map(_KINDS.index, kinds)),
+        bytes(name in single for name in names),
+    )
+
+
+_LEAST, _MOST = -(1 << 63), (1 << 63) - 1
+
+
+def _number(name: str, value: Scalar, kind: Kind, t: int) -> Scalar:
+    """A value as the core takes it: whole numbers within 64 bits, of a real signal doubles.
+
+    Raises:
+        TraceError: there is no such number.
+    """
+    if not isinstance(value, int) or _LEAST <= value <= _MOST:
+        return value
+    try:
+        if kind is Kind.REAL:
+            return float(value)
+    except OverflowError:
+        pass
+    limit = "a double" if kind is Kind.REAL else "64 bits"
+    raise TraceError(f"sample at {format_ticks(t)}: `{name}` is a number too large for {limit}")
