@@ -41,7 +41,7 @@ class Judges:
     Attributes:
         networked: the numbers of those without an automaton.
         forms: how many formulas they have.
-        clocks: the most that an automaton of them has.
+        clocks: the most that an automaton of them has, or 1: a position of a network.
         undetermined: how many tell whether their trigger was ever true or false.
     """
 
@@ -52,7 +52,7 @@ class Judges:
         self._plan = plan
         self._index = plan.graph.index
         self.networked: list[int] = []
-        self.clocks = 0
+        self.clocks = 1
         self._links: dict[int, dict[int, tuple[int, Weights]]] = {}
         self.undetermined = sum(rule.determined is not None for _, rule in plan.judges)
         for number, (owner, rule) in enumerate(plan.judges):

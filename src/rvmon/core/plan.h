@@ -80,7 +80,7 @@ typedef struct {
     int32_t edges;
     int32_t stretches;
     int32_t perishable;        /* signals that go stale */
-    int32_t clocks;            /* the most that an automaton has */
+    int32_t clocks;            /* the most that an automaton has, at least 1 */
     int32_t undetermined;      /* how many judges have a `determined` */
     int32_t births;            /* how many signals are waited for */
     list stateful;             /* nodes to be worked out at each sample, if only these are positions */
