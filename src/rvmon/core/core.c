@@ -203,7 +203,8 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     }
     for (i = 0; i < m->plan.part_count; i++) {
         home *h = &m->homes[i];
-        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started) {
+        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started
+            || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
             h->previous = m->last;
             home_sample(h, t);
         }

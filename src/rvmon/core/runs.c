@@ -318,40 +318,58 @@ void give(run *r, int64_t t, const incoming *in, int32_t count)
     arrive(r, t);
 }
 
-/* Keep the sample at hand for those that look at what was before. */
+/* Add an update to what is kept; NULL: memory is short. */
+static past_update *keep_one(home *h, int64_t t)
+{
+    past_update *made = grown(h->monitor, h->past, &h->past_room, (int64_t)h->past_count + 1,
+                              sizeof *made);
+    if (made == NULL) {
+        return NULL;
+    }
+    h->past = made;
+    made = &h->past[h->past_count];
+    (void)memset(made, 0, sizeof *made);
+    made->t = t;
+    made->local = -1;
+    h->past_count++;
+    return made;
+}
+
+/* Keep the sample at hand for those that look at what was before: also one that says nothing is a
+ * position. */
 void keep_updates(home *h, int64_t t)
 {
     rv_monitor *m = h->monitor;
+    past_update *made = NULL;
     int32_t i;
+    if (h->inbox_count == 0) {
+        made = keep_one(h, t);
+    }
     for (i = 0; i < h->inbox_count; i++) {
         const incoming *in = &h->inbox[i];
         const rv_update *u = in->update;
-        past_update *made = grown(m, h->past, &h->past_room, (int64_t)h->past_count + 1,
-                                  sizeof *made);
+        const int32_t fields = in->event ? h->part->events[in->local].fields : 0;
+        made = keep_one(h, t);
         if (made == NULL) {
             return;
         }
-        h->past = made;
-        made = &h->past[h->past_count];
-        made->t = t;
         made->local = in->local;
         made->event = in->event;
         made->says = u->says;
         made->value = u->value;
-        made->fields = NULL;
-        made->last = i + 1 == h->inbox_count;
-        if (in->event && (u->fields != NULL) && (h->part->events[in->local].fields > 0)) {
-            const size_t size =
-                (size_t)h->part->events[in->local].fields * sizeof *u->fields;
-            rv_number *fields = arena_take(&m->memory, size);
-            if (fields == NULL) {
+        if ((fields > 0) && (u->fields != NULL)) {
+            const size_t size = (size_t)fields * sizeof *u->fields;
+            rv_number *own = arena_take(&m->memory, size);
+            if (own == NULL) {
                 m->spoilt = true;
                 return;
             }
-            (void)memcpy(fields, u->fields, size);
-            made->fields = fields;
+            (void)memcpy(own, u->fields, size);
+            made->fields = own;
         }
-        h->past_count++;
+    }
+    if (made != NULL) {
+        made->last = true;
     }
 }
 
@@ -381,9 +399,11 @@ void replay(run *r)
             const past_update *one = &h->past[first];
             const rv_update update = {0, one->says, one->value, one->fields};
             const incoming in = {one->local, one->event, &update};
-            take_update(r, t, &in);
+            if (one->local >= 0) {
+                take_update(r, t, &in);
+            }
             first++;
-        } while (!h->past[first - 1].last);
+        } while ((first < h->past_count) && !h->past[first - 1].last);
         arrive(r, t);
         h->previous = t;
     }
