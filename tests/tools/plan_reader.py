@@ -470,9 +470,7 @@ def _walk_judge(part: _Part, judge: dict[str, Any]) -> None:
     for reading in ("worse", "better"):
         assert min(min(link[reading]) for link in links) >= 0 if links else True
         assert sum(max(link[reading]) for link in links) < automaton["letters"]
-        assert all(
-            link["kind"] & e["LINK_LETTER"] or not any(link[reading]) for link in links
-        )
+        assert all(link["kind"] & e["LINK_LETTER"] or not any(link[reading]) for link in links)
 
 
 def _walk_diagram(plan: Plan, place: int, level: int, classes: int) -> None:

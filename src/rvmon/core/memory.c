@@ -59,7 +59,7 @@ void *arena_take(arena *a, size_t size)
     size_t room = size;
     size_t class;
     void *made;
-    if (size > (size_t)1 << 46) {
+    if (size > SIZE_MAX / 4) { /* beyond, sums of sizes could wrap */
         return NULL;
     }
     class = class_of(&room);
