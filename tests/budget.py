@@ -30,7 +30,7 @@ BUDGETS = {
     "tests/rvmon/cli": 40,
     "tests/rvmon/clipping": 50,
     "tests/rvmon/codegen": 140,
-    "tests/rvmon/core": 8,
+    "tests/rvmon/core": 60,
     "tests/rvmon/coverage": 25,
     "tests/rvmon/dataflow": 6,
     "tests/rvmon/diagnostics": 1,

@@ -80,13 +80,18 @@ def record(name: str, data: bytes, offset: int) -> dict[str, Any]:
     for own, form in layouts()[name]:
         values = struct.unpack_from(f"={form}", data, offset)
         made[own] = values[0] if len(values) == 1 else values
-        offset += struct.calcsize(f"={form}")
+        offset += size_of_form(form)
     return made
+
+
+def size_of_form(form: str) -> int:
+    """The size of what a format for `struct` stands for."""
+    return struct.calcsize(f"={form}")
 
 
 def size_of(name: str) -> int:
     """The size of a record."""
-    return sum(struct.calcsize(f"={form}") for _, form in layouts()[name])
+    return sum(size_of_form(form) for _, form in layouts()[name])
 
 
 class Plan:
@@ -145,9 +150,14 @@ class Plan:
         return self.numbers[section][first : first + count]
 
 
-def walk(plan: Plan) -> None:
-    """Follow every index, and see that it leads to what it should."""
-    _walk_bytes(plan)
+def walk(plan: Plan, *, is_whole: bool = True) -> None:
+    """Follow every index, and see that it leads to what it should.
+
+    Args:
+        plan: as read.
+        is_whole: whether no byte of it was changed.
+    """
+    _walk_bytes(plan, is_whole)
     _walk_names(plan)
     for section, places in (
         ("SIGNALS", "signals"),
@@ -181,7 +191,7 @@ def _is_partition(plan: Plan, section: str, ranges: Sequence[tuple[int, int]]) -
     assert end == len(plan.records[section])
 
 
-def _walk_bytes(plan: Plan) -> None:
+def _walk_bytes(plan: Plan, is_whole: bool) -> None:
     header = plan.header
     assert header["magic"] == b"rvmonpl1"
     assert header["order"] == 0x01020304
@@ -194,9 +204,9 @@ def _walk_bytes(plan: Plan) -> None:
         end = behind
     assert end <= len(plan.data) < end + 8
     hashed = 0xCBF29CE484222325
-    for byte in plan.data[size_of("plan_header") :]:
-        hashed = (hashed ^ byte) * 0x100000001B3 % (1 << 64)
-    assert header["hash"] == hashed
+    for (word,) in struct.iter_unpack("=Q", plan.data[size_of("plan_header") :]):
+        hashed = (hashed ^ word) * 0x100000001B3 % (1 << 64)
+    assert (header["hash"] == hashed) == is_whole
 
 
 def _ascends(numbers: Sequence[int], end: int) -> None:
@@ -249,7 +259,8 @@ class _Part:
         return found
 
     def phased(self, places: tuple[int, ...], count: int) -> tuple[Sequence[int], Sequence[int]]:
-        first, then = (self.listed(half, count) for half in (places[:2], places[2:]))
+        begin, size, second, rest = places
+        first, then = (self.listed(half, count) for half in ((begin, size), (second, rest)))
         for found in (first, then):
             assert len(set(found)) == len(found)
         assert set(then) <= set(first)
@@ -276,7 +287,8 @@ def _walk_part(plan: Plan, fields: dict[str, Any]) -> list[int]:
     for form in part.own("forms"):
         _walk_form(part, form)
     for kind in ("seen", "edges", "stretches", "timers", "perishable"):
-        assert part.memories.get(kind, []) == list(range(fields[kind]))
+        met = part.memories.get(kind, [])
+        assert (len(met), met) == (fields[kind], list(range(len(met))))
     assert fields["births"] == sum(signal["births"] > 0 for signal in part.own("signals"))
     assert fields["undetermined"] == sum(judge["determined"] >= 0 for judge in judges)
     part.listed(fields["stateful"], len(nodes))

@@ -46,26 +46,30 @@ class DoesNotCloseError(Exception):
     """The automaton of a formula outgrew its budget; the message says in what."""
 
 
-def construct(owed: Temporal, alphabet: Alphabet, budget: Budget) -> Automaton:
+def construct(
+    owed: Temporal, alphabet: Alphabet, budget: Budget, ages: set[int] | None = None
+) -> Automaton:
     """Build the automaton of a formula.
 
     Args:
         owed: what an attempt owes, as `X` of it: an attempt starts before its trigger's position.
         alphabet: of that formula.
         budget: when to give up.
+        ages: takes those with which locations are looked at.
 
     Raises:
         DoesNotCloseError: the budget was exceeded.
 
     Source: AUTOMATA 2; regions after Alur and Dill 1994.
     """
-    return _Construction(alphabet, budget).run(owed)
+    return _Construction(alphabet, budget, set() if ages is None else ages).run(owed)
 
 
 class _Construction:
-    def __init__(self, alphabet: Alphabet, budget: Budget) -> None:
+    def __init__(self, alphabet: Alphabet, budget: Budget, ages: set[int]) -> None:
         self.alphabet = alphabet
         self.budget = budget
+        self.ages = ages
         self.locations: list[Location] = []
         self.index: dict[Residual, int] = {}
         self.youngest: list[tuple[int, ...]] = []
@@ -118,6 +122,7 @@ class _Construction:
             if row not in self.rows and len(self.rows) >= self.budget.rows:
                 raise DoesNotCloseError(f"more than {self.budget.rows} regions")
             self.least[row] = ages
+            self.ages.update(ages)
             self.rows[row] = self.diagram(location.residual, ages)
 
     def diagram(self, residual: Residual, ages: tuple[int, ...]) -> Node:

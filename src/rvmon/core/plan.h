@@ -37,7 +37,7 @@ typedef struct {
     uint32_t order;            /* that of the bytes of a number */
     int32_t sections;
     int64_t size;              /* of all, this header among it */
-    uint64_t hash;             /* FNV-1a of all bytes behind the header */
+    uint64_t hash;             /* FNV-1a of the words of 8 bytes behind the header */
     int64_t gap;               /* ticks between two positions; 0: only samples are positions */
     int32_t signals;
     int32_t events;

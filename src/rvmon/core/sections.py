@@ -129,8 +129,8 @@ class Sections:
 
 
 def hash_of(data: bytes) -> int:
-    """FNV-1a of some bytes, 64 bits."""
+    """FNV-1a of words of 8 bytes: byte by byte takes as long here as all the rest."""
     found = 0xCBF29CE484222325
-    for byte in data:
-        found = (found ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    for word in array("Q", data):
+        found = (found ^ word) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
     return found

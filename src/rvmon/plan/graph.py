@@ -46,6 +46,18 @@ def leaf_texts(graph: Graph) -> tuple[tuple[State, str], ...]:
     )
 
 
+def leaf_count(roots: Iterable[State]) -> int:
+    """How many leaves of state formulas are read off the input."""
+    seen: set[State] = set()
+    stack = list(roots)
+    while stack:
+        state = stack.pop()
+        if state not in seen:
+            seen.add(state)
+            stack.extend(state.args)
+    return sum(isinstance(state.leaf, Shown) for state in seen)
+
+
 def graph_of(roots: Iterable[State]) -> Graph:
     """The graph of state formulas and all they are made of."""
     seen: set[State] = set()

@@ -1,7 +1,11 @@
-"""Packing plans: what must hold of the bytes whatever is specified."""
+"""Packing plans: what must hold of the bytes, whatever is specified."""
 
+import os
 import random
+import re
 import subprocess
+import sys
+from collections.abc import Iterator
 from enum import IntEnum
 from pathlib import Path
 
@@ -14,37 +18,89 @@ from tests.tools.plan_reader import (
     enumerators,
     layouts,
     size_of,
+    size_of_form,
     walk,
 )
 
 import rvmon
+from rvmon.automaton.automaton import Automaton
 from rvmon.core.atoms import AtomOp
 from rvmon.core.forms import Operator
 from rvmon.core.nodes import NodeOp
-from rvmon.core.plan import pack
+from rvmon.core.plan import Packed, pack
 from rvmon.core.programs import DEPTH, Code
-from rvmon.core.sections import HEADER as HEADER_RECORD
 from rvmon.core.sections import RECORDS, Section
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.plan.plan import Plan as Planned
 from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]
 WRITTEN = sorted([*ROOT.glob("specs/*.rv"), *ROOT.glob("examples/**/*.rv")])
 
+MANY = Profile(many=20)
 
-def packed(text: str):
-    """The plan of a specification."""
-    return pack(plan_alone(rvmon.loads(text)._compiled))
+EVERYTHING = """
+spec everything
+time held
+signal p, q : bool
+signal x : real   stale after 2 s
+signal mode : {red, green}
+event e(k: int)
+event f
+requirement R1
+  upon e.k > 2 and once[1 s, 3 s] p
+  then within 3 s held(q or x > 1, 1 s)
+requirement R2
+  whenever (p since[0 s, 5 s] q) or held(q, 2 s)
+  then within 2 s mode == green
+requirement R3
+  upon rise(p) or changed(x)
+  then (abs(delta(x)) < 1 or rate(x) > 2 or prev(x) + 1 > max(x, 2))
+    until[0 s, 4 s] (f or not known(x))
+requirement R4
+  upon end
+  then p
+requirement R5
+  upon f
+  then F[0 s, 2 s] once[0 s, 2 s] (q and within 1 s p)
+requirement R6
+  whenever p
+  then within 2 s x > abs(v) + w
+  let v = delta(x)
+  let w = x
+requirement R7
+  upon e and once[0 s, 2 s] e.k == i - 1
+  then F[0 s, 2 s] once[0 s, 2 s] x > v
+  for each i in e.k
+  let v = x
+"""
+"""Something of each kind."""
+
+DIAGRAM = (
+    "spec s\n"
+    + "".join(f"signal s{n} : bool\n" for n in range(18))
+    + "requirement R\n  upon start\n  then "
+    + " or ".join(f"(within {n + 1} s s{n})" for n in range(18))
+)
+"""A requirement with more letters than stand in a table."""
 
 
-def plan_of(seed: int):
+def planned(text: str) -> Planned:
+    """The plan of a specification, as it is to be packed."""
+    return plan_alone(rvmon.loads(text)._compiled, diagrams=True)
+
+
+def packed(text: str) -> Packed:
+    """The bytes of a specification."""
+    return pack(planned(text))
+
+
+def drawn(seed: int) -> Planned | None:
     """The plan of a random specification; `None` if it is refused."""
-    rng = random.Random(seed)
-    checked = random_spec(rng, Profile(many=20))
     try:
-        return plan_alone(CompiledSpec(checked))
+        return plan_alone(CompiledSpec(random_spec(random.Random(seed), MANY)), diagrams=True)
     except RvmonError:
         return None
 
@@ -59,9 +115,197 @@ def test_every_index_of_a_written_specification_is_in_its_bounds(path):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("seed", range(60))
-def test_every_index_of_a_random_specification_is_in_its_bounds(seed):
-    """Every record leads where it should."""
-    plan = plan_of(seed)
-    if plan is not None:
+@pytest.mark.parametrize("part", range(4))
+def test_every_index_of_random_specifications_is_in_its_bounds(part):
+    """Every record leads where it should, and all are somebody's."""
+    plans = [drawn(seed) for seed in range(20 * part, 20 * (part + 1))]
+    assert sum(plan is not None for plan in plans) >= 15
+    for plan in filter(None, plans):
         walk(Plan(pack(plan).data))
+
+
+@pytest.mark.parametrize("section", list(SECTIONS))
+def test_the_walk_finds_an_index_out_of_its_bounds(section):
+    """It fails where a number of a record is changed to a large one, for each kind of record."""
+    data = packed(EVERYTHING).data
+    plan = Plan(data)
+    begin, end = plan.places[plan.names.index(section)]
+    size = size_of(SECTIONS[section])
+    assert end > begin
+    found = 0
+    for at in range(begin, begin + size, 4):
+        changed = bytearray(data)
+        changed[at : at + 4] = (1 << 30).to_bytes(4, sys.byteorder)
+        try:
+            walk(Plan(bytes(changed)), is_whole=False)
+        except (AssertionError, IndexError):
+            found += 1
+    assert found >= 1
+
+
+@pytest.mark.law
+def test_automata_are_those_of_their_judges():
+    """Each row leads where the automaton does that was constructed."""
+    seen = 0
+    for seed in range(40):
+        plan = drawn(seed)
+        if plan is None:
+            continue
+        read = Plan(pack(plan).data)
+        judges = iter(read.records["JUDGES"])
+        for part in (plan, *plan.units):
+            for (_, rule), judge in zip(part.judges, judges, strict=False):
+                assert (rule.automaton is None) == (judge["automaton"] < 0)
+                if rule.automaton is not None:
+                    made = read.records["AUTOMATA"][judge["automaton"]]
+                    assert list(_edges_read(read, made)) == list(_edges(rule.automaton))
+                    seen += 1
+    assert seen >= 40
+
+
+def _edges(automaton: Automaton) -> Iterator[object]:
+    """Per row and class, where an edge leads; where no run comes, any does."""
+    for row in range(len(automaton.time_values)):
+        for kind in range(automaton.classes):
+            edge = automaton.edges[row * automaton.classes + kind]
+            yield row, kind, (automaton.targets[max(edge, 0)], automaton.sources[max(edge, 0)])
+
+
+def _edges_read(plan: Plan, a: dict[str, int]) -> Iterator[object]:
+    widths = plan.run("INTS", a["widths"], a["locations"])
+    edges = plan.run("INTS", a["edges"], a["rows"] * a["classes"])
+    targets = plan.run("INTS", a["targets"], a["targets_count"])
+    sources = plan.run("INTS", a["sources"], a["targets_count"] * a["clocks"])
+    for place, edge in enumerate(edges):
+        first = edge * a["clocks"]
+        own = sources[first : first + widths[targets[edge]]]
+        yield place // a["classes"], place % a["classes"], (targets[edge], own)
+
+
+def test_letters_of_many_propositions_are_classed_by_a_diagram():
+    """A diagram leads each letter to the class that the automaton has it in."""
+    plan = planned(DIAGRAM)
+    read = Plan(pack(plan).data)
+    walk(read)
+    (rule,) = plan.rules
+    assert rule.automaton is not None
+    (judge, *_) = read.records["JUDGES"]
+    assert judge["diagram"] >= 0
+    rng = random.Random(1)
+    for _ in range(200):
+        truths = [rng.choice((0, 2, 2, 1)) for _ in rule.alphabet.propositions]
+        for reading, weights in ((0, rule.alphabet.pessimistic), (3, rule.alphabet.optimistic)):
+            letter = sum(own[truth] for own, truth in zip(weights, truths, strict=True))
+            place = judge["diagram"]
+            while place >= 0:
+                decided = read.run("INTS", place, 1)[0]
+                (digit,) = read.run("INTS", place + 1 + reading + truths[decided], 1)
+                (place,) = read.run("INTS", place + 8 + digit, 1)
+            assert ~place == rule.automaton.class_of[letter]
+
+
+def test_equal_shapes_share_all_but_their_bounds():
+    """Requirements that differ in names and deadlines have one automaton's tables."""
+    text = "spec s\nsignal p, q, r, s, t, u : bool\n" + "".join(
+        f"requirement R{n}\n  upon {a}\n  then within {n + 1} s {b}\n"
+        for n, (a, b) in enumerate(("pq", "rs", "tu"))
+    )
+    texts = text[: text.index("requirement R1")], text
+    one, three = (Plan(packed(part).data) for part in texts)
+    assert len(three.numbers["INTS"]) == len(one.numbers["INTS"])
+    assert len(three.records["AUTOMATA"]) == 3 * len(one.records["AUTOMATA"])
+    same = text.replace("within 2 s", "within 1 s").replace("within 3 s", "within 1 s")
+    assert len(Plan(packed(same).data).records["AUTOMATA"]) == len(one.records["AUTOMATA"])
+
+
+@pytest.mark.process
+def test_packing_is_deterministic():
+    """Other processes, with other hashes of texts, make the same bytes."""
+    script = (
+        "import hashlib, rvmon\n"
+        "from rvmon.core.plan import pack\n"
+        "from rvmon.monitor.compiled.code_plan import plan_alone\n"
+        f"spec = rvmon.load({str(ROOT / 'specs' / 'handover_truth.rv')!r})\n"
+        "print(hashlib.sha256(pack(plan_alone(spec._compiled)).data).hexdigest())\n"
+    )
+    found = {
+        subprocess.run(  # noqa: S603
+            [sys.executable, "-c", script],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for seed in ("1", "2", "3")
+    }
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize(
+    ("prefix", "numbers"),
+    [("SEC_", Section), ("ATOM_", AtomOp), ("NODE_", NodeOp), ("OP_", Operator), ("CODE_", Code)],
+)
+def test_what_c_enumerates_has_the_same_numbers(prefix: str, numbers: type[IntEnum]):
+    """Each name of plan.h is one of ours, with its number."""
+    found = {name[len(prefix) :]: n for name, n in enumerators().items() if name.startswith(prefix)}
+    assert found == {one.name: one.value for one in numbers}
+
+
+def test_programs_have_the_depth_of_c():
+    """The stack has the same room on both sides."""
+    (depth,) = re.findall(r"#define PROGRAM_DEPTH (\d+)", HEADER.read_text(encoding="utf-8"))
+    assert int(depth) == DEPTH
+
+
+@pytest.mark.compiler
+def test_records_have_the_layout_that_c_gives_them(tmp_path):
+    """Sizes and offsets are those of the types of plan.h."""
+    lines = []
+    for type_, fields in layouts().items():
+        if type_ != "list":
+            lines.append(f'printf("{type_} %d\\n", (int)sizeof({type_}));')
+            lines += [
+                f'printf("{type_}.{own} %d\\n", (int)offsetof({type_}, {own}));'
+                for own, _ in fields
+            ]
+    source = tmp_path / "sizes.c"
+    head = '#include <stdio.h>\n#include "plan.h"\nint main(void)\n{\n'
+    source.write_text("\n".join([head, *lines, "return 0;\n}\n"]), encoding="utf-8")
+    program = tmp_path / "sizes"
+    command = ["gcc", *STRICT, f"-I{HEADER.parent}", str(source), "-o", str(program)]
+    subprocess.run(command, check=True)  # noqa: S603
+    printed = subprocess.run([program], check=True, capture_output=True, text=True)  # noqa: S603
+    found = dict(line.split() for line in printed.stdout.splitlines())
+    for type_, fields in layouts().items():
+        if type_ != "list":
+            assert int(found.pop(type_)) == size_of(type_)
+            offset = 0
+            for own, form in fields:
+                assert int(found.pop(f"{type_}.{own}")) == offset
+                offset += size_of_form(form)
+    assert not found
+    for name, type_ in SECTIONS.items():
+        assert RECORDS[Section[name]].size == size_of(type_)
+
+
+def test_expressions_deeper_than_the_stack_are_refused():
+    """One that fits is packed, and one that nests a level deeper is refused."""
+
+    def nested(depth: int) -> str:
+        deep = "".join("1 + (x * (" for _ in range(depth // 2)) + "x" + "))" * (depth // 2)
+        return f"spec s\nsignal x : real\nrequirement R\n  always {deep} > x\n"
+
+    walk(Plan(packed(nested(30)).data))
+    with pytest.raises(RvmonError, match="nested deeper than 31"):
+        packed(nested(32))
+
+
+def test_whole_numbers_beyond_64_bits_are_refused_unless_they_are_doubles():
+    """A power of two is a double; its neighbour is not."""
+    text = "spec s\nsignal n : int\nrequirement R\n  always n < {}\n"
+    (number,) = Plan(packed(text.format(2**70)).data).records["NUMBERS"][-1:]
+    assert number["kind"] == 2
+    with pytest.raises(RvmonError, match="more digits"):
+        packed(text.format(2**70 + 1))
+    (number,) = Plan(packed(text.format(2**63 - 1)).data).records["NUMBERS"][-1:]
+    assert number == {"kind": 1, "as": 2**63 - 1}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.errors import UnknownNameError
 from rvmon.formula.core import Literal
 from rvmon.formula.state import State
@@ -50,10 +51,14 @@ def _rule(
     hidden: bool = False,
     measured: bool = False,
     stepped: bool = False,
+    diagrams: bool = False,
 ) -> PlannedRule:
-    # In this process what judges attempts in doubt is made when one comes up.
-    is_judged = hidden or (one.follows_windows and not (measured or stepped))
-    automaton = None if is_judged and explained else _planned(one, explained)
+    if explained:
+        # In this process what judges attempts in doubt is made when one comes up.
+        is_judged = hidden or (one.follows_windows and not (measured or stepped))
+        automaton = None if is_judged or of_tables(one) is not None else one.automaton
+    else:
+        automaton = _slim(one, diagrams)
     obligation = one.obligation
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
@@ -61,7 +66,8 @@ def _rule(
     def beside(other: CompiledRequirement | None) -> PlannedRule | None:
         if other is None:
             return None
-        return _rule(other, explained=explained, hidden=True, measured=measured)
+        how = {"explained": explained, "measured": measured, "diagrams": diagrams}
+        return _rule(other, hidden=True, **how)
 
     read = [core for _, core in one.measured_plan.leaves] if measured else []
     return PlannedRule(
@@ -92,15 +98,20 @@ def _blurs(one: CompiledRequirement) -> State | None:
     return obligation.doubt or (obligation.trigger if one.is_beside else None)
 
 
-def _planned(requirement: CompiledRequirement, explained: bool) -> Automaton | None:
-    """The automaton of a requirement that generated code is to step; `None`: a judge does."""
-    if of_tables(requirement) is not None:
+def _slim(requirement: CompiledRequirement, diagrams: bool) -> Automaton | None:
+    """The automaton that is stepped without rvmon; `None`: a network judges."""
+    found = requirement.slim
+    if found is None or (isinstance(found.class_of, LetterDiagram) and not diagrams):
         return None
-    return requirement.automaton if explained else requirement.slim
+    return found
 
 
 def plan_alone(
-    compiled: CompiledSpec, only: Iterable[str] | None = None, *, measured: bool = False
+    compiled: CompiledSpec,
+    only: Iterable[str] | None = None,
+    *,
+    measured: bool = False,
+    diagrams: bool = False,
 ) -> Plan:
     """The plan of what is to run without rvmon.
 
@@ -108,6 +119,7 @@ def plan_alone(
         compiled: the specification.
         only: ids of its requirements; default all.
         measured: see `plan_requirements`.
+        diagrams: whether automata may have diagrams of their letters.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
@@ -122,5 +134,6 @@ def plan_alone(
         refuse(chosen, of_measured_c, "compiled C, which measures,")
     else:
         refuse(chosen, of_c, "generated code")
-    rules = [_rule(one, explained=False, measured=measured) for one in chosen]
+    how = {"explained": False, "measured": measured, "diagrams": diagrams}
+    rules = [_rule(one, **how) for one in chosen]
     return plan_in_units(compiled.checked, rules)

@@ -13,6 +13,7 @@ from rvmon.automaton.forecast import Forecaster
 from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
+from rvmon.automaton.shapes import Shapes
 from rvmon.automaton.table import TableMachine
 from rvmon.codegen.python_windows import windows_class
 from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
@@ -29,7 +30,7 @@ from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
-from rvmon.plan.graph import Graph, graph_of, leaf_texts
+from rvmon.plan.graph import Graph, graph_of, leaf_count, leaf_texts
 from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
@@ -63,12 +64,14 @@ class CompiledRequirement:
         requirement: Requirement,
         obligation: Obligation,
         factory: Factory,
+        shapes: Shapes,
         *,
         is_beside: bool = False,
         measured: Callable[[], Obligation] | None = None,
         measures: bool = False,
     ) -> None:
         self._factory = factory
+        self._shapes = shapes
         self.is_beside = is_beside
         self._measured = measured
         self.measures = measures
@@ -87,8 +90,7 @@ class CompiledRequirement:
         if self.network_plan.looks_back:
             return DoesNotCloseError("something of the future below an operator of the past")
         try:
-            budget = _BESIDE if self.is_beside else Budget()
-            return reduce(construct(self._owed, self.alphabet, budget), self.words.label)
+            return reduce(construct(self._owed, self.alphabet, self._budget), self.words.label)
         except DoesNotCloseError as error:
             return error.with_traceback(None)  # which would keep the frames of whoever asked
 
@@ -100,7 +102,11 @@ class CompiledRequirement:
     @cached_property
     def slim(self) -> Automaton | None:
         """Its automaton for those who are given verdicts only: what is owed may be merged."""
-        return None if self.automaton is None else reduce(self.automaton)
+        return self._shapes.reduced(self._owed, self.alphabet, self._budget)
+
+    @property
+    def _budget(self) -> Budget:
+        return _BESIDE if self.is_beside else Budget()
 
     @property
     def refusal(self) -> str:
@@ -115,7 +121,7 @@ class CompiledRequirement:
             and self.obligation.trigger is not None
             and not requirement.captures
             and requirement.for_each is None
-            and len(self.leaves) <= MOST_SEEN
+            and leaf_count(self._read) <= MOST_SEEN
             and moves_in_runs(automaton)
         )
 
@@ -161,6 +167,7 @@ class CompiledRequirement:
             self.requirement,
             obligation,
             self._factory,
+            self._shapes,
             is_beside=True,
             measured=lambda: measured() or obligation,
             measures=self.measures,
@@ -229,8 +236,8 @@ class CompiledRequirement:
     @cached_property
     def measuring(self) -> CompiledRequirement:
         """The same for runs in which evaluators work out what is measured."""
-        given = (self.rank, self.spec, self.requirement, self.obligation, self._factory)
-        return CompiledRequirement(*given, measures=True)
+        given = (self.rank, self.spec, self.requirement, self.obligation)
+        return CompiledRequirement(*given, self._factory, self._shapes, measures=True)
 
     def network_delay(self, letter: Sequence[bool]) -> int:
         """Ticks that pass in its delay network until an attempt that begins can be decided."""
@@ -308,8 +315,13 @@ class CompiledRequirement:
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:
         """What it reads of the input, with its text."""
-        trigger = [] if self.obligation.trigger is None else [self.obligation.trigger]
-        return leaf_texts(graph_of([*trigger, *self.alphabet.propositions]))
+        return leaf_texts(graph_of(self._read))
+
+    @property
+    def _read(self) -> Sequence[State]:
+        """The state formulas whose leaves are shown of it."""
+        trigger = self.obligation.trigger
+        return (*(() if trigger is None else (trigger,)), *self.alphabet.propositions)
 
     @cached_property
     def reads(self) -> frozenset[str]:
@@ -355,7 +367,7 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
     Raises:
         RvmonError: one is beyond all engines; which one and why is in the message.
     """
-    factory = Factory()
+    factory, shapes = Factory(), Shapes()
     made = {}
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
         try:
@@ -366,5 +378,5 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
             raise RvmonError(
                 f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
             ) from None
-        made[name] = CompiledRequirement(rank, checked, requirement, obligation, factory)
+        made[name] = CompiledRequirement(rank, checked, requirement, obligation, factory, shapes)
     return made
