@@ -57,11 +57,11 @@ typedef struct {
     bool failed;
 } gathering;
 
-/* Write down what an attempt captured; further places are left as they are. */
+/* Write down what an attempt captured, if anything; further places are left as they are. */
 static void copy_captured(const monitor *c, const rv_record *record, const rv_number *captured,
                           rv_number *to)
 {
-    if ((record->captured >= 0) && (captured != NULL)) {
+    if (captured != NULL) {
         (void)memcpy(to, captured, (size_t)c->captured[record->requirement] * sizeof *to);
     }
 }
@@ -86,6 +86,7 @@ static bool gather(void *user, const rv_record *record, const rv_number *capture
         g->room = room;
     }
     g->records[g->count] = *record;
+    g->records[g->count].captured = (captured != NULL) ? 0 : -1;
     copy_captured(g->c, record, captured, &g->captured[(size_t)g->count * most]);
     g->count++;
     return true;

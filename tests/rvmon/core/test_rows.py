@@ -1,4 +1,4 @@
-"""The engine `c`: what it refuses, and what it says where columns are missing."""
+"""Recordings that the core judges: as other engines do, what is refused, what is missing."""
 
 import math
 
@@ -7,8 +7,6 @@ import pytest
 
 import rvmon
 from rvmon.errors import UnknownNameError
-
-pytestmark = pytest.mark.compiler
 
 
 def spec_of(declared: str, owed: str) -> rvmon.Spec:

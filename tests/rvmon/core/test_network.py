@@ -1,17 +1,10 @@
-"""Generated C where no automaton judges: delay networks, their capacities, what they foresee."""
+"""Where no automaton judges in the core: delay networks, and what they foresee."""
 
-import json
 import random
-import subprocess
 
 import pytest
-from tests.tools.gcc import SANITIZED, STRICT
 
 import rvmon
-from rvmon.cli import main
-from rvmon.codegen.c_source import c_files
-
-pytestmark = pytest.mark.compiler
 
 S = 10**9
 
@@ -116,7 +109,7 @@ def test_what_stays_unknown_while_nobody_looks_fails_nothing():
 
 
 def test_columns_are_judged_alike():
-    """Whole columns by the same C."""
+    """Whole columns by the same networks."""
     spec = rvmon.loads(text_of(FORMS["nested"]))
     rng = random.Random(3)
     columns = {
@@ -130,30 +123,6 @@ def test_columns_are_judged_alike():
     assert found[0] == found[1]
 
 
-def test_a_program_judges_a_recording(tmp_path, capsys):
-    """What `rvmon build` makes prints what `rvmon run` does."""
-    spec, trace = tmp_path / "s.rv", tmp_path / "a.csv"
-    spec.write_text(text_of(FORMS["later"]))
-    rng = random.Random(4)
-    lines = [f"{0.7 * row:.1f},{rng.randint(0, 1)},{rng.randint(0, 3) // 3}" for row in range(500)]
-    trace.write_text("\n".join(["t,p,q", *lines, ""]))
-    assert main(["build", str(spec), "-o", str(tmp_path / "judge")]) == 0
-    done = subprocess.run(  # noqa: S603
-        [tmp_path / "judge", str(trace)], capture_output=True, text=True, check=False
-    )
-    capsys.readouterr()
-    code = main(["run", str(spec), str(trace), "--format", "json", "--engine", "network"])
-    judged, run = json.loads(done.stdout), json.loads(capsys.readouterr().out)
-    assert (done.returncode, code) == (1, 1)
-    kept = ("number", "triggered", "decided", "verdict", "decision")
-    attempts = [
-        [{key: one[key] for key in kept} for one in made["requirements"]["R1"]["attempts"]]
-        for made in (judged, run)
-    ]
-    assert len(attempts[0]) > 20
-    assert attempts[0] == attempts[1]
-
-
 def test_what_time_alone_decides_is_foreseen():
     """`next_due` is the instant, however far away; then time alone decides."""
     spec = rvmon.loads(text_of("whenever p then F[3600 s, 7200 s] G[1 s, 2 s] q"))
@@ -165,79 +134,3 @@ def test_what_time_alone_decides_is_foreseen():
     assert not monitor.advance_ns(due - 1)
     [failed] = monitor.advance_ns(100_000 * S)
     assert (failed.decided, failed.verdict) == (due, "F")
-
-
-MAIN = """
-#include "s.c"
-#include <stdio.h>
-static s_monitor m;
-static s_attempt attempts[ATTEMPTS];
-static long told[4];
-static void hear_of(void *user, const s_record *r) { (void)user; told[r->verdict]++; }
-int main(void) {
-    uint32_t dice = 1;
-    int run, i, j, full = 0;
-    for (run = 0; run < 3; run++) {
-        int64_t t = -1000000000;
-        s_init(&m, attempts, ATTEMPTS, hear_of, NULL);
-        for (i = 0; i < 1500; i++) {
-            s_sample sample;
-            memset(&sample, 0, sizeof sample);
-            for (j = 0; j < 4; j++) {
-                dice = dice * 1664525u + 1013904223u;
-                sample.signal[j] = (dice >> 28) ? s_YES : s_UNKNOWN;
-                sample.value[j] = (j < 2) ? (dice >> 20) & 1u : ((dice >> 16) & 63u) / 10.0;
-            }
-            sample.event[0] = (dice >> 10) % 3u ? s_NOTHING : s_YES;
-            t += 1 + (int64_t)(dice >> 12) * ((dice >> 8) % 3u) * 500;
-            if (!s_step(&m, t, &sample)) { return 1; }
-            if (i % 5 == 0 && s_next_due(&m) <= t) { return 2; }
-            if (i % 70 == 0) { t += 1000; s_advance(&m, t); }
-        }
-        if (!s_finish(&m, INT64_MIN)) { return 3; }
-        full = full || s_overflowed(&m);
-    }
-    printf("%ld %ld %ld %d\\n", told[0], told[1], told[2], full);
-    return 0;
-}
-"""
-
-
-def driven(text, folder, ranges, attempts=4000):
-    """What C tells of random samples: failed, passed, undecided, and whether room ran out."""
-    for name, source in c_files(rvmon.loads(text).plan()).texts.items():
-        (folder / name).write_text(source)
-    (folder / "main.c").write_text(MAIN)
-    flags = [*STRICT, *SANITIZED, f"-DS_RANGES={ranges}", f"-DATTEMPTS={attempts}"]
-    for words in (["gcc", *flags, "main.c", "-o", "main"], ["./main"]):
-        done = subprocess.run(  # noqa: S603
-            words, cwd=folder, capture_output=True, text=True, check=False, timeout=60
-        )
-        assert done.returncode == 0, done.stderr
-    return [int(word) for word in done.stdout.split()]
-
-
-@pytest.mark.parametrize(
-    ("model", "ranges", "attempts"),
-    [
-        (MODELS[0], 1, 4000),
-        (MODELS[0], 4096, 4000),
-        (MODELS[0], 4096, 9),
-        (MODELS[1], 3, 4000),
-        (MODELS[2], 1, 4000),
-        (MODELS[2], 4096, 4000),
-    ],
-)
-def test_networks_run_clean(model, ranges, attempts, tmp_path):
-    """No finding of the sanitizers; a capacity that is too small is told and harms nothing."""
-    forms = [form for name, form in FORMS.items() if name != "doubt"]
-    head = text_of("", model).partition("requirement")[0]
-    text = head + "".join(f"requirement R{n}\n  {form}\n" for n, form in enumerate(forms))
-    assert driven(text, tmp_path, ranges, attempts)[-1] == (ranges < 100 or attempts < 100)
-
-
-def test_where_room_ran_out_nothing_passes_at_the_end(tmp_path):
-    """What is to hold for ever is not held to the end if not all of it was kept."""
-    failed, passed, undecided, full = driven(text_of(FORMS["for ever"]), tmp_path, ranges=1)
-    assert (failed, passed, full) == (0, 0, 1)
-    assert undecided > 1000

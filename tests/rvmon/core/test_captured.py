@@ -1,17 +1,11 @@
-"""C of requirements with `let` and `for each`: a monitor for each instance and attempt."""
+"""Requirements with `let` and `for each` in the core: a run for each instance and attempt."""
 
 import json
-import subprocess
 
 import pytest
-from tests.tools.gcc import SANITIZED, STRICT
 
 import rvmon
-from rvmon.cli import main
-from rvmon.codegen.c_source import c_files
 from rvmon.testing.compare import outcomes
-
-pytestmark = pytest.mark.compiler
 
 SPEC = """
 spec s
@@ -37,92 +31,11 @@ requirement R4 "both, looking at what was before"
   for each k in go.id
   let a = x / 3
 """
-ROWS = """t,x,mode,go.id,done.id
-0,1,red,,
-0.5,2.25,green,1,
-0.5,,,2,
-1,6,red,,2
-2,7,green,2,
-3,1,,1,
-4,8,,,1
-5,2,,3,
-6,9,,2,3
-9,9,,,
-"""
-
-
-def told(report):
-    """The verdicts in a report, and its attempts without reasons."""
-    keys = ("number", "triggered", "decided", "verdict", "decision", "captured", "decided_s")
-    return {
-        name: (one["verdict"], [[each.get(key) for key in keys] for each in one["attempts"]])
-        for name, one in json.loads(report)["requirements"].items()
-    }
-
-
-def test_the_program_judges_as_run_does(tmp_path, capfd):
-    """Verdicts, instants and captured values, two payloads at one instant among them."""
-    (tmp_path / "s.rv").write_text(SPEC)
-    (tmp_path / "x.csv").write_text(ROWS)
-    assert main(["build", str(tmp_path / "s.rv"), "-o", str(tmp_path / "judge")]) == 0
-    capfd.readouterr()
-    done = subprocess.run(  # noqa: S603
-        [tmp_path / "judge", tmp_path / "x.csv"], capture_output=True, text=True, check=False
-    )
-    main(["run", str(tmp_path / "s.rv"), str(tmp_path / "x.csv"), "--format", "json"])
-    by_c, by_python = map(told, (done.stdout, capfd.readouterr().out))
-    assert by_c == by_python
-    assert sum(len(attempts) for _, attempts in by_c.values()) > 10
-
-
-def test_two_payloads_for_who_reads_them_otherwise_are_refused(tmp_path):
-    """The program says so where not all that reads the fields has `for each`."""
-    text = f"{SPEC}requirement R5\n  upon go.id > 1\n  then x > 0\n"
-    (tmp_path / "s.rv").write_text(text)
-    (tmp_path / "x.csv").write_text(ROWS)
-    assert main(["build", str(tmp_path / "s.rv"), "-o", str(tmp_path / "judge")]) == 0
-    done = subprocess.run(  # noqa: S603
-        [tmp_path / "judge", tmp_path / "x.csv"], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert "two payloads of one event" in done.stderr
-
-
-def test_a_capacity_that_is_too_small_is_told(tmp_path):
-    """Without a heap there is room for so many instances, attempts, values and samples."""
-    made = c_files(rvmon.loads(SPEC).plan(only=["R2", "R3", "R4"]))
-    for name, text in made.texts.items():
-        (tmp_path / name).write_text(text)
-    (tmp_path / "main.c").write_text(
-        """
-        #include "s.h"
-        int main(void)
-        {
-            static s_monitor m;
-            int i;
-            s_init(&m, 0, 0, 0, 0);
-            for (i = 0; i < 6; i++) {
-                s_sample sample = {{0}, {0}, {0}, {0}, 0};
-                sample.event[0] = s_YES;
-                sample.field[0] = i;
-                (void)s_step(&m, 100000000LL * i, &sample);
-            }
-            (void)s_finish(&m, INT64_MIN);
-            return s_overflowed(&m) ? 1 : 0;
-        }
-        """
-    )
-    sources = [f"{made.prefix}.c", *made.units, "main.c"]
-    for small in ("", "-DS_INSTANCES=4", "-DS_ATTEMPTS=4", "-DS_KEYS=4", "-DS_HISTORY=4"):
-        words = ["gcc", *STRICT, *SANITIZED, *small.split(), *sources, "-o", "main"]
-        subprocess.run(words, cwd=tmp_path, check=True)  # noqa: S603
-        done = subprocess.run([tmp_path / "main"], check=False)  # noqa: S603
-        assert done.returncode == bool(small), small
 
 
 @pytest.mark.parametrize("only", [["R2"], ["R3"], ["R4"]])
 def test_many_at_once_and_forgotten(only):
-    """With a heap there is room for all; an instance that is over begins anew."""
+    """There is room for all; an instance that is over begins anew."""
     spec = rvmon.loads(SPEC)
     trace = [
         (0.25 * n, {"x": n % 7, "go": {"id": n % 90}, "done": {"id": (n * 7) % 50}})

@@ -1,0 +1,431 @@
+"""The type of the core: what it takes, what it refuses, what it leaves behind."""
+
+import gc
+import random
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rvmon
+from rvmon.core._core import Monitor as Run
+from rvmon.monitor import compile_spec
+from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.monitor.core.recorded import NUMBER, RECORD
+
+SPEC = """
+spec odd "All that is laid out"
+signal p, q : bool
+signal x : real   stale after 2 s
+signal n : int
+signal mode : {red, green}
+event e(k: int, where: {left, right})
+event f
+requirement R1 "a"
+  upon e.k > 2 and e.where == left and once[1 s, 3 s] p
+  then within 3 s held(q or x > 1, 1 s)
+requirement R2 "b"
+  always (f -> (p since[0 s, 5 s] (mode == green)) or n > 3)
+requirement R3 "c"
+  upon e
+  then within 1 s x > v
+  for each i in e.k
+  let v = x
+"""
+
+WAITING = """
+spec waiting
+signal p, q : bool
+requirement R1
+  upon p
+  then within 1 h q
+requirement R2
+  upon p
+  then within 2 h q
+"""
+
+NUMBERS = ("p", "q", "x", "n", "mode", "e", "f")
+"""The names, in their order."""
+
+
+def planned_of(text: str = SPEC) -> PlannedCore:
+    """A packed specification."""
+    compiled = compile_spec(rvmon.loads(text).checked)
+    return planned_core(compiled, compiled.chosen(None))
+
+
+@pytest.fixture(scope="module")
+def planned() -> PlannedCore:
+    """The specification above."""
+    return planned_of()
+
+
+@pytest.fixture
+def run(planned) -> Run:
+    """A run of it; what takes a closer look raises `LookupError`."""
+    return planned.monitor(frozenset(), closer, closer)
+
+
+def closer(*given: object, **named: object) -> list[rvmon.Attempt]:
+    """What a sample is left to."""
+    raise LookupError(given, named)
+
+
+def test_samples_of_all_kinds_most_of_them_wrong():
+    """Nothing that comes breaks a monitor, and no attempt is damaged."""
+    rng = random.Random(1)
+    odd: list[Any] = [None, float("nan"), 7, 1 << 61, 1 << 70, "red", "none", {"k": None}, {}]
+    odd += [{"k": 3, "where": "left"}, {"z": 1}, (), ({"k": 1},), ({"k": 1}, {"k": 2}), [], True]
+    odd += [False, 0.5, object(), b"red"]
+    names: list[Any] = [*NUMBERS, "z", 3]
+    monitor = rvmon.loads(SPEC).monitor(engine="c")
+    kept: list[rvmon.Attempt] = []
+    refused = 0
+    for _ in range(3):
+        t = 0
+        for row in range(1500):
+            t += rng.choice([1, 10**8, 10**9, -1])
+            count = rng.randint(0, 12)
+            values = {rng.choice(names): rng.choice(odd) for _ in range(count)}
+            try:
+                kept += monitor.step_ns(t, values)
+            except rvmon.RvmonError:
+                refused += 1
+            if row % 100 == 0:
+                kept += monitor.open
+                kept += monitor.advance_ns(max(t, 0))
+        kept += monitor.finish().attempts
+        monitor.reset()
+    assert refused > 500
+    assert len(kept) > 100
+    assert {"R2", "R3"} <= {one.requirement for one in kept}
+    assert all(repr(one) for one in kept)
+
+
+def test_the_collector_steps_in_the_midst_of_a_step():
+    """Attempts are made of copies: what the core holds may move while they are."""
+    monitor = rvmon.loads(WAITING).monitor(engine="c")
+    meanwhile: list[int] = []
+    t = 0
+
+    def step(phase: str, _: dict[str, int]) -> None:
+        if not meanwhile:
+            meanwhile.append(t)
+            for n in range(5000):
+                monitor.step_ns(t + 2 + n, {"p": n % 2 == 0, "q": n % 2 == 1})
+
+    for t in range(1, 3001):
+        monitor.step_ns(t, {"p": t % 2 == 1, "q": False})
+    gc.collect()
+    before = gc.get_threshold()
+    gc.callbacks.append(step)
+    gc.set_threshold(500)  # the step alone makes 3,000 attempts
+    try:
+        decided = monitor.step_ns(t + 1, {"q": True})
+    finally:
+        gc.set_threshold(*before)
+        gc.callbacks.remove(step)
+    told = [(one.requirement, one.number, one.decided) for one in decided]
+    assert meanwhile or sys.version_info >= (3, 12)  # which collect after the call
+    assert told == [(r, n, t + 1) for r in ("R1", "R2") for n in range(1, 1501)]
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"p": 1},
+        {"p": np.bool_(True)},
+        {"n": 1.0},
+        {"n": True},
+        {"n": 1 << 63},
+        {"x": True},
+        {"x": "1"},
+        {"x": 1 << 64},
+        {"x": np.float32(1)},
+        {"mode": "left"},
+        {"mode": 0},
+        {"e": 1},
+        {"e": {"z": 1}},
+        {"e": {3: 1}},
+        {"e": {"k": 1.0}},
+        {"e": [{"k": 1}]},
+        {"e": ({"k": 1}, {"k": 2})},
+        {"e": ({"k": 1}, True)},
+        {"f": {"k": 1}},
+        {"z": True},
+        {3: True},
+        [("p", True)],
+    ],
+)
+@pytest.mark.parametrize("before", [{}, {"q": True, "f": True, "e": {"k": 5}}])
+def test_what_takes_a_closer_look_is_left(run, values, before):
+    """Python gets the call as it was; nothing was taken of it."""
+    given = {**before, **values} if isinstance(values, dict) else values
+    with pytest.raises(LookupError) as left:
+        run.step_ns(7, given)
+    assert left.value.args == ((7, given), {})
+    assert run.times() == (None, None, None)
+    assert run.step_ns(7, {"p": True, "x": 1.5, "e": True}) == ()
+    assert run.times() == (7, 7, 7)
+
+
+def test_calls_of_another_form_are_left(run):
+    """So are times that are no integers, or no floats, and those that are out of order."""
+    calls: list[tuple[Callable[..., object], tuple[object, ...], dict[str, object]]] = [
+        (run.step_ns, (1.0, {}), {}),
+        (run.step_ns, (1 << 62, {}), {}),
+        (run.step_ns, (1 << 70, {}), {}),
+        (run.step_ns, (5,), {"values": {}}),
+        (run.step_ns, (), {}),
+        (run.step_ns, (1, {}, 3), {}),
+        (run.step, (1, {}), {}),
+        (run.step, (4e9, {}), {}),
+        (run.step, (float("nan"), {}), {}),
+        (run.step, (), {"t": 1.0, "values": {}}),
+    ]
+    for call, given, named in calls:
+        with pytest.raises(LookupError) as left:
+            call(*given, **named)
+        assert repr(left.value.args) == repr((given, named))
+    run.step_ns(5, {})
+    for t in (5, 4):
+        with pytest.raises(LookupError):
+            run.step_ns(t, {})
+    run.hold(True)
+    with pytest.raises(LookupError):
+        run.step_ns(9, {})
+    run.hold(False)
+    assert run.step_ns(9, {}) == ()
+
+
+def test_several_payloads_where_they_can_be_told_apart():
+    """They are taken as they come, however many they are."""
+    text = "spec s\nevent e(k: int)\nrequirement R\n  upon e\n  then e.k > 9\n  for each i in e.k\n"
+    run = planned_of(text).monitor(frozenset(), closer, closer)
+    for t, count in enumerate((2, 1, 0, 3000, 5)):
+        payloads = tuple({"k": 8 + k % 5} for k in range(count))
+        decided = run.step_ns(t, {"e": payloads})
+        keys = {payload["k"] for payload in payloads}
+        assert sorted(one.captured["i"] for one in decided) == sorted(keys)
+        assert {str(one.verdict) for one in decided if one.captured["i"] > 9} <= {"P"}
+
+
+def test_rows_are_judged_as_samples(planned):
+    """The same values by columns and by dictionaries give the same records."""
+    rng = np.random.default_rng(3)
+    times = np.cumsum(rng.integers(1, 10**9, 500))
+    p, x = rng.random(500) < 0.5, np.where(rng.random(500) < 0.1, np.nan, rng.random(500) * 2)
+    n, e = rng.integers(0, 6, 500), rng.random(500) < 0.4
+    absent = frozenset({"q", "mode", "f"})
+    by_rows, by_samples = planned.monitor(absent), planned.monitor(absent)
+    says = np.where(e, np.uint8(2), np.uint8(0))
+    columns = ((0, 2, p, None), (2, 0, x, None), (3, 1, n, None), (5, 0, None, says))
+    for start, stop in ((0, 200), (200, 201), (201, 500)):
+        some = tuple(
+            (name, kind, *(None if one is None else one[start:stop].copy() for one in (own, said)))
+            for name, kind, own, said in columns
+        )
+        assert by_rows.rows(times[start:stop].copy(), some) == stop - start
+    for t, *row in zip(times.tolist(), p.tolist(), x.tolist(), n.tolist(), e.tolist(), strict=True):
+        assert by_samples.judge(t, dict(zip(("p", "x", "n", "e"), row, strict=True)), False)
+    for one in (by_rows, by_samples):
+        one.finish(None)
+    assert by_rows.records() == by_samples.records()
+    assert by_rows.counts() == by_samples.counts()
+    assert len(by_rows.records()[0]) > 20 * RECORD.itemsize
+
+
+def test_a_row_that_is_not_later_is_not_taken(run):
+    """Nor is what comes behind it; what stood before is."""
+    assert run.rows(np.array([1, 5, 5, 9]), ()) == 2
+    assert run.times() == (1, 5, 5)
+    assert run.rows(np.array([3]), ()) == 0
+    assert run.rows(np.array([], np.int64), ()) == 0
+    assert run.rows(np.array([6]), ()) == 1
+
+
+TIMES = np.arange(8)
+WRONG: list[tuple[Any, Any]] = [
+    (TIMES, ((2, 0, np.zeros(7), None),)),
+    (TIMES, ((2, 0, np.zeros(16)[::2], None),)),
+    (TIMES, ((2, 0, np.zeros(8, np.float32), None),)),
+    (TIMES, ((2, 0, np.zeros(72, np.uint8)[4:68].view(np.float64), None),)),
+    (TIMES, ((2, 0, np.zeros(8), np.zeros(7, np.uint8)),)),
+    (TIMES, ((2, 0, None, np.zeros(8, np.uint8)),)),
+    (TIMES, ((5, 0, np.zeros(8), np.zeros(8, np.uint8)),)),
+    (TIMES, ((7, 0, None, np.zeros(8, np.uint8)),)),
+    (TIMES, ((-1, 0, np.zeros(8), None),)),
+    (TIMES, ((2, 3, np.zeros(8), None),)),
+    (TIMES, ((2, 0, 5, None),)),
+    (TIMES, ((2, 0),)),
+    (TIMES, (2,)),
+    (TIMES, tuple((2, 0, np.zeros(8), None) for _ in range(8))),
+    (TIMES, []),
+    (5, ()),
+]
+
+
+@pytest.mark.parametrize("given", WRONG)
+def test_columns_that_are_none_are_refused(run, given):
+    """Their sizes, kinds and numbers are looked at before anything is read."""
+    with pytest.raises((ValueError, TypeError, BufferError)):
+        run.rows(*given)
+    assert run.times() == (None, None, None)
+
+
+def parts_of(planned: PlannedCore) -> list[Any]:
+    """The arguments of the type."""
+    kept: list[Any] = []
+
+    class Kept:
+        """Stands in for the type."""
+
+        def __new__(cls, *given: Any) -> Any:
+            kept.extend(given)
+            return None
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rvmon.monitor.core.planned.Run", Kept)
+        planned.monitor(frozenset(), closer, closer)
+    return kept
+
+
+def damaged(planned: PlannedCore) -> Iterator[list[Any]]:
+    """Arguments that do not fit each other."""
+    data, reading, absent, look, attempts = parts_of(planned)
+    numbers, words, kinds, single = reading
+    yield [data[:50], reading, absent, look, attempts]
+    yield [bytes(len(data)), reading, absent, look, attempts]
+    yield [data, (numbers, words[1:], kinds, single), absent, look, attempts]
+    yield [data, (numbers, words, kinds[1:], single), absent, look, attempts]
+    yield [data, (numbers, words, kinds, single[1:]), absent, look, attempts]
+    yield [data, (numbers, tuple(None for _ in words), kinds, single), absent, look, attempts]
+    yield [data, reading, absent[1:], look, attempts]
+    for place, wrong in ((1, ()), (1, tuple(range(9))), (2, ()), (6, ()), (6, (0, 0, 9))):
+        yield [data, reading, absent, look, (*attempts[:place], wrong, *attempts[place + 1 :])]
+    yield [data, reading, absent, look]
+    yield [3, reading, absent, look, attempts]
+
+
+def test_arguments_that_do_not_fit_are_refused(planned):
+    """Nothing is made of them."""
+    assert Run(*parts_of(planned)).times() == (None, None, None)
+    for given in damaged(planned):
+        with pytest.raises((ValueError, TypeError)):
+            Run(*given)
+
+
+def test_names_and_fields_of_wrong_numbers_are_left(planned):
+    """A number that is none of the plan's is as good as none."""
+    data, (numbers, words, *rest), *others = parts_of(planned)
+    odd = ({**numbers, "p": 7, "q": -1}, (*words[:5], {"k": 2, "where": -1}, *words[6:]), *rest)
+    run = Run(data, odd, *others)
+    for values in ({"p": True}, {"q": True}, {"e": {"k": 1}}, {"e": {"where": "left"}}):
+        with pytest.raises(LookupError):
+            run.step_ns(1, values)
+
+
+def test_the_layout_of_records_is_that_of_numpy(planned):
+    """The bytes of a run are whole records, and for each as many numbers as any captures."""
+    run = planned.monitor(frozenset())
+    assert run.judge(0, {"x": 0.5, "e": ({"k": -3}, {"k": 2})}, True)
+    run.finish(5 * 10**9)
+    records, numbers = run.records()
+    made = np.frombuffer(records, RECORD)
+    captured = np.frombuffer(numbers, NUMBER).reshape(len(made), 2)
+    own = made["requirement"] == 2
+    assert made["number"][own].tolist() == [1, 2]
+    assert made["decided"][own].tolist() == [10**9 + 1] * 2
+    assert captured["kind"][own].tolist() == [[1, 2], [1, 2]]
+    assert captured["bits"][own][:, 0].tolist() == [-3, 2]
+    assert captured["bits"][own][:, 1].tolist() == [np.float64(0.5).view(np.int64)] * 2
+
+
+def everything(planned: PlannedCore, wrong: list[list[Any]]) -> None:
+    """All calls of a run, and all ways to fail in them."""
+    run = planned.monitor(frozenset({"q"}), closer, closer)
+    samples: list[Any] = [{}, {"p": True, "x": 1.0}, {"z": 1}, {"e": ({"k": 1}, {"k": 2})}, {3: 1}]
+    samples += [{"e": tuple({"k": k} for k in range(50))}, {"e": ({"k": 1}, 3)}, {"n": 2**70}]
+    samples += [{"mode": "".join(["gr", "een"])}, {"".join(["p"]): False, "x": 0.0}, {"q": True}]
+    for t, values in enumerate(samples):
+        try:
+            run.step_ns(t * 10**9, values)
+        except LookupError:
+            run.judge(t * 10**9, values, True)
+    for call in (run.records, run.counts, run.times, run.open, run.flush, run.next_due):
+        call()
+    for given in WRONG:
+        try:
+            run.rows(*given)
+        except (ValueError, TypeError, BufferError):
+            pass
+    run.rows(TIMES + 10**12, ((2, 0, np.zeros(8), np.zeros(8, np.uint8)),))
+    for odd in ((), (1,), (1, 2, 3), ("a", {})):
+        try:
+            run.step_ns(*odd)
+        except LookupError:
+            pass
+    for parts in wrong:
+        try:
+            Run(*parts)
+        except (ValueError, TypeError):
+            pass
+    run.finish(None)
+    run.reset()
+
+    class Ring:
+        """Refers to a run that refers to it."""
+
+    ring: Any = Ring()
+    ring.run = planned.monitor(frozenset(), lambda *_: ring, closer)
+
+
+def test_nothing_is_left_behind(planned):
+    """However often everything is done, right and wrong, no block of memory more is in use."""
+    wrong = list(damaged(planned))
+    for _ in range(5):
+        everything(planned, wrong)
+    found = []
+    for _ in range(4):
+        gc.collect()
+        found.append(sys.getallocatedblocks())
+        for _ in range(20):
+            everything(planned, wrong)
+    assert min(found[1:]) <= found[0] + 15  # a leak in any way leaves 20
+
+
+def test_other_threads_run_while_rows_are_judged(planned):
+    """Recordings are judged at the same time, each by a run of its own."""
+    times = np.arange(1, 200_001) * 1000
+    p = times // 1000 % 2 == 0
+
+    def judged(_: int) -> tuple[bytes, bytes]:
+        run = planned.monitor(frozenset(NUMBERS[1:]))
+        assert run.rows(times, ((0, 2, p, None),)) == len(times)
+        run.finish(None)
+        return run.records()
+
+    with ThreadPoolExecutor(3) as pool:
+        found = set(pool.map(judged, range(6)))
+    assert len(found) == 1
+
+
+def test_the_collector_takes_a_ring_of_runs(planned):
+    """A run refers to what looks closer, which may refer to it."""
+
+    class Ring:
+        """Is gone once nobody refers to it."""
+
+        gone = 0
+
+        def __del__(self) -> None:
+            Ring.gone += 1
+
+    ring: Any = Ring()
+    ring.run = planned.monitor(frozenset(), lambda *_: ring, closer)
+    del ring
+    gc.collect()
+    assert Ring.gone == 1
