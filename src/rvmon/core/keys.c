@@ -7,7 +7,7 @@
 #define MOST_OVER 10000
 #define FIRST_KEYS 16
 
-static int32_t hash_of(const rv_number *value, int32_t room)
+static int32_t hash_of_key(const rv_number *value, int32_t room)
 {
     uint64_t bits = 0;
     if (value->kind == RV_REAL) {
@@ -22,7 +22,7 @@ static int32_t hash_of(const rv_number *value, int32_t room)
 
 static void hang(home *h, int32_t at)
 {
-    const int32_t hash = hash_of(&h->keys[at].value, h->key_room);
+    const int32_t hash = hash_of_key(&h->keys[at].value, h->key_room);
     h->keys[at].next = h->heads[hash];
     h->heads[hash] = at;
 }
@@ -74,7 +74,7 @@ bool begin_keys(home *h)
 
 static int32_t find_key(const home *h, const rv_number *value)
 {
-    int32_t at = h->heads[hash_of(value, h->key_room)];
+    int32_t at = h->heads[hash_of_key(value, h->key_room)];
     while ((at >= 0) && !same_number(&h->keys[at].value, value)) {
         at = h->keys[at].next;
     }
@@ -303,7 +303,7 @@ static bool is_over(const run *r)
 static void forget_oldest(home *h)
 {
     const int32_t at = h->oldest;
-    int32_t *link = &h->heads[hash_of(&h->keys[at].value, h->key_room)];
+    int32_t *link = &h->heads[hash_of_key(&h->keys[at].value, h->key_room)];
     while (*link != at) {
         link = &h->keys[*link].next;
     }

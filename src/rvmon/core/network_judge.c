@@ -88,7 +88,7 @@ static int32_t readings(const judging *g)
     return g->net->parted ? 2 : 1;
 }
 
-static attempt *nth(const judging *g, int32_t at)
+static attempt *attempt_of(const judging *g, int32_t at)
 {
     return attempt_at(g->r->home, at);
 }
@@ -137,11 +137,11 @@ static void tidy_up(judging *g, int64_t position)
         return;
     }
     g->net->visits = 0;
-    while ((at >= 0) && is_moot(nth(g, at))) {
-        at = nth(g, at)->next;
+    while ((at >= 0) && is_moot(attempt_of(g, at))) {
+        at = attempt_of(g, at)->next;
     }
     for (i = 0; i < readings(g); i++) {
-        tidy(&g->f, &g->net->readings[i], (at >= 0) ? position_of(nth(g, at)) : position);
+        tidy(&g->f, &g->net->readings[i], (at >= 0) ? position_of(attempt_of(g, at)) : position);
     }
     if (g->net->parted && !parts(g)
         && networks_agree(&g->f, &g->net->readings[0], &g->net->readings[1])) {
@@ -153,7 +153,7 @@ static void tidy_up(judging *g, int64_t position)
  * what then became known may be wrong. */
 static bool weigh(judging *g, int32_t at, int64_t t)
 {
-    attempt *x = nth(g, at);
+    attempt *x = attempt_of(g, at);
     const bool parted = g->net->parted;
     const operator_state *worse = &g->net->readings[0].nodes[g->root];
     const operator_state *better = &g->net->readings[parted ? 1 : 0].nodes[g->root];
@@ -182,11 +182,11 @@ static bool weigh(judging *g, int32_t at, int64_t t)
 static int32_t attempt_from(const judging *g, int64_t position)
 {
     int32_t at = g->j->first;
-    if ((at < 0) || (position_of(nth(g, g->j->last)) < position)) {
+    if ((at < 0) || (position_of(attempt_of(g, g->j->last)) < position)) {
         return -1;
     }
-    while (position_of(nth(g, at)) < position) {
-        at = nth(g, at)->next;
+    while (position_of(attempt_of(g, at)) < position) {
+        at = attempt_of(g, at)->next;
     }
     return at;
 }
@@ -201,11 +201,11 @@ static int64_t decided_one(const judging *g)
         const ranges *news = &g->net->readings[reading].nodes[g->root].news[value];
         for (i = news->first; i < news->end; i++) {
             int32_t at = attempt_from(g, news->at[i].first);
-            while ((at >= 0) && is_moot(nth(g, at))) {
-                at = nth(g, at)->next;
+            while ((at >= 0) && is_moot(attempt_of(g, at))) {
+                at = attempt_of(g, at)->next;
             }
-            if ((at >= 0) && (position_of(nth(g, at)) <= news->at[i].last)) {
-                return position_of(nth(g, at));
+            if ((at >= 0) && (position_of(attempt_of(g, at)) <= news->at[i].last)) {
+                return position_of(attempt_of(g, at));
             }
         }
     }
@@ -241,8 +241,8 @@ static void hear_news(judging *g, int64_t t)
     }
     g->net->calls = 0;
     while (at >= 0) {
-        const int32_t next = nth(g, at)->next;
-        const int64_t position = position_of(nth(g, at));
+        const int32_t next = attempt_of(g, at)->next;
+        const int64_t position = position_of(attempt_of(g, at));
         if (position > asked) {
             asked = next_new(g, position);
             if (asked == NEVER) {
@@ -554,8 +554,8 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
         return true; /* the run is spoilt */
     }
     g.net->calls = 0;
-    nth(&g, at)->due = t + 1;
-    nth(&g, at)->clocks[0] = g.net->readings[0].last;
+    attempt_of(&g, at)->due = t + 1;
+    attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
     return weigh(&g, at, t);
 }
 

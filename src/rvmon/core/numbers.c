@@ -5,7 +5,6 @@
 
 #include <math.h>
 
-static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
 
 static rv_number whole(int64_t value)
 {
@@ -244,7 +243,7 @@ static double length(double a, double b)
     return ((root > 0.0) ? root + off / (2.0 * root) : root) / scale;
 }
 
-static rv_number combined(int32_t op, const rv_number *a, const rv_number *b)
+static rv_number of_two(int32_t op, const rv_number *a, const rv_number *b)
 {
     if ((a->kind == RV_UNKNOWN) || (b->kind == RV_UNKNOWN)) {
         return UNKNOWN_NUMBER;
@@ -260,7 +259,7 @@ static rv_number combined(int32_t op, const rv_number *a, const rv_number *b)
     }
 }
 
-static rv_number applied(int32_t op, const rv_number *a)
+static rv_number of_one(int32_t op, const rv_number *a)
 {
     if (a->kind == RV_UNKNOWN) {
         return UNKNOWN_NUMBER;
@@ -331,10 +330,10 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at)
         case CODE_RATE: stack[n++] = of_updates(op, &r->history[arg], &r->value[arg]); break;
         case CODE_NEG:
         case CODE_ABS:
-        case CODE_SQRT: stack[n - 1] = applied(op, &stack[n - 1]); break;
+        case CODE_SQRT: stack[n - 1] = of_one(op, &stack[n - 1]); break;
         default:
             n--;
-            stack[n - 1] = combined(op, &stack[n - 1], &stack[n]);
+            stack[n - 1] = of_two(op, &stack[n - 1], &stack[n]);
             break;
         }
     }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* The last one of a ring, or the place behind it. */
-static stretch *nth(const stretches *s, int32_t i)
+static stretch *stretch_at(const stretches *s, int32_t i)
 {
     return &s->at[(s->head + i) & (s->room - 1)];
 }
@@ -24,7 +24,7 @@ static bool make_room(rv_monitor *m, stretches *s)
         return false;
     }
     for (i = 0; i < s->count; i++) {
-        made[i] = *nth(s, i);
+        made[i] = *stretch_at(s, i);
     }
     arena_give(&m->memory, s->at, (size_t)s->room * sizeof *made);
     s->at = made;
@@ -35,11 +35,11 @@ static bool make_room(rv_monitor *m, stretches *s)
 
 static void add_stretch(run *r, stretches *s, int64_t begin, int64_t end)
 {
-    if ((s->count > 0) && (begin - step_of(r) <= nth(s, s->count - 1)->end)) {
-        nth(s, s->count - 1)->end = end;
+    if ((s->count > 0) && (begin - step_of(r) <= stretch_at(s, s->count - 1)->end)) {
+        stretch_at(s, s->count - 1)->end = end;
     } else if ((s->count < s->room) || make_room(r->home->monitor, s)) {
-        nth(s, s->count)->begin = begin;
-        nth(s, s->count)->end = end;
+        stretch_at(s, s->count)->begin = begin;
+        stretch_at(s, s->count)->end = end;
         s->count++;
     } else {
         /* The run is spoilt. */
@@ -53,7 +53,7 @@ static bool step_stretches(run *r, stretches *s, const node_plan *n, int64_t t, 
     const int64_t last = r->at.before;
     bool holds;
     if (s->growing && (s->count > 0)) {
-        nth(s, s->count - 1)->end = sum(last, n->high);
+        stretch_at(s, s->count - 1)->end = sum(last, n->high);
     }
     s->growing = false;
     if (!s->left && s->right) {
@@ -69,11 +69,11 @@ static bool step_stretches(run *r, stretches *s, const node_plan *n, int64_t t, 
             add_stretch(r, s, sum(t, n->low), NEVER);
             s->growing = true;
         }
-        while ((s->count > 0) && (nth(s, 0)->end < t)) {
+        while ((s->count > 0) && (stretch_at(s, 0)->end < t)) {
             s->head = (s->head + 1) & (s->room - 1);
             s->count--;
         }
-        holds = (s->count > 0) && (nth(s, 0)->begin <= t);
+        holds = (s->count > 0) && (stretch_at(s, 0)->begin <= t);
     }
     return holds;
 }
@@ -82,7 +82,7 @@ static int64_t next_stretch(const stretches *s, int64_t t)
 {
     int64_t found = NEVER;
     if (s->count > 0) {
-        const stretch *one = nth(s, 0);
+        const stretch *one = stretch_at(s, 0);
         found = (one->begin > t) ? one->begin : ((one->end == NEVER) ? NEVER : one->end + 1);
     }
     return found;
@@ -101,7 +101,7 @@ static void part_stretches(rv_monitor *m, stretches *worse, stretches *better)
     better->head = 0;
     better->count = worse->count;
     for (i = 0; i < worse->count; i++) {
-        *nth(better, i) = *nth(worse, i);
+        *stretch_at(better, i) = *stretch_at(worse, i);
     }
     better->left = worse->left;
     better->right = worse->right;

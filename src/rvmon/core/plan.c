@@ -16,12 +16,14 @@ static const size_t RECORD[SECTIONS] = {
 #define FINE (-1)
 #define MOST INT32_MAX
 
-static uint64_t hash_of(const unsigned char *bytes, size_t size)
+/* FNV-1a of words of 8 bytes. */
+static uint64_t hash_of_words(const void *bytes, size_t size)
 {
+    const uint64_t *words = bytes;
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
     size_t i;
-    for (i = 0; i < size; i++) {
-        hash = (hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+    for (i = 0; i < size / sizeof *words; i++) {
+        hash = (hash ^ words[i]) * UINT64_C(0x100000001b3);
     }
     return hash;
 }
@@ -38,12 +40,12 @@ static bool is_whole(const void *bytes, size_t size)
     const size_t head = sizeof *h + SECTIONS * sizeof(section);
     const section *table;
     int32_t i;
-    if ((bytes == NULL) || ((uintptr_t)bytes % 8 != 0) || (size < head)
+    if ((bytes == NULL) || ((uintptr_t)bytes % 8 != 0) || (size % 8 != 0) || (size < head)
         || (memcmp(h->magic, PLAN_MAGIC, sizeof h->magic) != 0) || (h->order != PLAN_ORDER)
         || (h->sections != SECTIONS) || (h->size < 0) || ((uint64_t)h->size != size)) {
         return false;
     }
-    if (h->hash != hash_of((const unsigned char *)bytes + sizeof *h, size - sizeof *h)) {
+    if (h->hash != hash_of_words(h + 1, size - sizeof *h)) {
         return false;
     }
     table = table_of(h);

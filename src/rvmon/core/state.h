@@ -417,6 +417,8 @@ struct rv_monitor {
 #define PLAN(r) (&(r)->home->monitor->plan)
 #define JUDGE_ALIVE(r, i) ((r)->judges[i].first >= 0)
 
+static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
+
 static inline int64_t step_of(const run *r)
 {
     const int64_t gap = GAP(r);

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
 
 /* Remember to forget what is said of a name once its position is over. Signals come first. */
 static void mark(run *r, int32_t name)
