@@ -16,12 +16,12 @@ static const size_t RECORD[SECTIONS] = {
 #define FINE (-1)
 #define MOST INT32_MAX
 
-static uint64_t hash_of(const unsigned char *bytes, size_t size)
+static uint64_t hash_of_words(const uint64_t *words, size_t count)
 {
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
     size_t i;
-    for (i = 0; i < size; i++) {
-        hash = (hash ^ bytes[i]) * UINT64_C(0x100000001b3);
+    for (i = 0; i < count; i++) {
+        hash = (hash ^ words[i]) * UINT64_C(0x100000001b3);
     }
     return hash;
 }
@@ -38,12 +38,12 @@ static bool is_whole(const void *bytes, size_t size)
     const size_t head = sizeof *h + SECTIONS * sizeof(section);
     const section *table;
     int32_t i;
-    if ((bytes == NULL) || ((uintptr_t)bytes % 8 != 0) || (size < head)
+    if ((bytes == NULL) || ((uintptr_t)bytes % 8 != 0) || (size % 8 != 0) || (size < head)
         || (memcmp(h->magic, PLAN_MAGIC, sizeof h->magic) != 0) || (h->order != PLAN_ORDER)
         || (h->sections != SECTIONS) || (h->size < 0) || ((uint64_t)h->size != size)) {
         return false;
     }
-    if (h->hash != hash_of((const unsigned char *)bytes + sizeof *h, size - sizeof *h)) {
+    if (h->hash != hash_of_words((const uint64_t *)(const void *)(h + 1), (size - sizeof *h) / 8)) {
         return false;
     }
     table = table_of(h);
@@ -466,7 +466,7 @@ static bool check_rows(const plan *p, const automaton_plan *a)
         last = p->ints[a->cut_first + ((int64_t)i + 1) * a->clocks];
     }
     for (i = 0; has(p, SEC_TICKS, a->cuts, last) && (i < last); i++) {
-        if (!is_within(p->ticks[a->cuts + i], 1, LIMIT)) {
+        if (!is_within(p->ticks[a->cuts + i], 1, LIMIT + 1)) {
             return false;
         }
     }
@@ -494,7 +494,7 @@ static bool check_clauses(const plan *p, const automaton_plan *a)
     }
     for (i = 0; i < tests; i++) {
         if (!is_within(p->ints[a->tests + 2 * i], -1, a->clocks)
-            || !is_within(p->ticks[a->ages + i], -LIMIT, LIMIT)) {
+            || !is_within(p->ticks[a->ages + i], 0, LIMIT + 1)) {
             return false;
         }
     }
