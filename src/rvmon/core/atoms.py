@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum, auto
 
 from rvmon.core.programs import Names, Programs, exact
+from rvmon.errors import RvmonError
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf
 from rvmon.plan.leaves import captured_names
@@ -26,6 +27,9 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.trace.schema import Kind
+
+MOST_EVENTS = 8
+"""Of so many events one comparison may read fields."""
 
 _COMPARISONS = {op: number for number, op in enumerate(CompareOp)}
 
@@ -155,6 +159,8 @@ class Atoms:
         sides = leaf.left, leaf.right
         names = self._names
         events = tuple(names.events[event] for event in events_of(*sides))
+        if len(events) > MOST_EVENTS:
+            raise RvmonError(f"a comparison reads fields of more than {MOST_EVENTS} events")
         updated = [
             part.name for side in sides for part in operands(side) if isinstance(part, UpdateValue)
         ]

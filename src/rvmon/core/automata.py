@@ -74,25 +74,34 @@ class Automata:
         if not isinstance(class_of, LetterDiagram) or _is_lone(class_of):
             return -1
         levels = {stride: level for level, stride in enumerate(alphabet.strides)}
-        made: dict[int, int] = {}
+        nodes = _decisions(class_of.root)
+        offsets, size = dict[int, int](), 0
+        for _, children in nodes:
+            offsets[id(children)] = size
+            size += 8 + len(children)
+        first = self._sections.count(Section.INTS)
+        words = list[int]()
+        for stride, children in nodes:
+            level = levels[stride]
+            weights = *alphabet.pessimistic[level], *alphabet.optimistic[level]
+            words += [level, *(weight // stride for weight in weights), len(children)]
+            words += [
+                ~child if isinstance(child, int) else first + offsets[id(child[1])]
+                for child in children
+            ]
+        return self._ints(words)
 
-        def place(node: Tree) -> int:
-            if isinstance(node, int):
-                return ~node
-            found = made.get(id(node))
-            if found is None:
-                stride, children = node
-                level = levels[stride]
-                digits = [
-                    weight // stride
-                    for weights in (alphabet.pessimistic[level], alphabet.optimistic[level])
-                    for weight in weights
-                ]
-                below = [place(child) for child in children]
-                found = made[id(node)] = self._ints([level, *digits, len(below), *below])
-            return found
 
-        return place(class_of.root)
+def _decisions(root: Tree) -> list[tuple[int, tuple[Tree, ...]]]:
+    """The decisions of a diagram, each before those that it leads to."""
+    found: dict[int, tuple[int, tuple[Tree, ...]]] = {}
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        if not isinstance(node, int) and id(node[1]) not in found:
+            found[id(node[1])] = node
+            stack += node[1]
+    return sorted(found.values(), key=lambda node: -node[0])
 
 
 def _is_lone(class_of: LetterClasses) -> bool:

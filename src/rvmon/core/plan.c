@@ -16,13 +16,11 @@ static const size_t RECORD[SECTIONS] = {
 #define FINE (-1)
 #define MOST INT32_MAX
 
-/* FNV-1a of words of 8 bytes. */
-static uint64_t hash_of_words(const void *bytes, size_t size)
+static uint64_t hash_of_words(const uint64_t *words, size_t count)
 {
-    const uint64_t *words = bytes;
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
     size_t i;
-    for (i = 0; i < size / sizeof *words; i++) {
+    for (i = 0; i < count; i++) {
         hash = (hash ^ words[i]) * UINT64_C(0x100000001b3);
     }
     return hash;
@@ -45,7 +43,7 @@ static bool is_whole(const void *bytes, size_t size)
         || (h->sections != SECTIONS) || (h->size < 0) || ((uint64_t)h->size != size)) {
         return false;
     }
-    if (h->hash != hash_of_words(h + 1, size - sizeof *h)) {
+    if (h->hash != hash_of_words((const uint64_t *)(const void *)(h + 1), (size - sizeof *h) / 8)) {
         return false;
     }
     table = table_of(h);
@@ -468,7 +466,7 @@ static bool check_rows(const plan *p, const automaton_plan *a)
         last = p->ints[a->cut_first + ((int64_t)i + 1) * a->clocks];
     }
     for (i = 0; has(p, SEC_TICKS, a->cuts, last) && (i < last); i++) {
-        if (!is_within(p->ticks[a->cuts + i], 1, LIMIT)) {
+        if (!is_within(p->ticks[a->cuts + i], 1, LIMIT + 1)) {
             return false;
         }
     }
@@ -496,7 +494,7 @@ static bool check_clauses(const plan *p, const automaton_plan *a)
     }
     for (i = 0; i < tests; i++) {
         if (!is_within(p->ints[a->tests + 2 * i], -1, a->clocks)
-            || !is_within(p->ticks[a->ages + i], -LIMIT, LIMIT)) {
+            || !is_within(p->ticks[a->ages + i], 0, LIMIT + 1)) {
             return false;
         }
     }

@@ -1,5 +1,6 @@
 """Packing plans: what must hold of the bytes, whatever is specified."""
 
+import ctypes
 import os
 import random
 import re
@@ -24,7 +25,7 @@ from tests.tools.plan_reader import (
 
 import rvmon
 from rvmon.automaton.automaton import Automaton
-from rvmon.core.atoms import AtomOp
+from rvmon.core.atoms import MOST_EVENTS, AtomOp
 from rvmon.core.forms import Operator
 from rvmon.core.nodes import NodeOp
 from rvmon.core.plan import Packed, pack
@@ -251,10 +252,11 @@ def test_what_c_enumerates_has_the_same_numbers(prefix: str, numbers: type[IntEn
     assert found == {one.name: one.value for one in numbers}
 
 
-def test_programs_have_the_depth_of_c():
-    """The stack has the same room on both sides."""
-    (depth,) = re.findall(r"#define PROGRAM_DEPTH (\d+)", HEADER.read_text(encoding="utf-8"))
-    assert int(depth) == DEPTH
+def test_limits_are_those_of_c():
+    """The stack has the same room on both sides; as many events may be read at once."""
+    limits = dict(re.findall(r"#define (\w+) (\d+)\n", HEADER.read_text(encoding="utf-8")))
+    assert int(limits["PROGRAM_DEPTH"]) == DEPTH
+    assert int(limits["PAYLOAD_EVENTS_MOST"]) == MOST_EVENTS
 
 
 @pytest.mark.compiler
@@ -298,6 +300,50 @@ def test_expressions_deeper_than_the_stack_are_refused():
     walk(Plan(packed(nested(30)).data))
     with pytest.raises(RvmonError, match="nested deeper than 31"):
         packed(nested(32))
+
+
+def test_comparisons_of_too_many_events_are_refused():
+    """Of eight events fields are compared at once, of nine they are not."""
+    declared = "spec s\n" + "".join(f"event e{n}(k: int)\n" for n in range(9))
+    eight = " + ".join(f"e{n}.k" for n in range(8))
+    text = declared + "requirement R\n  always not ({} > 3)\n"
+    walk(Plan(packed(text.format(eight)).data))
+    with pytest.raises(RvmonError, match="more than 8 events"):
+        packed(text.format(f"{eight} + e8.k"))
+
+
+@pytest.fixture(scope="module")
+def check(tmp_path_factory):
+    """The core's own check of bytes: the section that is wrong, or −1."""
+    library = tmp_path_factory.mktemp("core") / "core.so"
+    sources = [str(one) for one in HEADER.parent.glob("*.c") if one.name != "module.c"]
+    flags = [
+        "-O1",
+        "-shared",
+        "-fPIC",
+        "-fsanitize=undefined",
+        "-fsanitize-undefined-trap-on-error",
+    ]
+    command = ["gcc", *STRICT, *flags, *sources, "-o", str(library), "-lm"]
+    subprocess.run(command, check=True)  # noqa: S603
+    function = ctypes.CDLL(str(library)).rv_plan_check
+    function.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+
+    def checked(data: bytes) -> int:
+        words = (ctypes.c_uint64 * (len(data) // 8)).from_buffer_copy(data)
+        return function(ctypes.addressof(words), len(data))
+
+    return checked
+
+
+@pytest.mark.compiler
+@pytest.mark.law
+def test_the_core_takes_what_is_packed(check):
+    """Its own check finds nothing wrong with any plan."""
+    longest = f"spec s\nsignal p : bool\nrequirement R\n  always within {2**62 - 1} ns p\n"
+    assert [check(packed(text).data) for text in (EVERYTHING, DIAGRAM, longest)] == [-1] * 3
+    plans = [plan for seed in range(100, 160) if (plan := drawn(seed)) is not None]
+    assert [check(pack(plan).data) for plan in plans] == [-1] * len(plans)
 
 
 def test_whole_numbers_beyond_64_bits_are_refused_unless_they_are_doubles():

@@ -140,7 +140,8 @@ def planned_core(
     found = compiled.forms.get(("core", ids))
     if not isinstance(found, PlannedCore):
         single = frozenset().union(*(one.single_payloads for one in requirements))
-        found = compiled.forms["core", ids] = _planned(plan_alone(compiled, ids), single)
+        plan = plan_alone(compiled, ids, diagrams=True)
+        found = compiled.forms["core", ids] = _planned(plan, single)
     return found
 
 
