@@ -104,7 +104,8 @@ void recheck(run *r, int32_t atom)
 {
     const atom_plan *a = &r->part->atoms[atom];
     const uint8_t now = atom_now(r, a);
-    if (now != r->atom[atom]) {
+    /* A comparison of fields stays unknown for another reason: it matters to what is not born. */
+    if ((now != r->atom[atom]) || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
         const list nodes = a->nodes[r->at.phase];
         const int32_t *node = LIST(PLAN(r), nodes);
         int32_t i;

@@ -149,6 +149,16 @@ static bool may_be_other(run *r)
     return false;
 }
 
+/* Have those looked at that say whether the values are known. */
+void soil_lapsed(run *r)
+{
+    const int32_t *lapsed = LIST(PLAN(r), r->part->plan->lapsed);
+    int32_t i;
+    for (i = 0; i < r->part->plan->lapsed.count; i++) {
+        soil(r, lapsed[i]);
+    }
+}
+
 /* See from the position `t` of its parent whether the values of an attempt stay known. */
 static void keep_watch(run *r, int64_t t)
 {
@@ -157,13 +167,9 @@ static void keep_watch(run *r, int64_t t)
     if (is_idle(r) || (trigger == IS_FALSE)) {
         r->blurs = false;
     } else if (r->blurs && (r->cut == NEVER) && may_be_other(r)) {
-        const int32_t *lapsed = LIST(PLAN(r), r->part->plan->lapsed);
-        int32_t i;
         r->cut = t;
         r->at.alarm = least(r->at.alarm, t);
-        for (i = 0; i < r->part->plan->lapsed.count; i++) {
-            soil(r, lapsed[i]);
-        }
+        soil_lapsed(r);
     } else {
         /* They do. */
     }

@@ -237,6 +237,9 @@ void visit(run *r, int64_t t)
             }
         }
     }
+    if (t >= r->cut) {
+        soil_lapsed(r);
+    }
     recheck_fading(r);
     ring(r, t);
     if (r->opening && (t >= r->opens_at)) {

@@ -632,6 +632,7 @@ void note_done(run *r, int32_t at);
 void flush_turns(home *h);
 void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered);
 void look_after(run *r, int64_t t);
+void soil_lapsed(run *r);
 void forget_last(run *r);
 bool is_idle(const run *r);
 
