@@ -290,7 +290,7 @@ def parts_of(planned: PlannedCore) -> list[Any]:
             return None
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rvmon.monitor.core.planned.Run", Kept)
+        patch.setattr("rvmon.core._core.Monitor", Kept)
         planned.monitor(frozenset(), closer, closer)
     return kept
 

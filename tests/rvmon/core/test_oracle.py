@@ -40,9 +40,9 @@ def stepped(case: Case) -> Stepped | None:
 def test_each_call_says_what_the_law_has_it_say(time):
     """What a call returns, what the report says, and that what is wrong is refused."""
     profile = Profile(time=time, mixed=False)
-    seeds = [f"core/{time.name}/{number}" for number in range(25)]
+    seeds = [f"core/{time.name}/{number}" for number in range(12)]
     tally = campaign(stepped, seeds, profile, TraceProfile(), each=4, online_every=2)
-    assert tally.pairs >= 50
+    assert tally.pairs >= 30
     assert not tally.disagreements, tally.disagreements[0]
 
 
@@ -60,6 +60,6 @@ def by_columns(seeds: int) -> Iterator[tuple[Case, list[str]]]:
 
 def test_columns_are_judged_as_the_law_has_it():
     """Random specifications on random arrays: what the oracle says of the same samples."""
-    found = [text for _, text in by_columns(40)]
-    assert len(found) >= 40
+    found = [text for _, text in by_columns(20)]
+    assert len(found) >= 20
     assert not any(found), next(filter(None, found))
