@@ -7,9 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from rvmon.codegen.c_batch import BatchLibrary
 from rvmon.monitor import CompiledSpec
-from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.readers.blocks import Block, up_to
 from rvmon.readers.source import Fillable, Source
@@ -108,9 +106,4 @@ class BlockRecording:
 def _judges(compiled: CompiledSpec, engine: str) -> bool:
     if engine != "c":
         return compiled.checked.max_delay is None
-    if any(engine_named("c").refuses(one) for one in compiled.requirements.values()):
-        return False
-    key = ("c", None)
-    if key not in compiled.forms:
-        compiled.forms[key] = BatchLibrary(plan_alone(compiled), optimised=False)
-    return True
+    return not any(engine_named("c").refuses(one) for one in compiled.requirements.values())

@@ -11,13 +11,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from tests.tools.differential import campaign
 
 import rvmon
 from rvmon.errors import SnapshotError, TimeOrderError, TraceError
-from rvmon.testing.forms import Maker
-from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
 
 SPEC = """
 spec watch "A base"
@@ -369,12 +365,3 @@ def test_nothing_to_judge(spec):
     monitor = spec.monitor(engine="c", only=[])
     monitor.step(0.0, FIRST)
     assert monitor.finish().verdicts == {}
-
-
-def test_the_oracle_agrees():
-    """On random cases, at each call: what it returns, and that it refuses what is wrong."""
-    profile = Profile(mixed=False, captures=False, for_each=False)
-    seeds = [f"online/{number}" for number in range(4)]
-    tally = campaign(Maker("c"), seeds, profile, TraceProfile(), each=8, online_every=2)
-    assert tally.pairs >= 10
-    assert not tally.disagreements, tally.disagreements[0]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
-from rvmon.core._core import Monitor as Run
+import rvmon.core._core as native
 from rvmon.core.plan import Packed, pack
 from rvmon.errors import TraceError
 from rvmon.monitor.compiled.code_plan import plan_alone
@@ -64,7 +64,7 @@ class PlannedCore:
         absent: frozenset[str],
         look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]] | None = None,
         look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]] | None = None,
-    ) -> Run:
+    ) -> native.Monitor:
         """Begin a run.
 
         Args:
@@ -82,7 +82,7 @@ class PlannedCore:
             self._details,
             self.captured.counts,
         )
-        return Run(
+        return native.Monitor(
             self.packed.data,
             (coming, self.words, self.kinds, self.single),
             bytes(name in absent for name in self.numbers),

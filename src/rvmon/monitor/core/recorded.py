@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rvmon.core._core import Monitor as Run
+import rvmon.core._core as native
 from rvmon.monitor.core.planned import DECISIONS, VERDICTS, PlannedCore
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.attempt_json import Pattern, attempt_text, numbers_texts
@@ -122,7 +122,9 @@ def _number_of(number: Any) -> float | None:
     return float(number["bits"].view(np.float64)) if kind == _REAL else None
 
 
-def report_of_run(planned: PlannedCore, run: Run, origin: int, end: int | None) -> Report:
+def report_of_run(
+    planned: PlannedCore, run: native.Monitor, origin: int, end: int | None
+) -> Report:
     """Sort and fold the records of a run, as `rvmon.verdict.report.report_of` does attempts.
 
     Args:

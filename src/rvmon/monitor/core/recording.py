@@ -60,7 +60,7 @@ def judge_columns(planned: PlannedCore, columns: Columns, end: int | None) -> Re
 def _column(
     planned: PlannedCore, name: str, values: NDArray[Any]
 ) -> tuple[int, int, NDArray[Any] | None, NDArray[np.uint8] | None]:
-    """A column as `_core.Monitor.rows` takes it."""
+    """A column as `native.Monitor.rows` takes it."""
     number, kind = planned.numbers[name], planned.packed.signals.get(name)
     if kind is None:
         return number, 0, None, np.where(values, _YES, _NO)
