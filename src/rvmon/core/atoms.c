@@ -100,10 +100,21 @@ static bool is_momentary(const run *r, int32_t atom)
     return (r->atom[atom] != IS_FALSE) && (r->momentary[atom] != 0U);
 }
 
+/* List an atom as one that speaks of the next position only. */
+static void list_fresh(run *r, int32_t atom)
+{
+    if (is_momentary(r, atom) && (r->is_fresh[atom] == 0U)) {
+        r->is_fresh[atom] = 1;
+        r->fresh[r->at.fresh_count] = atom;
+        r->at.fresh_count++;
+    }
+}
+
 void recheck(run *r, int32_t atom)
 {
     const atom_plan *a = &r->part->atoms[atom];
-    const uint8_t now = atom_now(r, a);
+    const uint8_t now = (a->op == ATOM_REAL) ? compare_real(a->compare, &r->value[a->input], a->constant)
+                                             : atom_now(r, a);
     /* A comparison of fields stays unknown for another reason: it matters to what is not born. */
     if ((now != r->atom[atom]) || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
         const list nodes = a->nodes[r->at.phase];
@@ -114,10 +125,8 @@ void recheck(run *r, int32_t atom)
             soil(r, node[i]);
         }
     }
-    if (is_momentary(r, atom) && (r->is_fresh[atom] == 0U)) {
-        r->is_fresh[atom] = 1;
-        r->fresh[r->at.fresh_count] = atom;
-        r->at.fresh_count++;
+    if (r->momentary[atom] != 0U) {
+        list_fresh(r, atom);
     }
 }
 
@@ -162,11 +171,9 @@ void reread(run *r, int32_t atom, bool pending)
     if (!is_momentary(r, atom)) {
         return;
     }
-    if (pending && (r->is_fresh[atom] == 0U)) {
-        r->is_fresh[atom] = 1;
-        r->fresh[r->at.fresh_count] = atom;
-        r->at.fresh_count++;
-    } else if (!pending && (r->is_fading[atom] == 0U)) {
+    if (pending) {
+        list_fresh(r, atom);
+    } else if (r->is_fading[atom] == 0U) {
         r->is_fading[atom] = 1;
         r->fading[r->at.fading_count] = atom;
         r->at.fading_count++;

@@ -187,12 +187,10 @@ void leave(run *r, int32_t index, int32_t before, int32_t at)
 /* Whether the rule for the end of a trace makes an attempt true. */
 static bool is_kept(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
-    machine a;
     if (is_networked(r, index)) {
         return network_outlasts(r, index, x);
     }
-    a = machine_of(r, index);
-    return holds_at_end(&a, x, end, reached);
+    return holds_at_end(&r->part->machines[index], x, end, reached);
 }
 
 /* Settle an attempt that is undecided at the end. */

@@ -8,16 +8,6 @@
 
 
 
-machine machine_of(const run *r, int32_t index)
-{
-    machine a;
-    a.whole = PLAN(r);
-    a.plan = &a.whole->automata[r->part->judges[index].automaton];
-    a.gap = GAP(r);
-    a.step = (a.gap > 0) ? a.gap : 1;
-    return a;
-}
-
 /* The class of a letter of which there are too many for a table: the digits that matter are asked
  * for one after the other. */
 static int32_t class_by_diagram(const run *r, const judge_plan *j, bool better)
@@ -39,35 +29,22 @@ int32_t class_of_letter(const run *r, int32_t index, bool better)
     if (j->diagram >= 0) {
         return class_by_diagram(r, j, better);
     }
-    return PLAN(r)->ints[PLAN(r)->automata[j->automaton].class_of
-                         + (better ? r->judges[index].better : r->judges[index].worse)];
-}
-
-/* Where the cuts of a clock of a location begin. */
-static int32_t clock_place(const machine *a, int32_t location, int32_t clock)
-{
-    return location * a->plan->clocks + clock;
-}
-
-static int32_t width_of(const machine *a, int32_t location)
-{
-    return a->whole->ints[a->plan->widths + location];
+    return r->part->machines[index].class_of[better ? r->judges[index].better
+                                                    : r->judges[index].worse];
 }
 
 static int32_t row_of(const machine *a, const token *k, int64_t t)
 {
-    const int32_t *ints = a->whole->ints;
-    const int32_t *first = &ints[a->plan->cut_first];
-    const int64_t *cuts = &a->whole->ticks[a->plan->cuts];
-    const int32_t width = width_of(a, k->location);
-    int32_t row = ints[a->plan->bases + k->location];
+    const int32_t width = a->widths[k->location];
+    const int32_t first = k->location * a->clocks;
+    int32_t row = a->bases[k->location];
     int32_t c;
     for (c = 0; c < width; c++) {
-        const int32_t at = clock_place(a, k->location, c);
         const int64_t age = t - k->clocks[c];
+        const int32_t end = a->cut_first[first + c + 1];
         int32_t i;
-        for (i = first[at]; (i < first[at + 1]) && (age >= cuts[i]); i++) {
-            row += ints[a->plan->strides + at];
+        for (i = a->cut_first[first + c]; (i < end) && (age >= a->cuts[i]); i++) {
+            row += a->strides[first + c];
         }
     }
     return row;
@@ -75,21 +52,20 @@ static int32_t row_of(const machine *a, const token *k, int64_t t)
 
 bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
 {
-    const int32_t *ints = a->whole->ints;
-    const int32_t was = k->location;
-    const int32_t number = ints[a->plan->edges + row_of(a, k, t) * a->plan->classes + letter];
-    const int32_t target = ints[a->plan->targets + number];
-    const int32_t *sources = &ints[a->plan->sources + number * a->plan->clocks];
-    const int32_t width = width_of(a, target);
-    bool moved = target != was;
-    int64_t old[CLOCKS_MOST];
-    int32_t c;
+    const int32_t number = a->edges[row_of(a, k, t) * a->classes + letter];
+    const int32_t target = a->targets[number];
+    const int32_t *sources = &a->sources[number * a->clocks];
+    const int32_t width = a->widths[target];
+    bool moved = target != k->location;
+    k->location = target;
     if (width == 1) { /* as mostly */
         const int64_t anchor = (sources[0] < 0) ? t : k->clocks[sources[0]];
         moved = moved || (anchor != k->clocks[0]);
         k->clocks[0] = anchor;
     } else if (width > 1) {
-        (void)memcpy(old, k->clocks, (size_t)a->plan->clocks * sizeof *old);
+        int64_t old[CLOCKS_MOST];
+        int32_t c;
+        (void)memcpy(old, k->clocks, (size_t)a->clocks * sizeof *old);
         for (c = 0; c < width; c++) {
             const int64_t anchor = (sources[c] < 0) ? t : old[sources[c]];
             moved = moved || (anchor != old[c]);
@@ -98,40 +74,44 @@ bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
     } else {
         /* It has none. */
     }
-    k->location = target;
     return moved;
 }
 
+/* Whether a token that came from a step at `t` would stay where it is if the letter stays. */
 bool rests(const machine *a, const token *k, int64_t t, int32_t letter)
 {
-    token next;
-    int64_t clocks[CLOCKS_MOST];
-    if (a->gap == 0) {
+    const int32_t number = a->edges[row_of(a, k, t + a->step) * a->classes + letter];
+    const int32_t *sources = &a->sources[number * a->clocks];
+    const int32_t width = a->widths[k->location];
+    int32_t c;
+    if ((a->gap == 0) || (a->targets[number] != k->location)) {
         return false;
     }
-    (void)memcpy(clocks, k->clocks, (size_t)a->plan->clocks * sizeof *clocks);
-    next.location = k->location;
-    next.clocks = clocks;
-    return !step_token(a, &next, t + a->step, letter);
+    for (c = 0; c < width; c++) {
+        if ((sources[c] < 0) || (k->clocks[sources[c]] != k->clocks[c])) {
+            return false;
+        }
+    }
+    return true;
 }
 
 int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *before)
 {
-    const int32_t *first = &a->whole->ints[a->plan->cut_first];
-    const int64_t *cuts = &a->whole->ticks[a->plan->cuts];
-    const int32_t width = width_of(a, k->location);
+    const int64_t *cuts = a->cuts;
+    const int32_t width = a->widths[k->location];
     int64_t found = NEVER;
     int32_t c;
     for (c = 0; c < width; c++) {
-        const int32_t at = clock_place(a, k->location, c);
-        int32_t i = first[at];
+        const int32_t at = k->location * a->clocks + c;
+        const int32_t end = a->cut_first[at + 1];
+        int32_t i = a->cut_first[at];
         if ((before != NULL) && (before[c] != k->clocks[c])) {
             continue;
         }
-        while ((i < first[at + 1]) && (k->clocks[c] + cuts[i] <= t)) {
+        while ((i < end) && (k->clocks[c] + cuts[i] <= t)) {
             i++;
         }
-        if (i < first[at + 1]) {
+        if (i < end) {
             found = least(found, k->clocks[c] + cuts[i]);
         }
     }
@@ -144,7 +124,7 @@ int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until)
 {
     int64_t cut = next_cut(a, k, t, NULL);
     while (cut <= until) {
-        const int32_t truth = a->whole->ints[a->plan->time_values + row_of(a, k, cut)];
+        const int32_t truth = a->time_values[row_of(a, k, cut)];
         if (truth != IS_UNKNOWN) {
             k->location = (truth == IS_TRUE) ? PASSED : FAILED;
             break;
@@ -158,7 +138,7 @@ int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until)
 static bool loops(const machine *a, int32_t was, const int64_t *before, const token *behind,
                   bool *slides)
 {
-    const int32_t width = width_of(a, behind->location);
+    const int32_t width = a->widths[behind->location];
     bool loop = was == behind->location;
     int32_t c;
     *slides = false;
@@ -193,7 +173,7 @@ int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int
             break;
         }
         was = k->location;
-        (void)memcpy(before, k->clocks, (size_t)a->plan->clocks * sizeof *before);
+        (void)memcpy(before, k->clocks, (size_t)a->clocks * sizeof *before);
         (void)step_token(a, k, position, letter);
         if (k->location <= PASSED) {
             due = position;
@@ -204,7 +184,7 @@ int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int
             const int64_t ahead = (least(cut - 1, last) - position) / a->step * a->step;
             *slides = *slides || slid;
             if (ahead > 0) {
-                const int32_t width = width_of(a, k->location);
+                const int32_t width = a->widths[k->location];
                 int32_t c;
                 for (c = 0; c < width; c++) {
                     if (k->clocks[c] != before[c]) {
@@ -225,19 +205,16 @@ int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int
 
 bool holds_at_end(const machine *a, const attempt *x, int64_t end, int64_t reached)
 {
-    const int32_t *clauses = &a->whole->ints[a->plan->clause_first];
-    const int32_t *tests = &a->whole->ints[a->plan->test_first];
     bool holds = false;
     int32_t i;
     int32_t j;
-    for (i = clauses[x->location]; i < clauses[x->location + 1]; i++) {
+    for (i = a->clause_first[x->location]; i < a->clause_first[x->location + 1]; i++) {
         bool all = true;
-        for (j = tests[i]; j < tests[i + 1]; j++) {
-            const int32_t *test = &a->whole->ints[a->plan->tests + 2 * j];
-            const int64_t age = a->whole->ticks[a->plan->ages + j];
-            if (test[0] >= 0) {
+        for (j = a->test_first[i]; j < a->test_first[i + 1]; j++) {
+            const int32_t *test = &a->tests[2 * j];
+                        if (test[0] >= 0) {
                 const int64_t now = (test[1] != 0) ? end : reached;
-                all = all && (now - x->clocks[test[0]] >= age);
+                all = all && (now - x->clocks[test[0]] >= a->ages[j]);
             }
         }
         holds = holds || all;

@@ -184,7 +184,7 @@ static void start(run *r, int64_t t)
 static void have_judged(run *r, int64_t t)
 {
     int32_t i;
-    for (i = 0; i < r->touched_count; i++) {
+    for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {
         const int32_t index = r->touched[i];
         if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && runs_on(r, index)) {
             look_at(r, index, t);
@@ -199,21 +199,24 @@ static void have_judged(run *r, int64_t t)
     }
     for (i = 0; i < r->touched_count; i++) {
         const int32_t index = r->touched[i];
-        const int32_t trigger = followed(r, index);
-        if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && (trigger >= 0)
-            && starts(r, index, r->truth[trigger])) {
-            begin(r, index, t, t);
+        if ((r->judges[index].touched & TOUCHED_TRIGGER) != 0) {
+            const int32_t trigger = followed(r, index);
+            if ((trigger >= 0) && starts(r, index, r->truth[trigger])) {
+                begin(r, index, t, t);
+            }
         }
         r->judges[index].touched = 0;
     }
     r->touched_count = 0;
-    for (i = 0; i < r->failing_count; i++) {
-        const int32_t index = r->failing[i];
-        if (may_go_on(r, index) && (r->judges[index].failed_at < t)) {
-            begin_here(r, index, t, t);
+    if (r->failing_count > 0) {
+        for (i = 0; i < r->failing_count; i++) {
+            const int32_t index = r->failing[i];
+            if (may_go_on(r, index) && (r->judges[index].failed_at < t)) {
+                begin_here(r, index, t, t);
+            }
         }
+        tidy_failing(r);
     }
-    tidy_failing(r);
 }
 
 /* Move to the position at `t`. */
@@ -240,7 +243,9 @@ void visit(run *r, int64_t t)
     if (t >= r->cut) {
         soil_lapsed(r);
     }
-    recheck_fading(r);
+    if (r->at.fading_count + r->at.fresh_count > 0) {
+        recheck_fading(r);
+    }
     ring(r, t);
     if (r->opening && (t >= r->opens_at)) {
         r->opening = false;
@@ -251,7 +256,9 @@ void visit(run *r, int64_t t)
     r->at.position = t;
     r->at.awaited = NEVER;
     have_judged(r, t);
-    settle_phase(r);
+    if (r->at.phase == 0) {
+        settle_phase(r);
+    }
     if (apart) {
         r->over = r->over || r->at.gathered; /* who captures sees it until the next position */
         r->at.gathered = false;

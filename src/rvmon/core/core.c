@@ -11,7 +11,8 @@ static bool prepare_part(rv_monitor *m, part *p)
     int32_t i;
     p->timed = arena_take(&m->memory, (size_t)(p->plan->timers + 1) * sizeof *p->timed);
     p->perishable = arena_take(&m->memory, (size_t)(p->plan->perishable + 1) * sizeof *p->perishable);
-    if ((p->timed == NULL) || (p->perishable == NULL)) {
+    p->machines = arena_take(&m->memory, (size_t)p->plan->judges.count * sizeof *p->machines);
+    if ((p->timed == NULL) || (p->perishable == NULL) || (p->machines == NULL)) {
         return false;
     }
     for (i = 0; i < p->plan->nodes.count; i++) {
@@ -25,7 +26,11 @@ static bool prepare_part(rv_monitor *m, part *p)
         }
     }
     for (i = 0; i < p->plan->judges.count; i++) {
+        p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
         p->restarts = p->restarts || (p->judges[i].again >= 0);
+        if (p->judges[i].automaton >= 0) {
+            p->machines[i] = machine_view(&m->plan, &m->plan.automata[p->judges[i].automaton]);
+        }
     }
     return true;
 }
@@ -56,6 +61,7 @@ static bool prepare(rv_monitor *m)
             return false;
         }
     }
+    m->is_alone = (p->part_count == 1) && (p->parts[0].captured == 0);
     return true;
 }
 
@@ -186,9 +192,49 @@ static bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
     return true;
 }
 
-int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+/* Judge a sample where all requirements stand in one run. */
+static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+{
+    run *r = m->homes[0].root;
+    int32_t i;
+    if ((m->plan.header->gap == 0) && r->at.started) {
+        r->at.position = m->last;
+    }
+    approach(r, t);
+    for (i = 0; i < count; i++) {
+        const int32_t name = updates[i].name;
+        const int32_t first = m->plan.subscription_first[name];
+        if (first < m->plan.subscription_first[name + 1]) {
+            incoming in;
+            in.local = m->plan.subscriptions[first].local;
+            in.event = name >= m->plan.header->signals;
+            in.update = &updates[i];
+            take_update(r, t, &in);
+        }
+    }
+    arrive(r, t);
+}
+
+/* Judge a sample, each part by itself; one that does not read it, and has nothing due, sleeps on. */
+static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
     int32_t i;
+    if (!distribute(m, updates, count)) {
+        return false;
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        home *h = &m->homes[i];
+        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started
+            || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
+            h->previous = m->last;
+            home_sample(h, t);
+        }
+    }
+    return true;
+}
+
+int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+{
     if (m->finished) {
         return RV_FINISHED;
     }
@@ -198,16 +244,12 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     if (t <= m->after) {
         return RV_TOO_EARLY;
     }
-    if (!distribute(m, updates, count)) {
+    if (m->is_alone) {
+        step_alone(m, t, updates, count);
+    } else if (!step_parts(m, t, updates, count)) {
         return RV_NO_MEMORY;
-    }
-    for (i = 0; i < m->plan.part_count; i++) {
-        home *h = &m->homes[i];
-        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started
-            || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
-            h->previous = m->last;
-            home_sample(h, t);
-        }
+    } else {
+        /* All parts have taken it. */
     }
     if (m->last == RV_NO_TIME) {
         m->began = t;

@@ -52,7 +52,7 @@ static bool drive_readings(run *r, const machine *a, int32_t index, int32_t at, 
 {
     judge *j = &r->judges[index];
     attempt *x = attempt_at(r->home, at);
-    const int32_t clocks = a->plan->clocks;
+    const int32_t clocks = a->clocks;
     const int32_t width = r->part->plan->clocks;
     token worse;
     token better;
@@ -85,7 +85,7 @@ static bool drive_readings(run *r, const machine *a, int32_t index, int32_t at, 
     x->better = better.location;
     x->parted = better.location != worse.location;
     if (!x->parted) {
-        const int32_t used = a->whole->ints[a->plan->widths + worse.location];
+        const int32_t used = a->widths[worse.location];
         x->parted = memcmp(better.clocks, worse.clocks, (size_t)used * sizeof *worse.clocks) != 0;
     }
     *due = own;
@@ -118,8 +118,8 @@ static bool drive(run *r, const machine *a, int32_t index, int32_t at, int32_t h
 static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t t, bool was)
 {
     judge *j = &r->judges[index];
-    const machine a = machine_of(r, index);
-    const bool some = (a.gap > 0) && was && j->sorted;
+    const machine *a = &r->part->machines[index];
+    const bool some = (a->gap > 0) && was && j->sorted;
     int64_t next_due = NEVER;
     int64_t latest = INT64_MIN;
     int32_t before = -1;
@@ -129,7 +129,7 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
         attempt *x = attempt_at(r->home, at);
         const int32_t next = x->next;
         const bool waits = some && (x->due > t); /* and so do all behind it */
-        if (waits || drive(r, &a, index, at, how, from, t, &x->due)) {
+        if (waits || drive(r, a, index, at, how, from, t, &x->due)) {
             next_due = least(next_due, x->due);
             j->sorted = j->sorted && (latest <= x->due);
             latest = x->due;
@@ -207,12 +207,10 @@ void visit_judge(run *r, int32_t index, int64_t t)
 static bool remains(run *r, int32_t index, int32_t at, int64_t t)
 {
     attempt *x = attempt_at(r->home, at);
-    machine a;
     if (is_networked(r, index)) {
         return network_enter(r, index, at, t);
     }
-    a = machine_of(r, index);
-    return drive(r, &a, index, at, BY_STEP, t, t, &x->due);
+    return drive(r, &r->part->machines[index], index, at, BY_STEP, t, t, &x->due);
 }
 
 /* Start an attempt that is judged in this run. */
@@ -236,7 +234,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     x->next = -1;
     x->location = WAITING;
     if (judged->automaton >= 0) {
-        x->location = PLAN(r)->automata[judged->automaton].initial;
+        x->location = r->part->machines[index].initial;
     }
     x->sure = is_sure(r, index);
     x->clouded = !x->sure;

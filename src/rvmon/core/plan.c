@@ -96,6 +96,31 @@ bool plan_view(plan *p, const void *bytes, size_t size)
     return true;
 }
 
+machine machine_view(const plan *p, const automaton_plan *a)
+{
+    machine made;
+    made.class_of = &p->ints[a->class_of];
+    made.bases = &p->ints[a->bases];
+    made.widths = &p->ints[a->widths];
+    made.strides = &p->ints[a->strides];
+    made.cut_first = &p->ints[a->cut_first];
+    made.cuts = &p->ticks[a->cuts];
+    made.edges = &p->ints[a->edges];
+    made.targets = &p->ints[a->targets];
+    made.sources = &p->ints[a->sources];
+    made.time_values = &p->ints[a->time_values];
+    made.clause_first = &p->ints[a->clause_first];
+    made.test_first = &p->ints[a->test_first];
+    made.tests = &p->ints[a->tests];
+    made.ages = &p->ticks[a->ages];
+    made.gap = p->header->gap;
+    made.step = (made.gap > 0) ? made.gap : 1;
+    made.initial = a->initial;
+    made.clocks = a->clocks;
+    made.classes = a->classes;
+    return made;
+}
+
 static bool is_within(int64_t x, int64_t low, int64_t behind)
 {
     return (x >= low) && (x < behind);

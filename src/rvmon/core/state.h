@@ -35,6 +35,32 @@ void arena_release(arena *a);                     /* all of it */
 
 /* ---- plan.c: the plan, checked, with a pointer for each section */
 
+/* Clocks that one automaton may have. */
+#define CLOCKS_MOST 64
+
+/* An automaton with a pointer for each of its tables; see `automaton_plan`. */
+typedef struct {
+    const int32_t *class_of;
+    const int32_t *bases;
+    const int32_t *widths;
+    const int32_t *strides;
+    const int32_t *cut_first;
+    const int64_t *cuts;
+    const int32_t *edges;
+    const int32_t *targets;
+    const int32_t *sources;
+    const int32_t *time_values;
+    const int32_t *clause_first;
+    const int32_t *test_first;
+    const int32_t *tests;
+    const int64_t *ages;
+    int64_t gap;
+    int64_t step;
+    int32_t initial;
+    int32_t clocks;
+    int32_t classes;
+} machine;
+
 typedef struct {
     const part_plan *plan;
     const signal_plan *signals;
@@ -43,8 +69,10 @@ typedef struct {
     const node_plan *nodes;
     const judge_plan *judges;
     const form_plan *forms;
+    machine *machines;         /* by judge that has an automaton */
     int32_t *timed;            /* by timer, the node */
     int32_t *perishable;       /* by number among these, the signal */
+    bool has_episodes;         /* whether some attempt runs until its trigger is false */
     bool restarts;             /* whether some failure may be followed by another attempt */
 } part;
 
@@ -73,6 +101,7 @@ typedef struct {
 } plan;
 
 bool plan_view(plan *p, const void *bytes, size_t size);
+machine machine_view(const plan *p, const automaton_plan *a);
 
 /* ---- the state */
 
@@ -329,7 +358,7 @@ typedef struct {
     int32_t newer;
 } key;
 
-/* An update of a part: the number there, and what it says. */
+/* An update of a part: the signal or event there, and what it says. */
 typedef struct {
     int32_t local;
     bool event;
@@ -408,6 +437,7 @@ struct rv_monitor {
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;
 };
@@ -503,18 +533,10 @@ void settle_phase(run *r);
 
 /* ---- automata.c: one attempt through positions and time */
 typedef struct {
-    const automaton_plan *plan;
-    const plan *whole;
-    int64_t step;
-    int64_t gap;
-} machine;
-
-typedef struct {
     int32_t location;
     int64_t *clocks;
 } token;
 
-machine machine_of(const run *r, int32_t index);
 int32_t class_of_letter(const run *r, int32_t index, bool better);
 bool step_token(const machine *a, token *k, int64_t t, int32_t letter);
 bool rests(const machine *a, const token *k, int64_t t, int32_t letter);
@@ -523,8 +545,6 @@ int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until);
 int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,
                   bool *slides);
 bool holds_at_end(const machine *a, const attempt *x, int64_t end, int64_t reached);
-
-#define CLOCKS_MOST 64
 
 /* ---- attempts.c */
 bool is_true(const run *r, int32_t node);
