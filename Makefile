@@ -17,7 +17,7 @@ help:  ## show this list
 demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; results in out/demo
 	@$(BIN)/handover demo --out out/demo
 
-core: | $(BIN)/python  ## compile the native core in place, a second; warnings are errors
+core: | $(BIN)/python  ## compile the native core in place, 4 seconds; warnings are errors
 	@CFLAGS="$(WARNINGS) $$CFLAGS" $(BIN)/python hatch_build.py
 
 test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the seconds of each folder

@@ -116,7 +116,7 @@ def build(folder: Path) -> Path:
     Raises:
         SystemExit: the compiler failed; the text is what it said.
     """
-    command = compiler() or [sys.executable, "-m", "ziglang", "cc"]
+    command = compiler() or [sys.executable, "-m", "ziglang", "cc", "-g0"]  # it debugs unasked
     flags = [*shlex.split(os.environ.get("CFLAGS", "")), *FLAGS, *_flags_of_python(), *_machine()]
     target = folder / file_name()
     with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made, _threads() as threads:
