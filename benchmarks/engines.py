@@ -108,9 +108,6 @@ RELATED = {
 
 _ELSEWHERE = (
     "codegen/c_build.py",
-    "codegen/c_program.py",
-    "codegen/c/program*",
-    "codegen/c/read_*",
     "codegen/c/monitor.hpp.in",
     "codegen/python_file.py",
 )

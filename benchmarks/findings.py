@@ -91,10 +91,6 @@ GOALS = (
     ),
     Goal("batch in memory, no compiler", "batch", "rvmon evaluate", "reelay", "past", 30),
     Goal("batch in memory, generated C", "batch", "rvmon evaluate, C", "reelay C++", "past", 10),
-    Goal("whole process, CSV", "process", "rvmon build, csv", "reelay C++, csv", "past", 2),
-    Goal(
-        "whole process, binary", "process", "rvmon build, binary", "reelay C++, binary", "past", 2
-    ),
     Goal("whole process, CSV", "process", "rvmon run, csv", "reelay C++, csv", "past", 0.5),
     Goal("whole process, CSV", "process", "rvmon run -e c, csv", "reelay C++, csv", "past", 0.5),
     Goal("whole process, Parquet", "process", "rvmon run, parquet", "reelay, parquet", "past", 5),
@@ -127,10 +123,9 @@ class Quoted:
 
 QUOTED = (
     Quoted("batch in memory", "batch", "rvmon evaluate, C", "R2U2 C", (37, 195), 10),
-    Quoted("whole process, CSV", "process", "rvmon build, csv", "R2U2 C", (107, 179), 2),
     Quoted("whole process, CSV", "process", "rvmon run, csv", "R2U2 C", (107, 179), 0.5),
     Quoted("whole process, CSV", "process", "rvmon run -e c, csv", "R2U2 C", (107, 179), 0.5),
-    Quoted("whole process, JSONL", "process", "rvmon build, jsonl", "reelay", (128, 164), 2),
+    Quoted("whole process, JSONL", "process", "rvmon run, jsonl", "reelay", (128, 164), 2),
 )
 """Measured on another machine on these families; R2U2 is not on the package index."""
 

@@ -15,7 +15,6 @@ import csv
 import io
 import json
 import re
-import subprocess
 import tempfile
 import time
 import xml.etree.ElementTree as ET
@@ -324,20 +323,11 @@ def _holds(name: str, text: str, ids: Names) -> bool:
 
 
 def through_c(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
-    """What compiled C makes of names, in this process and by itself; as `through_commands`."""
+    """What compiled C makes of names; as `through_commands`."""
     files = written(names, folder)
     run = ["run", files.spec, files.trace, "--format", "json", "--engine", "c"]
     text = _printed(lambda: command(run))
     yield "run, engine c", _calm(text) and _holds("run, json", text, files.ids)
-    command(["build", files.spec, "-o", str(folder / "judge")])
-    text, _ = _program(folder, files.trace)
-    yield "C program", _calm(text) and _holds("run, json", text, files.ids)
-    yield "C program, broken", _calm(_program(folder, files.broken)[1])
-
-
-def _program(folder: Path, trace: str) -> tuple[str, str]:
-    done = subprocess.run([folder / "judge", trace], capture_output=True, check=False)
-    return done.stdout.decode(), done.stderr.decode()
 
 
 def main(words: Sequence[str] | None = None) -> int:

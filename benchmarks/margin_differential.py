@@ -3,7 +3,7 @@ r"""Robustness, by every way that measures it, against its oracle on random spec
     python -m benchmarks.margin_differential --pairs 10000 --seed 1
 
 `samples` is the monitor that is stepped, `arrays` what measures a recording in columns; `c` and
-`c-arrays` are the same in C; `program` is what `rvmon build --robustness` makes, on JSON lines.
+`c-arrays` are the same in C.
 Prints how much was compared and every disagreement, shrunk; exits 1 if there is one.
 """
 

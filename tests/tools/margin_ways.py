@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import random
-import subprocess
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rvmon.codegen.c_build import built
-from rvmon.codegen.c_program import program_build
-from rvmon.dataflow.margins import INFINITE
 from rvmon.monitor.compiled.refusal import of_measured_c
 from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor, measuring_library
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.session import Spec
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key, key_of
+from rvmon.testing.compare import Key
 from rvmon.trace.sample import Sample
 from tests.tools.doors import content_of, whole
 from tests.tools.judgement import Judgement
@@ -76,45 +69,6 @@ def by_compiled_arrays(spec: Spec, case: Case) -> Mapping[Key, Figures] | None:
     return by_arrays(spec, case, "c") if _is_compiled(spec) else None
 
 
-def by_program(spec: Spec, case: Case) -> Mapping[Key, object] | None:
-    """What a program prints with the attempts of JSON lines."""
-    if any(map(of_measured_c, spec._compiled.requirements.values())):
-        return None
-    build = program_build(spec.plan(robustness=True), measured=True)
-    program = built(replace(build, flags=("-O0",)))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "a.jsonl"
-        path.write_text("".join(f"{json.dumps(_line(sample))}\n" for sample in case.samples))
-        done = subprocess.run([program, path], capture_output=True, text=True, check=False)  # noqa: S603
-    if done.returncode not in (0, 1):
-        return None
-    return {
-        (name, one.get("in_doubt", False), one["number"]): one.get("robustness", "none")
-        for name, own in json.loads(done.stdout)["requirements"].items()
-        for one in own["attempts"]
-    }
-
-
-def _line(sample: Sample) -> dict[str, object]:
-    values = {name: None if value != value else value for name, value in sample.values.items()}
-    return {"t_ns": sample.t, **values}
-
-
-def _printed(judgement: Judgement) -> Mapping[Key, object]:
-    found = margins(judgement)
-    texts: dict[Key, object] = {}
-    for attempt in judgement.report.attempts:
-        key = key_of(attempt)
-        figure = Robustness(*found[key]).of(attempt)
-        texts[key] = "none" if figure is None else None if abs(figure) == INFINITE else figure
-    return texts
-
-
-def in_lines(case: Case) -> Case:
-    """A case that has nothing but its samples."""
-    return replace(case, actions=case.samples, end=None, names=None)
-
-
 def in_columns(case: Case) -> Case:
     """A case each sample of which says something of all names, as rows do."""
     content = whole(content_of(random.Random(len(case.actions)), case))
@@ -153,5 +107,4 @@ WAYS: Mapping[str, Way] = {
     "c": Way(by_compiled),
     "arrays": Way(by_arrays, in_columns),
     "c-arrays": Way(by_compiled_arrays, in_columns),
-    "program": Way(by_program, in_lines, _printed),
 }

@@ -30,9 +30,6 @@ FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-ffp-contract=off"
 NATIVE = "-march=native"
 """Has the compiler use all that this machine's processor can do."""
 
-THREADS = "-pthread"
-"""Has a program read on several processors at a time."""
-
 
 def compiler() -> list[str]:
     """The command of the C compiler: `$CC`, be it with options, or the first of cc, gcc, clang.
@@ -198,8 +195,8 @@ def _made(folder: Path, texts: Mapping[str, str], command: Sequence[str]) -> byt
         made = Path(scratch) / "made"
         words = [*command, "-o", str(made), "-lm"]
         done = _run(words, scratch)
-        fewer = [word for word in words if word not in (NATIVE, THREADS)]
-        if done.returncode and fewer != words:  # not every compiler has them for every processor
+        fewer = [word for word in words if word != NATIVE]
+        if done.returncode and fewer != words:  # not every compiler has it for every processor
             words = fewer
             done = _run(words, scratch)
         if done.returncode:

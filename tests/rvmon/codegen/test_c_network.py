@@ -1,6 +1,5 @@
 """Generated C where no automaton judges: delay networks, their capacities, what they foresee."""
 
-import json
 import random
 import subprocess
 
@@ -8,7 +7,6 @@ import pytest
 from tests.tools.gcc import SANITIZED, STRICT
 
 import rvmon
-from rvmon.cli import main
 from rvmon.codegen.c_source import c_files
 
 pytestmark = pytest.mark.compiler
@@ -128,30 +126,6 @@ def test_columns_are_judged_alike():
     assert len(fast.attempts) > 20
     found = [[bare(one) for one in report.attempts] for report in (fast, spec.evaluate(columns))]
     assert found[0] == found[1]
-
-
-def test_a_program_judges_a_recording(tmp_path, capsys):
-    """What `rvmon build` makes prints what `rvmon run` does."""
-    spec, trace = tmp_path / "s.rv", tmp_path / "a.csv"
-    spec.write_text(text_of(FORMS["later"]))
-    rng = random.Random(4)
-    lines = [f"{0.7 * row:.1f},{rng.randint(0, 1)},{rng.randint(0, 3) // 3}" for row in range(500)]
-    trace.write_text("\n".join(["t,p,q", *lines, ""]))
-    assert main(["build", str(spec), "-o", str(tmp_path / "judge")]) == 0
-    done = subprocess.run(  # noqa: S603
-        [tmp_path / "judge", str(trace)], capture_output=True, text=True, check=False
-    )
-    capsys.readouterr()
-    code = main(["run", str(spec), str(trace), "--format", "json", "--engine", "network"])
-    judged, run = json.loads(done.stdout), json.loads(capsys.readouterr().out)
-    assert (done.returncode, code) == (1, 1)
-    kept = ("number", "triggered", "decided", "verdict", "decision")
-    attempts = [
-        [{key: one[key] for key in kept} for one in made["requirements"]["R1"]["attempts"]]
-        for made in (judged, run)
-    ]
-    assert len(attempts[0]) > 20
-    assert attempts[0] == attempts[1]
 
 
 def test_what_time_alone_decides_is_foreseen():

@@ -7,7 +7,6 @@ import pytest
 from tests.tools.gcc import SANITIZED, STRICT
 
 import rvmon
-from rvmon.cli import main
 from rvmon.codegen.c_source import c_files
 from rvmon.testing.compare import outcomes
 
@@ -37,6 +36,8 @@ requirement R4 "both, looking at what was before"
   for each k in go.id
   let a = x / 3
 """
+
+
 ROWS = """t,x,mode,go.id,done.id
 0,1,red,,
 0.5,2.25,green,1,
@@ -51,41 +52,14 @@ ROWS = """t,x,mode,go.id,done.id
 """
 
 
-def told(report):
-    """The verdicts in a report, and its attempts without reasons."""
-    keys = ("number", "triggered", "decided", "verdict", "decision", "captured", "decided_s")
-    return {
-        name: (one["verdict"], [[each.get(key) for key in keys] for each in one["attempts"]])
-        for name, one in json.loads(report)["requirements"].items()
-    }
-
-
-def test_the_program_judges_as_run_does(tmp_path, capfd):
+def test_columns_are_judged_as_python_judges_them(tmp_path):
     """Verdicts, instants and captured values, two payloads at one instant among them."""
-    (tmp_path / "s.rv").write_text(SPEC)
-    (tmp_path / "x.csv").write_text(ROWS)
-    assert main(["build", str(tmp_path / "s.rv"), "-o", str(tmp_path / "judge")]) == 0
-    capfd.readouterr()
-    done = subprocess.run(  # noqa: S603
-        [tmp_path / "judge", tmp_path / "x.csv"], capture_output=True, text=True, check=False
-    )
-    main(["run", str(tmp_path / "s.rv"), str(tmp_path / "x.csv"), "--format", "json"])
-    by_c, by_python = map(told, (done.stdout, capfd.readouterr().out))
-    assert by_c == by_python
-    assert sum(len(attempts) for _, attempts in by_c.values()) > 10
-
-
-def test_two_payloads_for_who_reads_them_otherwise_are_refused(tmp_path):
-    """The program says so where not all that reads the fields has `for each`."""
-    text = f"{SPEC}requirement R5\n  upon go.id > 1\n  then x > 0\n"
-    (tmp_path / "s.rv").write_text(text)
-    (tmp_path / "x.csv").write_text(ROWS)
-    assert main(["build", str(tmp_path / "s.rv"), "-o", str(tmp_path / "judge")]) == 0
-    done = subprocess.run(  # noqa: S603
-        [tmp_path / "judge", tmp_path / "x.csv"], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert "two payloads of one event" in done.stderr
+    path = tmp_path / "x.csv"
+    path.write_text(ROWS)
+    spec = rvmon.loads(SPEC)
+    by_c, by_python = (spec.evaluate(path, engine=engine) for engine in ("c", "auto"))
+    assert outcomes(by_c) == outcomes(by_python)
+    assert len(by_c.attempts) > 10
 
 
 def test_a_capacity_that_is_too_small_is_told(tmp_path):

@@ -1,1 +1,1 @@
-"""Compiled C as a monitor: of streams, of columns, of one recording alone."""
+"""Compiled C as a monitor: of streams, of columns."""

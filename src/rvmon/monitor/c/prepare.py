@@ -11,11 +11,8 @@ from typing import TYPE_CHECKING
 from rvmon.codegen.c_batch import batch_build
 from rvmon.codegen.c_build import built
 from rvmon.codegen.c_online import online_build
-from rvmon.errors import RvmonError
 from rvmon.monitor.c.prepared import prepare_beside, prepare_measuring
-from rvmon.monitor.c.program import program_of
 from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.readers.blocks import NotPlainError
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled.specification import CompiledSpec
@@ -26,8 +23,8 @@ class Prepared:
     """One file that lies ready in the cache.
 
     Attributes:
-        use: `auto`: the engine that takes it in streams; `streams`, `columns`, or `short files`:
-            what the engine `c` judges by it; `robustness`: what both measure by it.
+        use: `auto`: the engine that takes it in streams; `streams` or `columns`: what
+            the engine `c` judges by it; `robustness`: what both measure by it.
         path: of the file.
         size: bytes.
         seconds: that it took, few if it was there.
@@ -39,7 +36,7 @@ class Prepared:
     seconds: float
 
 
-USES = ("auto", "streams", "columns", "short files", "robustness")
+USES = ("auto", "streams", "columns", "robustness")
 
 
 def prepare(
@@ -64,17 +61,12 @@ def prepare(
         lambda: prepare_beside(compiled, chosen),
         lambda: built(online_build(plan)),
         lambda: built(batch_build(plan)),
-        lambda: program_of(compiled, only),
         lambda: prepare_measuring(compiled, chosen) if robustness else None,
     )
     found: list[Prepared] = []
     for use, make in zip(USES, makers, strict=True):
         started = time.perf_counter()
-        try:
-            path = make()
-        except NotPlainError as error:
-            message = f"{error}: leave out RVMON_CACHE=off, and let no others write to its folder"
-            raise RvmonError(message) from None
+        path = make()
         if path is None:
             continue
         seconds = time.perf_counter() - started

@@ -44,16 +44,9 @@ class C:
         return monitor
 
     def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-        """By a program for one recording alone, else by columns, else by samples laid as such."""
+        """By columns, else by samples laid as such."""
         if asked.only == ():
             return engine_named("auto").judge(compiled, source, asked)
-        if source.is_alone:
-            from rvmon.monitor.c.program import judged_by_program
-
-            try:
-                return replace(judged_by_program(compiled, source, asked.only), engine=self.name)
-            except NotPlainError:
-                pass
         from rvmon.monitor.c.batch import evaluate_columns, evaluate_samples, library_of
 
         checked, library = compiled.checked, library_of(compiled, asked.only)

@@ -15,7 +15,7 @@ from rvmon.monitor.robustness.monitor import RobustnessMonitor
 pytestmark = pytest.mark.compiler
 
 SPEC = "spec s\nsignal p : bool\nrequirement R1\n  always p\nrequirement R2\n  upon p then p\n"
-USES = ["auto", "streams", "columns", "short files", "robustness"]
+USES = ["auto", "streams", "columns", "robustness"]
 TRACE = {"t": [0.0, 1.0], "p": [True, False]}
 
 
@@ -43,7 +43,7 @@ def no_compiler(home, monkeypatch):
 
 
 def test_what_is_prepared_needs_no_compiler(tmp_path, capsys):
-    """Streams, columns and short files are judged by what lies in the cache."""
+    """Streams and columns are judged by what lies in the cache."""
     spec = rvmon.loads(SPEC)
     assert spec.evaluate(TRACE, engine="c").verdicts == {"R1": "F", "R2": "P"}
     monitor = spec.monitor(engine="c")
@@ -98,13 +98,6 @@ def test_a_requirement_that_c_refuses_is_named(tmp_path, capsys):
     text = "spec s\ntime sampled\nmax delay 1 s\nsignal p : bool\nrequirement R1\n  always p\n"
     with pytest.raises(rvmon.RvmonError, match=r"R1 has samples that come late.*leave out"):
         rvmon.loads(text).prepare()
-
-
-def test_without_a_cache_nothing_can_be_prepared(monkeypatch):
-    """It is said how to have one."""
-    monkeypatch.setenv("RVMON_CACHE", "off")
-    with pytest.raises(rvmon.RvmonError, match=r"no cache .*RVMON_CACHE=off"):
-        rvmon.loads(SPEC).prepare()
 
 
 def test_auto_takes_what_is_compiled_and_gives_reasons():
