@@ -103,7 +103,6 @@ STEPS = (
     ("rvmon table", "step", "automaton"),
     ("rvmon step", "step", "python"),
     ("rvmon step, changes", "changes", "python"),
-    ("rvmon step, prepared", "step", "prepared"),
     ("rvmon step, C", "step", "c"),
 )
 COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evaluate", "c"))

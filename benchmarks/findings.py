@@ -43,14 +43,6 @@ GOALS = (
     Goal("online, one step, generated C", "online", "rvmon step, C", "mstlo", "future", 5),
     Goal("online, only what changed", "online", "rvmon step, changes", "reelay", "past", 5),
     Goal("values that change at every row", "unsteady", "rvmon step", "sentil", "future", 0.8),
-    Goal(
-        "values that change at every row, prepared",
-        "unsteady",
-        "rvmon step, prepared",
-        "sentil",
-        "future",
-        3,
-    ),
     Goal("values that change at every row, C", "unsteady", "rvmon step, C", "sentil", "future", 4),
     Goal("values that change at every row", "unsteady", "rvmon step", "mstlo", "future", 5),
     Goal("values that change at every row, C", "unsteady", "rvmon step, C", "mstlo", "future", 5),
@@ -79,7 +71,7 @@ GOALS = (
         50,
         ("100 monitors",),
     ),
-    Goal("10 to 1,000 monitors", "many", "rvmon step, prepared", "sentil", "future", 3),
+    Goal("10 to 1,000 monitors", "many", "rvmon step, C", "sentil", "future", 3),
     Goal(
         "batch in memory, no compiler, at most 10 % of rows change",
         "batch",

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
-    from rvmon.monitor.c.prepare import Prepared
     from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
@@ -126,31 +125,6 @@ class Spec:
         from rvmon.monitor.compiled.code_plan import plan_alone
 
         return plan_alone(self._compiled, only, measured=robustness)
-
-    def prepare(
-        self,
-        *,
-        only: Iterable[str] | None = None,
-        ready: Callable[[Prepared], object] = id,
-        robustness: bool = False,
-    ) -> tuple[Prepared, ...]:
-        """Compile ahead, into the cache, what makes streams faster and nothing else different.
-
-        `monitor()` then has compiled code beside it, where `engines` says of no requirement that
-        it is refused as `prepared`. Compiled as well is what the engine `c` would at its first use.
-
-        Args:
-            only: ids of the requirements, as the engines will be asked for them; default all.
-            ready: called with each file when it is there.
-            robustness: whether `robustness_monitor()` is to have compiled code as well.
-
-        Raises:
-            UnknownNameError: there is no such requirement.
-            RvmonError: there is no compiler or no cache, or the engine refuses a requirement.
-        """
-        from rvmon.monitor.c.prepare import prepare
-
-        return prepare(self._compiled, requirements_asked(self.checked, only), ready, robustness)
 
     def monitor(
         self,

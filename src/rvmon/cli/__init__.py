@@ -37,7 +37,6 @@ COMMANDS = {
     "init": "a starter specification from a recording",
     "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as Python or C that runs alone, or as automata",
-    "prepare": "compile ahead what the engine c runs",
     "cross": "a recording, evaluated by every engine and installed peer: do they agree?",
     "compare": "what has changed between two files of verdicts",
     "evidence": "whether evidence that was kept still holds",

@@ -51,8 +51,8 @@ def too_large(name: str, value: int, limit: int, t: int) -> TraceError:
     """The error that a whole number of a sample is beyond what doubles compute with exactly."""
     return TraceError(
         f"sample at {format_ticks(t)}: `{name}` is {reprlib.repr(value)}, but compiled monitors "
-        f"compute with doubles, here exactly up to {limit} only: use the engine `auto` (not "
-        "prepared for robustness), or make it a float"
+        f"compute with doubles, here exactly up to {limit} only: use the engine `auto`, "
+        "or make it a float"
     )
 
 

@@ -97,7 +97,7 @@ class Forms:
 
 
 class Networks:
-    """The networks of a plan, one for each judge without an automaton, or which notes letters.
+    """The networks of a plan, one for each judge without an automaton.
 
     Args:
         plan: what is generated.
@@ -108,8 +108,7 @@ class Networks:
 
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
-        judges = enumerate(plan.judges)
-        own = [n for n, (_, rule) in judges if rule.automaton is None or rule.is_lettered]
+        own = [n for n, (_, rule) in enumerate(plan.judges) if rule.automaton is None]
         self.number = {index: number for number, index in enumerate(own)}
 
     @cached_property

@@ -66,7 +66,7 @@ def nodes_source(plan: Plan, names: Names) -> Iterator[str]:
             operands = [_operand(place, one, guards) for one in plan.graph.operands[place]]
             lines = [*_node(plan, names, place, momentary[place], operands)]
             if place in stored:
-                lines += _storing(place, heard[group], noted=_is_noted(plan))
+                lines.append(_storing(place, heard[group]))
             if place in guards:
                 lines = [*_guarded(plan, names, place, guards, lines)]
             yield from (f"    {line}" for line in lines)
@@ -235,24 +235,16 @@ def _node(
         yield "}"
 
 
-def _storing(place: int, heard: _Heard, *, noted: bool) -> Iterator[str]:
+def _storing(place: int, heard: _Heard) -> str:
     if any(mask >> place % GROUP & 1 for mask in heard.masks()):
-        yield f"changed |= noted(m, {place}, n{place}) << {place % GROUP}U;"
-        return
-    if noted:
-        yield f"NOTE_CHANGE(m, {place}, 0U);"
-    yield f"m->truth[{place}] = n{place};"
-
-
-def _is_noted(plan: Plan) -> bool:
-    """Whether it is noted of decisions how the nodes stood."""
-    return all(rule.noted is not None for rule in plan.rules)
+        return f"changed |= noted(m, {place}, n{place}) << {place % GROUP}U;"
+    return f"m->truth[{place}] = n{place};"
 
 
 def _stored(plan: Plan) -> set[int]:
-    """The nodes whose truth is read elsewhere than in their group; all, if decisions are noted."""
+    """The nodes whose truth is read elsewhere than in their group."""
     graph = plan.graph
-    if any(rule.is_apart for rule in plan.rules) or _is_noted(plan):
+    if any(rule.is_apart for rule in plan.rules):
         return set(range(len(graph.nodes)))  # also by `varying_source`
     found = {graph.index[state] for rule in plan.rules for state in rule.states}
     found |= set(graph.reads)  # samples are compared with the leaves

@@ -22,27 +22,18 @@ from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import whole_limits
 from rvmon.codegen.c_margins import Measures
 from rvmon.codegen.c_names import Names
-from rvmon.codegen.c_network import Networks
 from rvmon.codegen.c_source import c_files
-from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array, lists
+from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array
 from rvmon.codegen.c_text import filled, template
 from rvmon.codegen.comment import comment
-from rvmon.dataflow.chain import reach_of
 from rvmon.errors import RvmonError
-from rvmon.formula.numeric import operands
 from rvmon.plan.plan import Plan
-from rvmon.spec.checked.formula import Arithmetic, Compare, FieldValue, UpdateValue
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 
 _PARTS = ("online.c.in", "online_calls.c.in", "online_type.c.in")
 _PARTS_MEASURED = (*_PARTS[:2], "online_margins.c.in", _PARTS[2])
-_PARTS_BESIDE = (
-    *_PARTS[:2],
-    *(f"beside{part}.c.in" for part in ("_letters", "", "_state")),
-    _PARTS[2],
-)
 
 _MODULE = "rvmon_online"
 
@@ -62,9 +53,6 @@ NEVER = (1 << 63) - 1
 NOT_YET = -1 << 63
 """The instant of what did not happen."""
 
-
-NOBODY, BY_CHANGE, ALWAYS = range(3)
-"""Whom it concerns what a sample says of a name; see `Core.lend`."""
 
 _SLOTS = (
     *("requirement", "number", "triggered", "decided", "verdict", "decision"),
@@ -106,30 +94,6 @@ class Core(Protocol):
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 
-    def lend(self, state: bytes, ledger: list[Attempt], concerns: bytes, /) -> None:
-        """Take a state over, beside a monitor in Python; what is decided comes into its ledger.
-
-        `concerns` is, per name, whether Python looks at samples of another value of it, or at all.
-        """
-
-    def look_at(self, t: int, /) -> None:
-        """Have Python look at all samples from `t` on; said anew after each at which it looks."""
-
-    def take_back(self) -> bytes:
-        """The state, as `lend` takes it; Python goes on from there once it says `give_up`."""
-
-    def give_up(self) -> None:
-        """Take no samples until the next `lend`."""
-
-    def is_fresh(self, t: int, /) -> bool:
-        """Whether all that can become stale is not so at `t`, if nothing comes."""
-
-    def attend(self, attended: bool, /) -> None:
-        """Say whether what hears of decisions is called; it says `free` when it has looked."""
-
-    def free(self) -> None:
-        """Have samples be taken, as before a decision was heard of."""
-
     def close(self, until: int | None, /) -> int:
         """End the run; gives the last instant, or `NOT_YET`."""
 
@@ -148,11 +112,8 @@ class Core(Protocol):
     def times(self) -> tuple[bool, int, int, int]:
         """Whether there was a sample; when the first one was, the last, and the present."""
 
-    def hold(self, held: bool, /) -> bool:
-        """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly.
-
-        False, and nothing is done, while a decision is heard of.
-        """
+    def hold(self, held: bool, /) -> None:
+        """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly."""
 
     def next_due(self) -> int:
         """The next instant at which time alone can decide something, or `NEVER`."""
@@ -203,8 +164,6 @@ class OnlineLibrary:
         *,
         look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]],
         look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
-        heard: Callable[[Sequence[Attempt]], object] | None = None,
-        details: Any = None,
         measured: tuple[Any, ...] = (),
     ) -> Core:
         """Begin a run.
@@ -213,8 +172,6 @@ class OnlineLibrary:
             absent: the names without a source.
             look_closer: judges the samples that are not plain values in a `dict`, at seconds.
             look_closer_ns: the same at ticks.
-            heard: beside Python, hears of decisions if they are attended.
-            details: beside Python what gives attempts their other fields, one per rule.
             measured: where robustness is measured, whether of each position of a sample, and the
                 type of a figure with its fields, and that of its bounds with theirs.
         """
@@ -233,28 +190,25 @@ class OnlineLibrary:
             {name: names.number(name) for name in called if name not in absent},
             bytes(name in absent for name in called),
             (look_closer, look_closer_ns),
-            (RvmonError, heard),
+            RvmonError,
             (
                 Attempt,
                 tuple(getattr(Attempt, name) for name in _SLOTS),
                 tuple(rule.requirement.id for rule in plan.asked),
                 VERDICTS,
                 DECISIONS,
-                _Details(plan) if details is None else details,
+                _Details(plan),
             ),
             measured,
         )
 
 
-def online_build(
-    plan: Plan, *, optimised: bool = True, beside: bool = False, measured: bool = False
-) -> Build:
+def online_build(plan: Plan, *, optimised: bool = True, measured: bool = False) -> Build:
     """The module of a plan.
 
     Args:
         plan: of requirements that all have automata.
         optimised: whether it is to be fast; otherwise it is compiled sooner.
-        beside: whether it stands beside a monitor in Python, which lends its state.
         measured: whether it measures robustness, and not of verdicts.
 
     Raises:
@@ -266,7 +220,7 @@ def online_build(
     name = f"{made.prefix}_online.c"
     texts = {
         **made.texts,
-        name: online_source(named, beside=beside, measured=measured),
+        name: online_source(named, measured=measured),
         "python.txt": sys.version,
     }
     flags = [*(FAST if optimised else ("-O0",)), *_SHARED]
@@ -275,22 +229,19 @@ def online_build(
     )
 
 
-def online_library(
-    plan: Plan, *, optimised: bool = True, beside: bool = False, measured: bool = False
-) -> OnlineLibrary:
+def online_library(plan: Plan, *, optimised: bool = True, measured: bool = False) -> OnlineLibrary:
     """Compile a plan, once for each content.
 
     Args:
         plan: as for `online_build`; so are the others.
         optimised: whether it is to be fast.
-        beside: see there.
         measured: see there.
 
     Raises:
         RvmonError: there is no C compiler, or no header of Python; a requirement has no automaton,
             or a number of the specification is no double.
     """
-    build = online_build(plan, optimised=optimised, beside=beside, measured=measured)
+    build = online_build(plan, optimised=optimised, measured=measured)
     return library_of(plan, loaded(build, type_in))
 
 
@@ -316,60 +267,26 @@ def type_in(path: Path) -> Callable[..., Core]:
     return made
 
 
-def online_source(plan: Plan, *, beside: bool = False, measured: bool = False) -> str:
+def online_source(plan: Plan, *, measured: bool = False) -> str:
     """The source of the module; it includes that of `rvmon.codegen.c_source.c_files`.
 
     Args:
         plan: see `online_build`; so are the others.
-        beside: see there.
         measured: see there.
     """
     names = Names(plan)
-    heads = ["beside"] if beside else ["margin"] if measured else []
     places = {  # the first ones hold others
-        "HEAD": "".join(template(f"{head}_head.c.in") for head in heads),
+        "HEAD": template("margin_head.c.in") if measured else "",
         "MEASURES": str(int(measured)),
         "MEASURING": Measures(plan).source() if measured else "",
-        "BESIDE": str(int(beside)),
         "HEAP": template("heap.c.in"),
-        "KINDS": "\n".join((*_kinds(plan, names), *(_noted(plan, names) if beside else ()))),
+        "KINDS": "\n".join(_kinds(plan, names)),
         "SPEC": comment(plan.spec.name),
         "PREFIX": names.prefix.upper(),
         "prefix": names.prefix,
     }
-    parts = _PARTS_BESIDE if beside else _PARTS_MEASURED if measured else _PARTS
+    parts = _PARTS_MEASURED if measured else _PARTS
     return filled("".join(template(part) for part in parts), places)
-
-
-def _noted(plan: Plan, names: Names) -> Iterator[str]:
-    """What a module beside Python notes, and what it may take."""
-    index = plan.graph.index
-    leaves = [[index[leaf] for leaf in rule.noted or ()] for rule in plan.rules]
-    yield from lists("seen_first", "seen_leaves", leaves)
-    places = [[index[state] for state in rule.alphabet.propositions] for rule in plan.rules]
-    yield from lists("told_first", "told_places", places)
-    reaches = [reach_of(one) for one in Networks(plan).plans]
-    yield array("int64_t", "reaches", [reach or 0 for reach in reaches])
-    compared = [state.leaf for state in plan.graph.nodes if isinstance(state.leaf, Compare)]
-    sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
-    parts = [part for side in sides for part in operands(side)]
-    read = {(part.event, part.field) for part in parts if isinstance(part, FieldValue)}
-    yield array("uint8_t", "fields_read", [int(one in read) for one in names.fields])
-    largest = largest_taken(plan)
-    test = "(x) == (x)" if largest is None else f"((x) <= {largest!r}) && ((x) >= -{largest!r})"
-    yield f"#define IS_WELCOME(x) ({test})"
-
-
-_MODERATE = 1e50
-"""Up to this magnitude sums and a few products of numbers are finite."""
-
-
-def largest_taken(plan: Plan) -> float | None:
-    """The greatest magnitude of a number that a module beside Python takes; `None`: any."""
-    compared = [state.leaf for state in plan.graph.nodes if isinstance(state.leaf, Compare)]
-    sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
-    calculates = any(isinstance(side, Arithmetic | UpdateValue) for side in sides)
-    return _MODERATE if calculates else None
 
 
 def _kinds(plan: Plan, names: Names) -> Iterator[str]:

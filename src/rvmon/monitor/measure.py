@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Protocol
 
-from rvmon.errors import TraceError, UnknownNameError
-from rvmon.monitor.c.notes import MEASURING, noted
+from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.refusal import of_measured_c
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
@@ -54,28 +52,18 @@ def robustness_monitor(
         only: ids of the requirements; `None`: all.
         settle: see there.
         sources: see there.
-        engine: `c`, compiled C; or `auto`, which takes that where it was prepared.
+        engine: `auto`, or `c`: compiled C.
         streams: see there.
 
     Raises:
         UnknownNameError: no such engine measures, or there is no such way to settle.
         RvmonError: compiled C does not measure a requirement, or there is no compiler.
     """
-    if not _is_c(engine) and not _is_prepared(compiled, only):
+    if not _is_c(engine):
         return RobustnessMonitor(compiled, only, settle, sources, streams=streams)
     from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
 
     return CompiledRobustnessMonitor(compiled, only, settle, sources, streams=streams)
-
-
-def _is_prepared(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
-    """Whether compiled C lies ready that measures the requirements as Python does."""
-    chosen = compiled.chosen(only)
-    if not noted(MEASURING, compiled, chosen):
-        return False
-    from rvmon.monitor.c.prepared import measuring_prepared
-
-    return measuring_prepared(compiled, chosen) is not None
 
 
 def _is_c(engine: str) -> bool:
@@ -112,9 +100,6 @@ def margins_of(
     margins = None
     if _is_c(engine):
         margins = _in_c(compiled, source, asked, streams=streams)
-    elif _is_prepared(compiled, asked.only):
-        with suppress(TraceError):  # what C does not take, or nobody: the others say so
-            margins = _in_c(compiled, source, asked, streams=streams)
     if margins is None and not _is_c(engine):
         judge = engine_named("auto").judge
         found = _by_columns(compiled, source, asked, judge, streams=streams)

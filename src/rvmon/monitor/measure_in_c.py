@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from rvmon.codegen.c_online import Core, OnlineLibrary, online_library
 from rvmon.dataflow.margins import INFINITE
 from rvmon.monitor.c.monitor import CompiledMonitor
-from rvmon.monitor.c.prepared import measuring_prepared
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -111,7 +110,7 @@ class CompiledRobustnessMonitor(RobustnessMonitor):
         streams: bool,
     ) -> CompiledRun:
         """See `RobustnessMonitor`."""
-        library = _library(compiled, chosen)
+        library = measuring_library(compiled, chosen)
         run = CompiledRun(library, compiled, chosen, settle, sources, streams=streams)
         vars(self).update(step=run.step, step_ns=run.step_ns)  # with nothing in between
         return run
@@ -144,7 +143,7 @@ def margins_of_columns(
     from rvmon.codegen.c_batch import exact_columns
     from rvmon.monitor.c.batch import out_of_order
 
-    library = _library(compiled, requirements)
+    library = measuring_library(compiled, requirements)
     plan = library.plan
     names = (*plan.signals, *plan.events)
     core = library.core(
@@ -189,12 +188,6 @@ def _stream(core: Core, requirement: int) -> Stream:
 
     times, *bounds = core.series(requirement)
     return Stream(np.frombuffer(times, np.int64), *map(np.frombuffer, bounds))
-
-
-def _library(compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]) -> OnlineLibrary:
-    """What was prepared, or else what is compiled now."""
-    found = measuring_prepared(compiled, requirements)
-    return measuring_library(compiled, requirements) if found is None else found
 
 
 def _types(*, streams: bool) -> tuple[Any, ...]:

@@ -176,15 +176,6 @@ class Unit(Nodes, Schedule):
             wake = min(wake, self.position + 1)
         self.wake = wake
 
-    def resume(self) -> None:
-        """Find anew whom what concerns, where rules were given another state between positions."""
-        self.set_up(self.rules)
-        for rule in self.rules:
-            self.note(rule)
-            if rule.pulse and rule.repeats:
-                self.repeating |= 1 << rule.index
-        self.set_alarm()
-
     # Time.
 
     def through(self, limit: int) -> None:

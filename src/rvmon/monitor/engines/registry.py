@@ -47,8 +47,6 @@ class Asked:
         settle: when a sample is taken for complete: `now`, or by the `next` stamp.
         sources: the signals and events that can arrive; `None`: all.
         keep: so many records of each verdict are kept per requirement; `None`: all.
-        left: ids of those that have generated Python of their own, as in a run that goes on;
-            `None`: as suits what was compiled ahead.
         decided: called with the attempts as they are decided, where samples are judged one by one.
     """
 
@@ -56,7 +54,6 @@ class Asked:
     settle: str = "now"
     sources: frozenset[str] | None = None
     keep: int | None = None
-    left: frozenset[str] | None = None
     decided: Callable[[Sequence[Attempt]], object] = len
 
 
