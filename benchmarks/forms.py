@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 
 import rvmon
-from rvmon.codegen.python_file import python_file
 from rvmon.verdict.report import Report
 
 HEAD = "spec robot\ntime held\nsignal p, q, r : bool\nsignal speed : real\n"
@@ -82,25 +81,6 @@ def online(spec: rvmon.Spec, given: Stream, engine: str) -> Form:
     return once
 
 
-def alone(spec: rvmon.Spec, given: Stream) -> Form:
-    """The file that `rvmon compile --to python` writes."""
-    namespace: dict[str, Any] = {"__name__": "generated_monitor"}
-    exec(compile(python_file(spec.plan()), "generated", "exec"), namespace)  # noqa: S102 - our own source
-
-    def once() -> tuple[float, Any]:
-        monitor = namespace["SpecMonitor"]()
-        step = monitor.unit.step
-        began = time.process_time()
-        for t, values in given.samples:
-            step(t, values)
-        spent = time.process_time() - began
-        monitor.finish_ns()
-        found = monitor.attempts
-        return spent, [tuple(one[:5]) for one in found]
-
-    return once
-
-
 def batch(spec: rvmon.Spec, given: Stream, engine: str) -> Form:
     """`Spec.evaluate` on arrays."""
     table = {"t_ns": given.times, **given.columns}
@@ -147,7 +127,6 @@ def main(argv: list[str]) -> int:
             forms = {
                 "engine": online(spec, given, "automaton"),
                 "generated": online(spec, given, "python"),
-                "file": alone(spec, given),
                 "columns": batch(spec, given, "auto"),
                 "c": online(spec, given, "c"),
                 "c columns": batch(spec, given, "c"),
@@ -181,7 +160,6 @@ def many(options: argparse.Namespace) -> None:
         given = Stream(np.zeros(0, np.int64), {}, samples)
         forms = {
             "generated": online(spec, given, "python"),
-            "file": alone(spec, given),
             "c": online(spec, given, "c"),
         }
         show(f"{count} requirements, one concerned", measure(forms, options.rounds), options.rows)

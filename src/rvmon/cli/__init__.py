@@ -36,7 +36,7 @@ COMMANDS = {
     "clip": "a recording cut around an attempt; a file that reproduces it",
     "init": "a starter specification from a recording",
     "bind": "which topics of a recording feed a specification: a proposal",
-    "compile": "a specification as Python or C that runs alone, or as automata",
+    "compile": "a specification as C that runs alone, or as automata",
     "cross": "a recording, evaluated by every engine and installed peer: do they agree?",
     "compare": "what has changed between two files of verdicts",
     "evidence": "whether evidence that was kept still holds",

@@ -168,7 +168,8 @@ def letter_table(worse: Sequence[Sequence[int]], better: Sequence[Sequence[int]]
     >>> letter_table([(0, 0, 1)], [(0, 1, 1)])
     [(0, 0), (0, 1), (1, 1)]
     """
-    return [(sum(one), sum(other)) for one, other in zip(product(*worse), product(*better))]
+    letters = zip(product(*worse), product(*better), strict=True)
+    return [(sum(one), sum(other)) for one, other in letters]
 
 
 def next_cut(machine: Any, token: Token, t: int) -> int:
@@ -252,7 +253,7 @@ def _loops(before: Token, behind: Token, period: int) -> bool:
     """Whether a step only looped: each clock was kept, or moved by a period."""
     if before[0] != behind[0]:
         return False
-    return all(new in (old, old + period) for old, new in zip(before[1], behind[1]))
+    return all(new in (old, old + period) for old, new in zip(before[1], behind[1], strict=True))
 
 
 def _kept_cut(machine: Any, before: Token, behind: Token, t: int) -> int:
@@ -269,5 +270,5 @@ def _kept_cut(machine: Any, before: Token, behind: Token, t: int) -> int:
 
 def _slide(before: Token, behind: Token, ticks: int) -> Token:
     return behind[0], tuple(
-        [new if new == old else new + ticks for old, new in zip(before[1], behind[1])]
+        [new if new == old else new + ticks for old, new in zip(before[1], behind[1], strict=True)]
     )

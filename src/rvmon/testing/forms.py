@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from types import ModuleType
 from typing import Any
 
 from rvmon.codegen.c_batch import BatchLibrary, BatchRun
 from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_online import OnlineLibrary, online_library
-from rvmon.codegen.python_file import python_file
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.c.monitor import CompiledMonitor
 from rvmon.monitor.c.recorded import report_of_records
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.engines.registry import EXPLAINING, HANDING_ON, engine_named
-from rvmon.plan.plan import Plan
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.drive import Monitored, OnlineMonitor
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report, report_of
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
 
-FORMS = (*EXPLAINING, "file", "c", "c rows")
-"""The engines of `Spec.monitor` that give reasons; the Python file that runs alone; compiled C that
-is stepped, and fed rows."""
+FORMS = (*EXPLAINING, "c", "c rows")
+"""The engines of `Spec.monitor` that give reasons; compiled C that is stepped, and fed rows."""
 
 
 class Compiler:
@@ -82,8 +77,6 @@ class Maker:
                 return _Compiled(library, case)
             case OnlineLibrary() as library:
                 return _Terse(library, self._compile(case.spec), case)
-            case ModuleType() as module:
-                return _Alone(module, case)
             case _:
                 return None
 
@@ -91,9 +84,7 @@ class Maker:
         """A monitor of this process, for an engine of `Spec.monitor`."""
         return build_monitor(compiled, engine=self.form, sources=case.names)
 
-    def _compiled(
-        self, spec: CheckedSpec
-    ) -> CompiledSpec | BatchLibrary | OnlineLibrary | ModuleType | None:
+    def _compiled(self, spec: CheckedSpec) -> CompiledSpec | BatchLibrary | OnlineLibrary | None:
         compiled = self._compile(spec)
         if self.form in HANDING_ON:
             return compiled
@@ -105,73 +96,13 @@ class Maker:
                 return online_library(plan_alone(compiled), optimised=False)
             case "c rows":
                 return BatchLibrary(plan_alone(compiled), optimised=False)
-            case "file":
-                plan = plan_alone(compiled)
-                whole = not plan.units and all(rule.automaton for rule in plan.judged)
-                return _module_of(plan) if whole else None
             case _:
                 return compiled
-
-
-def _module_of(plan: Plan) -> ModuleType:
-    """The file of a plan as a module."""
-    module = ModuleType("generated_monitor")
-    # The file holds names and numbers of the specification as literals only.
-    exec(compile(python_file(plan), "<generated file>", "exec"), module.__dict__)  # noqa: S102
-    return module
 
 
 def _absent(case: Case) -> frozenset[str]:
     declared = {*case.spec.signals, *case.spec.events}
     return frozenset() if case.names is None else frozenset(declared - case.names)
-
-
-class _Alone:
-    """A monitor that runs without rvmon, with the records and errors of one that does not."""
-
-    def __init__(self, module: ModuleType, case: Case) -> None:
-        self.names = tuple(case.spec.requirements)
-        self.monitor = module.SpecMonitor(sorted(_absent(case)))
-
-    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        """Take a sample."""
-        try:
-            return _records(self.monitor.step_ns(t_ns, values))
-        except ValueError as error:
-            raise TimeOrderError(str(error)) from error
-
-    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
-        """Let time pass."""
-        return _records(self.monitor.advance_ns(t_ns))
-
-    def finish_ns(self, t_ns: int | None = None, /) -> Report:
-        """End the trace.
-
-        Raises:
-            RvmonError: its fold of the verdicts is not that of the attempts.
-        """
-        verdicts = self.monitor.finish_ns(t_ns)
-        # That a requirement without attempts is inconclusive is for the file to say.
-        incomplete = [name for name, verdict in verdicts.items() if verdict == "I"]
-        report = report_of(self.names, _records(self.monitor.attempts), incomplete=incomplete)
-        if dict(report.verdicts) != verdicts:
-            raise RvmonError(f"the file says {verdicts}, its attempts say {report.verdicts}")
-        return report
-
-
-def _records(found: Sequence[Any]) -> list[Attempt]:
-    return [
-        Attempt(
-            one.requirement,
-            one.number,
-            one.triggered,
-            one.decided,
-            Verdict(one.verdict),
-            Decision(one.decision),
-            in_doubt=one.in_doubt,
-        )
-        for one in found
-    ]
 
 
 class _Terse:

@@ -61,7 +61,6 @@ SUBJECTS = {
     "automaton": Subject(Form("automaton"), AHEAD, 6),
     "progression": Subject(Form("progression"), AHEAD, 6),
     "network": Subject(Form("network"), ALL, 8),
-    "file": Subject(Form("file"), BARE, 3),
     "c": Subject(Form("c"), BARE, 2),
 }
 

@@ -24,7 +24,7 @@ SPARSE = 1_000
 
 FURTHER = 1_000_000
 
-FORMS = ("auto", "automaton", "network", "file")
+FORMS = ("auto", "automaton", "network")
 """Progression may have to step at every tick; C is made of the automaton's tables."""
 
 ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
@@ -37,8 +37,7 @@ ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
 @given(data=st.data())
 def test_scaling(form: str, data: st.DataObject) -> None:
     """A million times longer: the same attempts and verdicts, as many steps, the same instants."""
-    plain = Profile(mixed=False, requirements=1, captures=False, for_each=False)
-    case = data.draw(cases(plain if form == "file" else Profile(mixed=False, requirements=1)))
+    case = data.draw(cases(Profile(mixed=False, requirements=1)))
     parts = [part for r in case.spec.requirements.values() for part in _numbers(r.trigger)]
     parts += [part for r in case.spec.requirements.values() for part in _numbers(r.consequent)]
     parts += [

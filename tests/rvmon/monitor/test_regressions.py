@@ -14,7 +14,7 @@ ALL = [
     pytest.param(form, marks=pytest.mark.compiler) if form in ("c", "c rows") else form
     for form in FORMS
 ]
-ONLINE = [one for one, form in zip(ALL, FORMS, strict=True) if form not in ("file", "c rows")]
+ONLINE = [one for one, form in zip(ALL, FORMS, strict=True) if form != "c rows"]
 """Forms that are told one thing after the other."""
 
 CASES = {
