@@ -29,8 +29,6 @@ class Table:
         rows: per row and class the edge: its target, and for each clock of that the old clock it
             is, or `NOW`; `None` where no run comes.
         time_values: per row, the truth if time alone has come to it.
-        end_clauses: per location, when the rule for the end of a trace makes it true: one of these
-            lists of `(clock, least age, whether at the end or as far as time has come)`.
     """
 
     def __init__(
@@ -42,7 +40,6 @@ class Table:
         class_of: Sequence[int],
         rows: Sequence[Sequence[Any]],
         time_values: Sequence[int],
-        end_clauses: Sequence[Sequence[Sequence[tuple[int, int, bool]]]],
     ) -> None:
         self.start: Token = (initial, ())
         self.cuts_of = cuts
@@ -51,7 +48,6 @@ class Table:
         self.class_of = class_of
         self.rows = rows
         self.time_values = time_values
-        self.end_clauses = end_clauses
         self.kept = [tuple(range(count)) for count in range(1 + max(map(len, cuts)))]
         self.bare: list[Token] = [(location, ()) for location in range(len(cuts))]
         self.moves = moves_of(self) if len(self.kept) <= 2 else None
@@ -95,17 +91,6 @@ class Table:
     def time_value(self, token: Token, t: int) -> int:
         """The truth once time has come to `t` and no position came."""
         return self.time_values[self.row(token, t)]
-
-    def holds_at_end(self, token: Token, end: int, reached: int) -> bool:
-        """Whether the rule for the end of a trace makes true what is owed."""
-        location, anchors = token
-        return any(
-            all(
-                clock < 0 or (end if at_end else reached) - anchors[clock] >= age
-                for clock, age, at_end in clause
-            )
-            for clause in self.end_clauses[location]
-        )
 
 
 BARE, FRESH, KEPT = 0, 1, 2

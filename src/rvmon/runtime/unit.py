@@ -197,12 +197,6 @@ class Unit(Nodes, Schedule):
             self.reach(t)
         self.set_alarm()
 
-    def advance(self, t: int) -> None:
-        """Learn that no sample before `t` will come; `t` is later than all before."""
-        self.through(t - 1)
-        self.reach(t)
-        self.set_alarm()
-
     def last_position(self, end: int) -> int:
         """The last position at or before `end`, up to which time has come."""
         if self.GAP is None:
