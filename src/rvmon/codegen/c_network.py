@@ -33,29 +33,25 @@ class Forms:
         self.plans = plans
         self._index = plan.graph.index
 
-    def tables(self, what: str = "") -> Iterator[str]:
-        """The nodes, the operands of junctions, and where each formula begins.
-
-        Args:
-            what: how their names begin.
-        """
+    def tables(self) -> Iterator[str]:
+        """The nodes, the operands of junctions, and where each formula begins."""
         nodes: list[str] = []
         forms: list[str] = []
         self._operands: list[int] = []
         self._leaves = 0
         for plan in self.plans:
-            leaf, first, self._inputs = self._leaves, len(nodes), 0
+            leaf, first = self._leaves, len(nodes)
             nodes += [f"    {{{self._node(plan, node)}}}," for node in plan.nodes]
-            sizes = first, len(plan.nodes), self._inputs, leaf, len(plan.leaves)
+            sizes = first, len(plan.nodes), leaf, len(plan.leaves)
             looks_back = str(plan.looks_back).lower()
             forms.append(f"    {{{', '.join(map(str, sizes))}, {looks_back}}},")
-        yield f"static const node {what}nodes[] = {{"
+        yield "static const node nodes[] = {"
         yield from nodes
         yield "};"
-        yield f"static const form {what}forms[] = {{"
+        yield "static const form forms[] = {"
         yield from forms
         yield "};"
-        yield array("int32_t", f"{what}operands", self._operands)
+        yield array("int32_t", "operands", self._operands)
 
     def _node(self, plan: NetworkPlan, node: Node) -> str:
         """The fields of a node."""
@@ -68,13 +64,13 @@ class Forms:
                 start = len(self._operands)
                 self._operands += operands
                 ends = start, start + len(operands)
-                return self._fields("JUNCTION", every, False, *ends, joined=len(operands))
+                return self._fields("JUNCTION", every, False, *ends)
             case Window(operand=operand, low=low, high=high, every=every, over=over):
                 past = _PAST if over is None else over
                 return self._fields("WINDOW", every, False, operand, 0, low, high, past)
             case Sweep(left=left, right=right, future=future, dual=dual, kept=kept):
                 kind = "UNTIL" if future else "SINCE"
-                return self._fields(kind, dual, kept, left, right, joined=2)
+                return self._fields(kind, dual, kept, left, right)
             case Shift(operand=operand, offset=offset, opens=opens):
                 kept = plan.sweep_of(node).kept
                 return self._fields("SHIFT", False, kept, operand, 0, offset, offset, opens)
@@ -87,12 +83,10 @@ class Forms:
         left: int,
         right: int,
         *distances: int,
-        joined: int = 0,
     ) -> str:
         """Of a node, as its type in C has them."""
         ticks = (max(-_FARTHEST, min(one, _FARTHEST)) for one in distances or (0, 0, 0))
-        numbers = [int(turned), str(kept).lower(), left, right, self._inputs]
-        self._inputs += joined
+        numbers = [int(turned), str(kept).lower(), left, right]
         return ", ".join([kind, *map(str, numbers), *(f"INT64_C({one})" for one in ticks)])
 
 

@@ -20,7 +20,6 @@ from typing import Any, Protocol
 from rvmon.codegen.c_build import NATIVE, Build, loaded
 from rvmon.codegen.c_captured import CapturedValues
 from rvmon.codegen.c_exact import whole_limits
-from rvmon.codegen.c_margins import Measures
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
 from rvmon.codegen.c_tables import DECISIONS, VERDICTS, array
@@ -33,7 +32,6 @@ from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt
 
 _PARTS = ("online.c.in", "online_calls.c.in", "online_type.c.in")
-_PARTS_MEASURED = (*_PARTS[:2], "online_margins.c.in", _PARTS[2])
 
 _MODULE = "rvmon_online"
 
@@ -121,26 +119,6 @@ class Core(Protocol):
     def reset(self) -> None:
         """Begin anew."""
 
-    # Where robustness is measured; `step`, `step_ns`, `flush` and `open` then give `Measured`.
-
-    def feed(self, times: Any, columns: tuple[Any, ...], /) -> int:
-        """Take samples that are rows.
-
-        Args:
-            times: int64[n] ticks.
-            columns: per signal and event an array: bool[n], or float64[n] of numbers, NaN where
-                nothing is known; `None`: it never comes.
-
-        Returns:
-            How many were taken: fewer than given if one is out of order.
-        """
-
-    def figures(self) -> bytes:
-        """What was settled of attempts and not given out, as `margin_judge.c.in` lays it out."""
-
-    def series(self, requirement: int, /) -> tuple[bytes, bytes, bytes, bytes]:
-        """What a requirement owes at the rows: int64[n] ticks, three times float64[n]."""
-
 
 @dataclass(frozen=True, slots=True)
 class OnlineLibrary:
@@ -164,7 +142,6 @@ class OnlineLibrary:
         *,
         look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]],
         look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]],
-        measured: tuple[Any, ...] = (),
     ) -> Core:
         """Begin a run.
 
@@ -172,8 +149,6 @@ class OnlineLibrary:
             absent: the names without a source.
             look_closer: judges the samples that are not plain values in a `dict`, at seconds.
             look_closer_ns: the same at ticks.
-            measured: where robustness is measured, whether of each position of a sample, and the
-                type of a figure with its fields, and that of its bounds with theirs.
         """
         plan, names = self.plan, self.names
         called = (*plan.signals, *plan.events)
@@ -199,17 +174,15 @@ class OnlineLibrary:
                 DECISIONS,
                 _Details(plan),
             ),
-            measured,
         )
 
 
-def online_build(plan: Plan, *, optimised: bool = True, measured: bool = False) -> Build:
+def online_build(plan: Plan, *, optimised: bool = True) -> Build:
     """The module of a plan.
 
     Args:
         plan: of requirements that all have automata.
         optimised: whether it is to be fast; otherwise it is compiled sooner.
-        measured: whether it measures robustness, and not of verdicts.
 
     Raises:
         RvmonError: a number of the specification is no double.
@@ -220,7 +193,7 @@ def online_build(plan: Plan, *, optimised: bool = True, measured: bool = False) 
     name = f"{made.prefix}_online.c"
     texts = {
         **made.texts,
-        name: online_source(named, measured=measured),
+        name: online_source(named),
         "python.txt": sys.version,
     }
     flags = [*(FAST if optimised else ("-O0",)), *_SHARED]
@@ -229,19 +202,18 @@ def online_build(plan: Plan, *, optimised: bool = True, measured: bool = False) 
     )
 
 
-def online_library(plan: Plan, *, optimised: bool = True, measured: bool = False) -> OnlineLibrary:
+def online_library(plan: Plan, *, optimised: bool = True) -> OnlineLibrary:
     """Compile a plan, once for each content.
 
     Args:
         plan: as for `online_build`; so are the others.
         optimised: whether it is to be fast.
-        measured: see there.
 
     Raises:
         RvmonError: there is no C compiler, or no header of Python; a requirement has no automaton,
             or a number of the specification is no double.
     """
-    build = online_build(plan, optimised=optimised, measured=measured)
+    build = online_build(plan, optimised=optimised)
     return library_of(plan, loaded(build, type_in))
 
 
@@ -267,26 +239,21 @@ def type_in(path: Path) -> Callable[..., Core]:
     return made
 
 
-def online_source(plan: Plan, *, measured: bool = False) -> str:
+def online_source(plan: Plan) -> str:
     """The source of the module; it includes that of `rvmon.codegen.c_source.c_files`.
 
     Args:
         plan: see `online_build`; so are the others.
-        measured: see there.
     """
     names = Names(plan)
     places = {  # the first ones hold others
-        "HEAD": template("margin_head.c.in") if measured else "",
-        "MEASURES": str(int(measured)),
-        "MEASURING": Measures(plan).source() if measured else "",
         "HEAP": template("heap.c.in"),
         "KINDS": "\n".join(_kinds(plan, names)),
         "SPEC": comment(plan.spec.name),
         "PREFIX": names.prefix.upper(),
         "prefix": names.prefix,
     }
-    parts = _PARTS_MEASURED if measured else _PARTS
-    return filled("".join(template(part) for part in parts), places)
+    return filled("".join(template(part) for part in _PARTS), places)
 
 
 def _kinds(plan: Plan, names: Names) -> Iterator[str]:

@@ -39,7 +39,6 @@ class PlannedRule:
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
         asked: further state formulas that are asked for their values.
-        measured: what is owed, as its robustness is measured; `None`: it is not.
     """
 
     requirement: Requirement
@@ -58,7 +57,6 @@ class PlannedRule:
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
-    measured: Core | None = None
 
     @property
     def states(self) -> Iterator[State]:

@@ -34,7 +34,6 @@ class CompiledMonitor(Monitor):
         requirements: to be judged.
         settle: see `build_monitor`.
         sources: the names that can arrive; `None`: all.
-        measured: see `rvmon.codegen.c_online.OnlineLibrary.core`.
     """
 
     def __init__(
@@ -44,8 +43,6 @@ class CompiledMonitor(Monitor):
         requirements: Sequence[CompiledRequirement],
         settle: str,
         sources: frozenset[str] | None,
-        *,
-        measured: tuple[Any, ...] = (),
     ) -> None:
         names = {*compiled.checked.signals, *compiled.checked.events}
         absent = frozenset() if sources is None else frozenset(names - sources)
@@ -55,7 +52,6 @@ class CompiledMonitor(Monitor):
             absent,
             look_closer=self._take_at,
             look_closer_ns=self._look_closer,
-            measured=measured,
         )
         super().__init__(compiled, requirements, "c", settle, sources, None)
 

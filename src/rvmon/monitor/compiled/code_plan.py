@@ -8,7 +8,7 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.errors import UnknownNameError
 from rvmon.formula.core import Literal
 from rvmon.formula.state import State
-from rvmon.monitor.compiled.refusal import of_c, of_measured_c, of_tables, refuse
+from rvmon.monitor.compiled.refusal import of_c, of_tables, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan, PlannedRule
@@ -81,7 +81,6 @@ def _rule(
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
-        measured=one.measured.owed if measured else None,
     )
 
 
@@ -99,15 +98,12 @@ def _planned(requirement: CompiledRequirement, explained: bool) -> Automaton | N
     return requirement.automaton if explained else requirement.slim
 
 
-def plan_alone(
-    compiled: CompiledSpec, only: Iterable[str] | None = None, *, measured: bool = False
-) -> Plan:
+def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
     """The plan of what is to run without rvmon.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
-        measured: see `plan_requirements`.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
@@ -118,9 +114,6 @@ def plan_alone(
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     chosen = compiled.chosen(ids)
-    if measured:
-        refuse(chosen, of_measured_c, "compiled C, which measures,")
-    else:
-        refuse(chosen, of_c, "generated code")
-    rules = [_rule(one, explained=False, measured=measured) for one in chosen]
+    refuse(chosen, of_c, "generated code")
+    rules = [_rule(one, explained=False) for one in chosen]
     return plan_in_units(compiled.checked, rules)

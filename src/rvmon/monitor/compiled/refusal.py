@@ -91,6 +91,11 @@ def no_dropping(engine: str) -> RvmonError:
     return RvmonError(f"the engine `{engine}` keeps all records: leave out `keep`, or use `auto`")
 
 
+def no_robustness(engine: str) -> RvmonError:
+    """Robustness, of an engine that finds none."""
+    return RvmonError(f"the engine `{engine}` measures no robustness: {_AUTO}")
+
+
 def of_automaton(one: CompiledRequirement) -> Refusal | None:
     """What has no automaton."""
     if one.automaton is None:
@@ -153,19 +158,6 @@ def of_c(one: CompiledRequirement) -> Refusal | None:
         reason = "captures values `upon end`, which may be newer than the last tick of its clock"
         return Refusal(reason, _AUTO, _by_samples(one))
     return None
-
-
-def of_measured_c(one: CompiledRequirement) -> Refusal | None:
-    """What compiled C does not measure."""
-    reason = ""
-    if one.obligation.trigger is None:
-        reason = "is evaluated `upon end`"
-    elif one.gap not in (None, 1):
-        reason = "has a clock of several ticks"
-    elif one.measures_payloads:
-        reason = "compares payloads"
-    own = Refusal(reason, _LEAVE_OUT, _by_samples(one)) if reason else None
-    return of_c(one) or _of_captured(one) or own
 
 
 def of_columns(one: CompiledRequirement) -> Refusal | None:
