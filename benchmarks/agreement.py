@@ -17,18 +17,18 @@ from dataclasses import dataclass, replace
 
 from benchmarks.measure import Figure
 from benchmarks.ours import always_text, specification
+from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, RTAMT_STEPPED, Contest, ask_peer
 from benchmarks.peers.environment import Environment
 from benchmarks.peers.positions import Question, answers, ask_engine
+from benchmarks.peers.ways import Cell
 from benchmarks.workload import Workload
+from tests.tools.common_fragment import UntranslatableError, names_in
 
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.law.walk import intervals
-from rvmon.testing.peers.client import Peer, PeerError
-from rvmon.testing.peers.core import UntranslatableError, names_in
-from rvmon.testing.peers.ways import Cell
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 

@@ -277,7 +277,6 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "format": ["format", "--check", spec],
         "explain": ["explain", spec, ids[0], "--runs", "10"],
         "why": ["why", spec, trace, ids[0] if "#" not in ids[0] else "x"],
-        "cross": ["cross", spec, trace, "--only", ids[0]],
         "init": ["init", trace, "-o", "-"],
         "compile, costs": ["compile", spec, "--to", "costs"],
         "compile, dot": ["compile", spec, "--to", "dot"],

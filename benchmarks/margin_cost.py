@@ -21,14 +21,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+from benchmarks.peers import dialects
+from benchmarks.peers.dialects import spelling, translate
 from benchmarks.suite import unsteady
 from benchmarks.workload import Workload
 
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.testing.peers import dialects
-from rvmon.testing.peers.dialects import spelling, translate
 from rvmon.trace.schema import Kind
 
 Bounds = tuple[float, float]

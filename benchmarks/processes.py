@@ -16,12 +16,11 @@ from pathlib import Path
 import numpy as np
 from benchmarks.measure import Figure, Result
 from benchmarks.ours import always_text, specification
+from benchmarks.peers import dialects
+from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import Environment
 from benchmarks.peers.native import Native, packed
 from benchmarks.workload import Column, Workload
-
-from rvmon.testing.peers import dialects
-from rvmon.testing.peers.dialects import translate
 
 BY_PARQUET = Path(__file__).parent / "peers" / "parquet_with_reelay.py"
 FEW = 50_000

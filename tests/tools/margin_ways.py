@@ -13,8 +13,8 @@ from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.session import Spec
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key
 from rvmon.trace.sample import Sample
+from tests.tools.compare import Key
 from tests.tools.doors import content_of, whole
 
 Figures = tuple[float, float, float]

@@ -37,7 +37,6 @@ COMMANDS = {
     "init": "a starter specification from a recording",
     "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as C that runs alone, or as automata",
-    "cross": "a recording, evaluated by every engine and installed peer: do they agree?",
     "compare": "what has changed between two files of verdicts",
     "evidence": "whether evidence that was kept still holds",
     "cover": "what tests have covered, what is missing, and what each test is good for",

@@ -61,8 +61,6 @@ class Unit(Nodes, Schedule):
     RULES: tuple[tuple[Any, ...], ...]
     """Per rule its class, what gives its letters, and what else it takes. Rules judge requirements;
     behind these stand those that judge attempts in doubt."""
-    HIDDEN_OF: tuple[int, ...] = ()
-    """For each of the latter, the requirement."""
     DETERMINED: tuple[int, ...] = ()
     """Per requirement the node that is true once its trigger was true or false; −1: always."""
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.tools.compare import differences
 from tests.tools.differential import cases_of
 from tests.tools.filled import filled, judge_columns
 from tests.tools.law import judge
@@ -15,7 +16,6 @@ from rvmon.codegen.c_build import Build, built
 from rvmon.monitor import compile_spec
 from rvmon.monitor.columns import evaluate as arrays
 from rvmon.monitor.engines import row_judge
-from rvmon.testing.compare import differences
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 from tests.tools.differential import campaign
+from tests.tools.forms import Maker
 from tests.tools.gcc import SANITIZED, STRICT
 
 import rvmon
 from rvmon.cli import main
 from rvmon.codegen.c_names import Names
 from rvmon.codegen.c_source import c_files
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

@@ -4,11 +4,11 @@ import json
 import subprocess
 
 import pytest
+from tests.tools.compare import outcomes
 from tests.tools.gcc import SANITIZED, STRICT
 
 import rvmon
 from rvmon.codegen.c_source import c_files
-from rvmon.testing.compare import outcomes
 
 pytestmark = pytest.mark.compiler
 

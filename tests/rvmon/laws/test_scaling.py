@@ -8,14 +8,14 @@ from types import FrameType
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from tests.tools.drive import drive
+from tests.tools.forms import Maker
+from tests.tools.scale import compact, in_units, scaled
 
 from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
-from rvmon.testing.drive import drive
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.law.walk import numerics, parts_of
-from rvmon.testing.scale import compact, in_units, scaled
 from rvmon.testing.strategies import cases
 from rvmon.verdict.report import Report
 

@@ -4,10 +4,10 @@ import random
 
 import pytest
 from tests.tools.differential import disagreements
+from tests.tools.forms import FORMS, Maker
 
 import rvmon
 from rvmon.testing.case import Case
-from rvmon.testing.forms import FORMS, Maker
 from rvmon.trace.sample import Sample
 
 ALL = [

@@ -31,12 +31,6 @@ _HOMES = {
 
 ENGINES = tuple(_HOMES)
 
-EXPLAINING = ("auto", "python", "automaton", "progression", "network")
-"""The engines that judge streams and give reasons."""
-
-HANDING_ON = ("auto", "python")
-"""The engines that have others judge beside them what they refuse; the rest refuse it."""
-
 
 @dataclass(frozen=True, slots=True)
 class Asked:

@@ -15,10 +15,10 @@ from itertools import starmap
 import numpy as np
 import pytest
 from tests.tools.differential import campaign
+from tests.tools.forms import Maker
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

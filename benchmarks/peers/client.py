@@ -10,8 +10,6 @@ from types import TracebackType
 from typing import Any
 
 WORKER = Path(__file__).with_name("worker.py")
-SHIPPED = ("reelay", "rtamt", "mstlo", "sentil")
-"""Peers whose module stands beside the worker."""
 
 
 class PeerError(Exception):
@@ -69,7 +67,7 @@ class Peer:
 
     def _running(self) -> subprocess.Popen[str]:
         if self._process is None:
-            self._process = subprocess.Popen(  # noqa: S603 - the worker beside this file
+            self._process = subprocess.Popen(
                 self._command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,

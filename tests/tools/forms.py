@@ -13,13 +13,19 @@ from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.c.monitor import CompiledMonitor
 from rvmon.monitor.c.recorded import report_of_records
 from rvmon.monitor.compiled.code_plan import plan_alone
-from rvmon.monitor.engines.registry import EXPLAINING, HANDING_ON, engine_named
+from rvmon.monitor.engines.registry import engine_named
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.drive import Monitored, OnlineMonitor
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from tests.tools.drive import Monitored, OnlineMonitor
+
+EXPLAINING = ("auto", "python", "automaton", "progression", "network")
+"""The engines that judge streams and give reasons."""
+
+HANDING_ON = ("auto", "python")
+"""The engines that have others judge beside them what they refuse; the rest refuse it."""
 
 FORMS = (*EXPLAINING, "c", "c rows")
 """The engines of `Spec.monitor` that give reasons; compiled C that is stepped, and fed rows."""

@@ -10,6 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from tests.tools.common_fragment import (
+    EVER,
+    UntranslatableError,
+    both,
+    either,
+    to_core,
+)
+
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -26,13 +34,6 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     Unary,
     UnaryOp,
-)
-from rvmon.testing.peers.core import (
-    EVER,
-    UntranslatableError,
-    both,
-    either,
-    to_core,
 )
 
 ALWAYS_ONE = "one"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from benchmarks.peers import dialects
+from benchmarks.peers.client import Peer
+from benchmarks.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
+
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.peers import dialects
-from rvmon.testing.peers.client import Peer
-from rvmon.testing.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
 
 Cell = bool | float | None
 """A value at a tick; `None`: not known."""

@@ -3,6 +3,17 @@
 from __future__ import annotations
 
 import pytest
+from benchmarks.peers.dialects import (
+    LTLF,
+    MSTLO,
+    REELAY_DENSE,
+    REELAY_DISCRETE,
+    RTAMT_DENSE,
+    RTAMT_DISCRETE,
+    SENTIL,
+    Dialect,
+    translate,
+)
 from benchmarks.peers.positions import Question, answers, ask_oracle
 from tests.tools.build import (
     compared,
@@ -21,21 +32,10 @@ from tests.tools.build import (
     two,
     x,
 )
+from tests.tools.common_fragment import UntranslatableError, names_in, to_core
 
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.peers.core import UntranslatableError, names_in, to_core
-from rvmon.testing.peers.dialects import (
-    LTLF,
-    MSTLO,
-    REELAY_DENSE,
-    REELAY_DISCRETE,
-    RTAMT_DENSE,
-    RTAMT_DISCRETE,
-    SENTIL,
-    Dialect,
-    translate,
-)
 
 
 @pytest.mark.parametrize(

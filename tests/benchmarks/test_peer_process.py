@@ -6,8 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-
-from rvmon.testing.peers.client import Peer, PeerError
+from benchmarks.peers.client import Peer, PeerError
 
 pytestmark = pytest.mark.process
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from benchmarks.peers.differences import DIFFERENCES
 
-PAGE = Path(__file__).parents[3] / "docs" / "reference" / "other-monitors.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "other-monitors.md"
 
 
 @pytest.mark.parametrize("difference", DIFFERENCES, ids=lambda one: f"{one.package}: {one.formula}")
