@@ -58,9 +58,9 @@ claims: $(VENV)/.dev  ## run what docs/claims.md claims, 3 minutes; LONG=1: all 
 release: $(VENV)/.dev  ## build wheel and sdist into dist, check them, install each extra alone; uploads nothing
 	@$(BIN)/python -m benchmarks.release
 
-fuzz: $(VENV)/.dev  ## feed damaged input to all readers for SECONDS=600, and Python and C to each other
+fuzz: $(VENV)/.dev  ## feed damaged input to all readers for SECONDS=600, and compare engines
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3,<4' \
-	  || echo "rvmon: atheris does not install here: Python is not fuzzed"
+	  || echo "rvmon: atheris does not install here"
 	@$(BIN)/python -m fuzz --seconds $(or $(SECONDS),600)
 
 clean:  ## remove the environment and all output

@@ -25,6 +25,7 @@ from benchmarks.files import measure_files
 from benchmarks.findings import Findings
 from benchmarks.measure import Plan, Result, measure
 from benchmarks.peers import differences
+from benchmarks.peers.client import PeerError
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.native import build
 from benchmarks.processes import measure_process
@@ -33,7 +34,6 @@ from benchmarks.render import render
 from benchmarks.workload import Workload
 
 from benchmarks import suite
-from rvmon.testing.peers.client import PeerError
 
 OUT = Path(__file__).with_name("RESULTS.md")
 SECTIONS = (

@@ -17,19 +17,18 @@ from dataclasses import dataclass, replace
 
 from benchmarks.measure import Figure
 from benchmarks.ours import always_text, specification
+from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, RTAMT_STEPPED, Contest, ask_peer
 from benchmarks.peers.environment import Environment
 from benchmarks.peers.positions import Question, answers, ask_engine
+from benchmarks.peers.ways import Cell
 from benchmarks.workload import Workload
+from tests.tools.common_fragment import UntranslatableError, names_in
 
 from rvmon import loads
 from rvmon.errors import RvmonError
-from rvmon.monitor.c.prepared import prepare_beside
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.law.walk import intervals
-from rvmon.testing.peers.client import Peer, PeerError
-from rvmon.testing.peers.core import UntranslatableError, names_in
-from rvmon.testing.peers.ways import Cell
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 
@@ -49,7 +48,7 @@ RTAMT_BOUND = 300
 
 MOST_ROWS = 4000
 
-COMPILED = {"rvmon step, C": "c", "rvmon step, prepared": "auto"}
+COMPILED = {"rvmon step, C": "c"}
 """The forms of ours that are compared with generated Python, by their engines."""
 
 MOST_DAMAGED = 40
@@ -226,14 +225,12 @@ def _first_failure(question: Question) -> int | None:
 
 
 def _stepped(question: Question, engine: str) -> Iterator[Sequence[Attempt]]:
-    """What each row decides of the requirement `always φ`; `auto` takes what is compiled ahead."""
+    """What each row decides of the requirement `always φ`."""
     columns = {
         name: [cell for cell in column if cell is not None]
         for name, column in question.columns.items()
     }
     spec = loads(specification([always_text(question.formula)], columns))
-    if engine == "auto":
-        prepare_beside(spec._compiled, spec._compiled.chosen(None))
     monitor = spec.monitor(engine=engine)
     for row in range(question.ticks):
         yield monitor.step_ns(row, {name: column[row] for name, column in columns.items()})

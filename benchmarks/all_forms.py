@@ -21,11 +21,11 @@ from functools import partial
 from itertools import count
 
 from tests.tools.differential import campaign
+from tests.tools.forms import Maker
 
 from benchmarks import columns
 from rvmon.execute.interrupt import interrupted_by_sigterm
 from rvmon.execute.parallel import execute
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.contenders import OURS
+from benchmarks.peers.client import Peer, PeerError
 
 import rvmon
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
-from rvmon.testing.peers.client import Peer, PeerError
 
 SPEC = """spec open
 time held

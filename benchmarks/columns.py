@@ -20,6 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from benchmarks.differential import MODELS
+from tests.tools.compare import differences
 from tests.tools.differential import cases_of
 from tests.tools.filled import filled, judge_columns
 from tests.tools.frame import frame_differences
@@ -30,7 +31,6 @@ from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.columns.records import JudgedAttempts
 from rvmon.readers.alternation import REMARK
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.verdict.attempt import Attempt, Decision

@@ -10,14 +10,13 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from benchmarks.ours import always_text, scaled, specification
+from benchmarks.peers import dialects
+from benchmarks.peers.client import Peer
+from benchmarks.peers.dialects import Dialect, spelling, translate
 from benchmarks.peers.environment import HOME, Environment
 from benchmarks.peers.native import LETTERS, Native, packed
 from benchmarks.workload import Workload
-
-from rvmon.testing.peers import dialects
-from rvmon.testing.peers.client import Peer
-from rvmon.testing.peers.core import UntranslatableError
-from rvmon.testing.peers.dialects import Dialect, spelling, translate
+from tests.tools.common_fragment import UntranslatableError
 
 OURS = Path(__file__).parent / "peers" / "with_rvmon.py"
 """The module that asks our own monitors."""
@@ -103,7 +102,6 @@ STEPS = (
     ("rvmon table", "step", "automaton"),
     ("rvmon step", "step", "python"),
     ("rvmon step, changes", "changes", "python"),
-    ("rvmon step, prepared", "step", "prepared"),
     ("rvmon step, C", "step", "c"),
 )
 COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evaluate", "c"))

@@ -21,8 +21,11 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmarks.peers.client import Peer, PeerError
+from benchmarks.peers.dialects import LTLF, spelling, translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.positions import Judge, ask_engine, ask_oracle
+from tests.tools.common_fragment import EVER, both, to_core
 from tests.tools.generate_ltl import random_ltl
 
 from rvmon.spec.checked.formula import (
@@ -39,9 +42,6 @@ from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Sig
 from rvmon.spec.print.printer import format_formula
 from rvmon.testing.generate.rng import Rng, chance
 from rvmon.testing.generate.vocabulary import BOOLS
-from rvmon.testing.peers.client import Peer, PeerError
-from rvmon.testing.peers.core import EVER, both, to_core
-from rvmon.testing.peers.dialects import LTLF, spelling, translate
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Decision

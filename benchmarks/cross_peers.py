@@ -17,14 +17,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import partial
 
+from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, Contest, ask_peer, random_question, shrink
+from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.positions import Judge, Question, answers, ask_engine, ask_oracle
 
 from rvmon.errors import RvmonError
 from rvmon.spec.print.printer import format_formula
-from rvmon.testing.peers.client import Peer, PeerError
-from rvmon.testing.peers.dialects import translate
 
 JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
 

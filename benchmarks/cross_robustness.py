@@ -14,7 +14,11 @@ import sys
 import time
 from dataclasses import dataclass, field
 
+from benchmarks.peers.client import Peer, PeerError
+from benchmarks.peers.dialects import spelling, translate
 from benchmarks.peers.environment import prepare
+from benchmarks.peers.ways import WAYS, Way
+from tests.tools.common_fragment import UntranslatableError
 
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
@@ -33,10 +37,6 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula
-from rvmon.testing.peers.client import Peer, PeerError
-from rvmon.testing.peers.core import UntranslatableError
-from rvmon.testing.peers.dialects import spelling, translate
-from rvmon.testing.peers.ways import WAYS, Way
 from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.schema import Kind
 

@@ -24,7 +24,6 @@ from typing import Any
 import numpy as np
 from benchmarks.cross_robustness import NAMES, Tally, random_formula
 
-from rvmon.monitor.measure_in_c import measuring_library
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
     Binary,
@@ -44,7 +43,7 @@ from rvmon.trace.schema import Kind
 
 ROWS = 24
 TOGETHER = 20
-WAYS = ("auto by samples", "auto by columns", "c by samples", "c by columns")
+WAYS = ("samples", "columns")
 _UNARY = {
     UnaryOp.EVENTUALLY: "eventually",
     UnaryOp.ALWAYS: "always",
@@ -97,12 +96,11 @@ def ours(
     spec: Spec, times: list[int], columns: dict[str, list[float]], way: str
 ) -> dict[str, list[float | None]]:
     """Our robustness at every sample; `None` where it depends on what comes after the trace."""
-    engine, _, by = way.partition(" by ")
     trace: Any = {name: np.array(own) for name, own in {"t_ns": times, **columns}.items()}
-    if by == "samples":
+    if way == "samples":
         rows = [{name: column[row] for name, column in columns.items()} for row in range(ROWS)]
         trace = zip((t * 1e-9 for t in times), rows, strict=True)
-    streams = spec.robustness(trace, engine=engine).streams
+    streams = spec.robustness(trace).streams
     return {
         name: [found.low if found.low == found.high else None for _, found in stream]
         for name, stream in streams.items()
@@ -119,9 +117,6 @@ def compare(sentil: Any, rng: random.Random, ways: Sequence[str], tally: Tally) 
     columns = {name: [float(rng.randint(-4, 4)) for _ in times] for name in NAMES}
     trace = sentil.Trace([float(t) for t in times], columns)
     spec = spec_of(formulas)
-    if any(way.startswith("c ") for way in ways):  # the compiler need not take its time
-        requirements = [*spec._compiled.requirements.values()]
-        measuring_library(spec._compiled, requirements, optimised=False)
     found = {way: ours(spec, times, columns, way) for way in ways}
     for number, formula in enumerate(formulas):
         text = said(formula)

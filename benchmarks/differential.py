@@ -19,13 +19,13 @@ from typing import Any
 
 from tests.tools.differential import Campaign, Mix, campaign_of
 from tests.tools.features import Feature, possible
+from tests.tools.forms import EXPLAINING as ENGINES
+from tests.tools.forms import FORMS, Compiler
 from tests.tools.ways import INTERRUPT, NEXT, Maker
 
 from rvmon.errors import RvmonError
 from rvmon.execute.parallel import execute
-from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.forms import FORMS, Compiler
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

@@ -70,7 +70,6 @@ ENGINES: dict[str, tuple[str, ...]] = {
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
-    "file": (*_PLANS, "codegen/python_file.py", *_RUNTIME, "runtime/standalone.py"),
     "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/c/monitor.py"),
     "network": (
         "dataflow/time_decisions.py",
@@ -100,19 +99,14 @@ RELATED = {
     "automaton": ("auto", "progression", "network"),
     "progression": ("auto", "automaton", "network"),
     "network": ("auto",),
-    "python": ("auto", "file"),
-    "file": ("python",),
+    "python": ("auto",),
     "c": ("c rows",),
 }
 """By engine, others that have files in common with it, but run other parts of them."""
 
 _ELSEWHERE = (
     "codegen/c_build.py",
-    "codegen/c_program.py",
-    "codegen/c/program*",
-    "codegen/c/read_*",
     "codegen/c/monitor.hpp.in",
-    "codegen/python_file.py",
 )
 """What the differential test of the engine does not run: it compiles and reads files."""
 

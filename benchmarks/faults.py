@@ -18,6 +18,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.with_faults import resident_kib
 
@@ -25,7 +26,6 @@ import rvmon
 from rvmon.adapters.json_objects import JsonObjects
 from rvmon.errors import TraceError
 from rvmon.live import Driver, SimulatedClock
-from rvmon.testing.peers.client import Peer, PeerError
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

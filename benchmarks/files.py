@@ -91,30 +91,21 @@ def measure_files(
 
 
 def _tasks(rows: int, many: int, environment: Environment, folder: Path) -> Iterator[Task]:
-    spec, program = folder / "files.rv", folder / "judge"
+    spec = folder / "files.rv"
     spec.write_text(SPEC)
     rvmon = (sys.executable, "-m", "rvmon")
-    build = subprocess.run(
-        [*rvmon, "build", str(spec), "-o", str(program)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    refusal = "" if build.returncode == 0 else build.stderr.strip().splitlines()[-1]
     run = (*rvmon, "run", str(spec), "--format", "json")
     large = str(written(folder / "large.csv", rows, 0))
     what = f"{rows:,} rows"
     duckdb = "" if "duckdb" in environment.versions else environment.missing.get("duckdb", "none")
     query = (str(environment.python), str(BY_DUCKDB), large)
     yield Task(what, "DuckDB", [query], _told, refusal=duckdb)
-    yield Task(what, "rvmon build", [(str(program), large)], _failures, refusal=refusal)
     yield Task(what, "rvmon run", [(*run, large)], _failures)
-    yield Task(what, "rvmon run -e c", [(*run, "--engine", "c", large)], _failures, refusal=refusal)
+    yield Task(what, "rvmon run -e c", [(*run, "--engine", "c", large)], _failures)
     files = [str(written(folder / f"file{number:04}.csv", EACH, number)) for number in range(many)]
     what = f"{many:,} files of {EACH:,} rows"
     yield Task(what, "rvmon run", [(*run, *files)], _failures)
     yield Task(what, "rvmon run --jobs 2", [(*run, "--jobs", "2", *files)], _failures)
-    yield Task(what, "rvmon build", [(str(program), *files)], _failures, refusal=refusal)
     tiny = str(written(folder / "tiny.csv", 10, 0))
     yield Task("10 rows", "rvmon run", [(*run, tiny)], _failures)
     yield Task("10 rows", "rvmon run -e c", [(*run, "--engine", "c", tiny)], _failures)

@@ -43,14 +43,6 @@ GOALS = (
     Goal("online, one step, generated C", "online", "rvmon step, C", "mstlo", "future", 5),
     Goal("online, only what changed", "online", "rvmon step, changes", "reelay", "past", 5),
     Goal("values that change at every row", "unsteady", "rvmon step", "sentil", "future", 0.8),
-    Goal(
-        "values that change at every row, prepared",
-        "unsteady",
-        "rvmon step, prepared",
-        "sentil",
-        "future",
-        3,
-    ),
     Goal("values that change at every row, C", "unsteady", "rvmon step, C", "sentil", "future", 4),
     Goal("values that change at every row", "unsteady", "rvmon step", "mstlo", "future", 5),
     Goal("values that change at every row, C", "unsteady", "rvmon step, C", "mstlo", "future", 5),
@@ -79,7 +71,7 @@ GOALS = (
         50,
         ("100 monitors",),
     ),
-    Goal("10 to 1,000 monitors", "many", "rvmon step, prepared", "sentil", "future", 3),
+    Goal("10 to 1,000 monitors", "many", "rvmon step, C", "sentil", "future", 3),
     Goal(
         "batch in memory, no compiler, at most 10 % of rows change",
         "batch",
@@ -91,10 +83,6 @@ GOALS = (
     ),
     Goal("batch in memory, no compiler", "batch", "rvmon evaluate", "reelay", "past", 30),
     Goal("batch in memory, generated C", "batch", "rvmon evaluate, C", "reelay C++", "past", 10),
-    Goal("whole process, CSV", "process", "rvmon build, csv", "reelay C++, csv", "past", 2),
-    Goal(
-        "whole process, binary", "process", "rvmon build, binary", "reelay C++, binary", "past", 2
-    ),
     Goal("whole process, CSV", "process", "rvmon run, csv", "reelay C++, csv", "past", 0.5),
     Goal("whole process, CSV", "process", "rvmon run -e c, csv", "reelay C++, csv", "past", 0.5),
     Goal("whole process, Parquet", "process", "rvmon run, parquet", "reelay, parquet", "past", 5),
@@ -127,10 +115,9 @@ class Quoted:
 
 QUOTED = (
     Quoted("batch in memory", "batch", "rvmon evaluate, C", "R2U2 C", (37, 195), 10),
-    Quoted("whole process, CSV", "process", "rvmon build, csv", "R2U2 C", (107, 179), 2),
     Quoted("whole process, CSV", "process", "rvmon run, csv", "R2U2 C", (107, 179), 0.5),
     Quoted("whole process, CSV", "process", "rvmon run -e c, csv", "R2U2 C", (107, 179), 0.5),
-    Quoted("whole process, JSONL", "process", "rvmon build, jsonl", "reelay", (128, 164), 2),
+    Quoted("whole process, JSONL", "process", "rvmon run, jsonl", "reelay", (128, 164), 2),
 )
 """Measured on another machine on these families; R2U2 is not on the package index."""
 

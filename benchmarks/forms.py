@@ -3,30 +3,23 @@
     python -m benchmarks.forms [--rows N] [--rounds N]
 
 Every form's verdicts and attempts are compared first; a row is printed only if they are equal.
-CPU time of this process (of the program: of its own), median over interleaved rounds.
+CPU time of this process, median over interleaved rounds.
 """
 
 from __future__ import annotations
 
 import argparse
 import gc
-import json
-import resource
 import statistics
-import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import rvmon
-from rvmon.cli import main as rvmon_main
-from rvmon.codegen.python_file import python_file
 from rvmon.verdict.report import Report
 
 HEAD = "spec robot\ntime held\nsignal p, q, r : bool\nsignal speed : real\n"
@@ -88,25 +81,6 @@ def online(spec: rvmon.Spec, given: Stream, engine: str) -> Form:
     return once
 
 
-def alone(spec: rvmon.Spec, given: Stream) -> Form:
-    """The file that `rvmon compile --to python` writes."""
-    namespace: dict[str, Any] = {"__name__": "generated_monitor"}
-    exec(compile(python_file(spec.plan()), "generated", "exec"), namespace)  # noqa: S102 - our own source
-
-    def once() -> tuple[float, Any]:
-        monitor = namespace["SpecMonitor"]()
-        step = monitor.unit.step
-        began = time.process_time()
-        for t, values in given.samples:
-            step(t, values)
-        spent = time.process_time() - began
-        monitor.finish_ns()
-        found = monitor.attempts
-        return spent, [tuple(one[:5]) for one in found]
-
-    return once
-
-
 def batch(spec: rvmon.Spec, given: Stream, engine: str) -> Form:
     """`Spec.evaluate` on arrays."""
     table = {"t_ns": given.times, **given.columns}
@@ -115,37 +89,6 @@ def batch(spec: rvmon.Spec, given: Stream, engine: str) -> Form:
         began = time.process_time()
         report = spec.evaluate(table, time="t_ns", engine=engine)
         return time.process_time() - began, outcome(report)
-
-    return once
-
-
-def program(text: str, given: Stream, folder: Path) -> Form:
-    """The program that `rvmon build` makes, on CSV: a process of its own."""
-    (folder / "robot.rv").write_text(text)
-    binary = str(folder / "robot")
-    rvmon_main(["build", str(folder / "robot.rv"), "-o", binary])
-    lines = ["t_ns," + ",".join(given.columns)]
-    for t, values in given.samples:
-        cells = (str(int(v)) if isinstance(v, bool) else f"{v:.6f}" for v in values.values())
-        lines.append(f"{t}," + ",".join(cells))
-    (folder / "robot.csv").write_text("\n".join(lines) + "\n")
-
-    def once() -> tuple[float, Any]:
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(
-            [binary, str(folder / "robot.csv")], capture_output=True, text=True, check=False
-        )
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        requirements = json.loads(done.stdout)["requirements"]
-        return spent, sorted(
-            (
-                (name, one["number"], one["triggered"], one["decided"], one["verdict"])
-                for name, entry in requirements.items()
-                for one in entry["attempts"]
-            ),
-            key=lambda one: (one[3] is None, one[3] or 0, one[0], one[1]),
-        )
 
     return once
 
@@ -176,27 +119,24 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args(argv)
     print(f"{options.rows} samples of 4 values at 20 Hz; ns per sample, median of {options.rounds}")
-    with tempfile.TemporaryDirectory() as folder:
-        for changing in (0.001, 0.01, 0.1):
-            given = stream(options.rows, changing)
-            for title, body in PROPERTIES.items():
-                text = f'{HEAD}requirement R1 "{title}"\n {body}\n'
-                spec = rvmon.loads(text)
-                forms = {
-                    "engine": online(spec, given, "automaton"),
-                    "generated": online(spec, given, "python"),
-                    "file": alone(spec, given),
-                    "columns": batch(spec, given, "auto"),
-                    "c": online(spec, given, "c"),
-                    "c columns": batch(spec, given, "c"),
-                    "program": program(text, given, Path(folder)),
-                }
-                show(
-                    f"{title}, {100 * changing:g} % changing",
-                    measure(forms, options.rounds),
-                    options.rows,
-                )
-        many(options)
+    for changing in (0.001, 0.01, 0.1):
+        given = stream(options.rows, changing)
+        for title, body in PROPERTIES.items():
+            text = f'{HEAD}requirement R1 "{title}"\n {body}\n'
+            spec = rvmon.loads(text)
+            forms = {
+                "engine": online(spec, given, "automaton"),
+                "generated": online(spec, given, "python"),
+                "columns": batch(spec, given, "auto"),
+                "c": online(spec, given, "c"),
+                "c columns": batch(spec, given, "c"),
+            }
+            show(
+                f"{title}, {100 * changing:g} % changing",
+                measure(forms, options.rounds),
+                options.rows,
+            )
+    many(options)
     return 0
 
 
@@ -220,7 +160,6 @@ def many(options: argparse.Namespace) -> None:
         given = Stream(np.zeros(0, np.int64), {}, samples)
         forms = {
             "generated": online(spec, given, "python"),
-            "file": alone(spec, given),
             "c": online(spec, given, "c"),
         }
         show(f"{count} requirements, one concerned", measure(forms, options.rounds), options.rows)

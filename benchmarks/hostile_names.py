@@ -15,7 +15,6 @@ import csv
 import io
 import json
 import re
-import subprocess
 import tempfile
 import time
 import xml.etree.ElementTree as ET
@@ -278,12 +277,10 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "format": ["format", "--check", spec],
         "explain": ["explain", spec, ids[0], "--runs", "10"],
         "why": ["why", spec, trace, ids[0] if "#" not in ids[0] else "x"],
-        "cross": ["cross", spec, trace, "--only", ids[0]],
         "init": ["init", trace, "-o", "-"],
         "compile, costs": ["compile", spec, "--to", "costs"],
         "compile, dot": ["compile", spec, "--to", "dot"],
         "compile, hoa": ["compile", spec, "--to", "hoa"],
-        "compile, python": ["compile", spec, "--to", "python"],
         "verify": ["verify", model],
         "verify, json": ["verify", model, "--format", "json"],
         "verify, query": ["verify", model, "--query", ids[0]],
@@ -307,8 +304,6 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
 
 def _holds(name: str, text: str, ids: Names) -> bool:
     """Whether what a command printed for programs reads back as the names."""
-    if name == "compile, python":
-        return compile(text, "generated", "exec") is not None
     if not name.endswith(", json"):
         return True
     try:
@@ -324,20 +319,11 @@ def _holds(name: str, text: str, ids: Names) -> bool:
 
 
 def through_c(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
-    """What compiled C makes of names, in this process and by itself; as `through_commands`."""
+    """What compiled C makes of names; as `through_commands`."""
     files = written(names, folder)
     run = ["run", files.spec, files.trace, "--format", "json", "--engine", "c"]
     text = _printed(lambda: command(run))
     yield "run, engine c", _calm(text) and _holds("run, json", text, files.ids)
-    command(["build", files.spec, "-o", str(folder / "judge")])
-    text, _ = _program(folder, files.trace)
-    yield "C program", _calm(text) and _holds("run, json", text, files.ids)
-    yield "C program, broken", _calm(_program(folder, files.broken)[1])
-
-
-def _program(folder: Path, trace: str) -> tuple[str, str]:
-    done = subprocess.run([folder / "judge", trace], capture_output=True, check=False)
-    return done.stdout.decode(), done.stderr.decode()
 
 
 def main(words: Sequence[str] | None = None) -> int:

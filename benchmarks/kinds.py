@@ -12,23 +12,19 @@ that have one of them.
 from __future__ import annotations
 
 import argparse
-import os
 import random
 import statistics
 import sys
-import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from rvmon import loads
 from rvmon.errors import RvmonError
-from rvmon.monitor.c.prepared import prepare_beside
 from rvmon.session import Spec
 from rvmon.trace.sample import Value
 
-PREPARED = "auto, prepared"
-ENGINES = ("auto", PREPARED, "automaton", "network", "c")
+ENGINES = ("auto", "automaton", "network", "c")
 SECOND = 10**9
 
 KINDS = {
@@ -72,7 +68,6 @@ def measured(
     engine: str,
     rows: Sequence[dict[str, Value]],
     seconds: float,
-    only: Sequence[str] | None = None,
 ) -> tuple[float, list[object]]:
     """Nanoseconds per sample, and what was decided when.
 
@@ -81,10 +76,8 @@ def measured(
     """
     best = float("inf")
     decided: list[object] = []
-    if engine == PREPARED and prepare_beside(spec._compiled, spec._compiled.chosen(None)) is None:
-        raise RvmonError("auto takes nothing that is compiled")
     for _ in range(3):
-        monitor = spec.monitor(engine=engine.partition(",")[0], only=only)
+        monitor = spec.monitor(engine=engine)
         step = monitor.step_ns
         made = []
         began = time.process_time_ns()
@@ -110,13 +103,6 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("words", nargs="*")
     options = parser.parse_args(argv)
     rows = rows_of(options.rows, options.events)
-    with tempfile.TemporaryDirectory() as folder:  # in which nothing is prepared yet
-        os.environ["XDG_CACHE_HOME"] = folder
-        return table(options, rows)
-
-
-def table(options: argparse.Namespace, rows: Sequence[dict[str, Value]]) -> int:
-    """Measure all kinds; 1 if two engines differ."""
     print("| kind | " + " | ".join(ENGINES) + " |\n|---|" + "---|" * len(ENGINES))
     differ = 0
     figures: dict[str, list[float]] = {engine: [] for engine in ENGINES}

@@ -108,12 +108,6 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
     def run(spec: str, trace: str, *words: str) -> list[str]:
         return [*rvmon("run"), *words, written("s.rv", spec), trace]
 
-    def built(spec: str, trace: str) -> list[str]:
-        program = str(folder / "judge")
-        command = [*rvmon("build"), written("s.rv", spec), "-o", program]
-        subprocess.run(command, check=True, capture_output=True)
-        return [program, trace]
-
     yield (
         "10,000 requirements: check",
         lambda: [
@@ -143,19 +137,11 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
             f"{count:,} undeclared names: run JSON lines",
             lambda count=count: run(SPEC, written("r.jsonl", wide_jsonl(count))),
         )
-        yield (
-            f"{count:,} undeclared columns: program",
-            lambda count=count: built(SPEC, written("r.csv", wide_csv(count))),
-        )
     for count in (10_000, 100_000):
         yield (
             f"{count:,} declared columns: run",
             lambda count=count: run(wide_spec(count), written("r.csv", wide_csv(count))),
         )
-    yield (
-        "10,000 declared columns: program",
-        lambda: built(wide_spec(10_000), written("r.csv", wide_csv(10_000))),
-    )
     for count in (11, 20):
         for words in ([], ["--engine", "python"]):
             yield (
@@ -192,11 +178,6 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
     )
     for ending in ("csv", "jsonl", "parquet"):
         yield f"/dev/zero as {ending}: run", lambda ending=ending: run(SPEC, linked(folder, ending))
-        if ending != "parquet":
-            yield (
-                f"/dev/zero as {ending}: program",
-                lambda ending=ending: built(SPEC, linked(folder, ending)),
-            )
     yield (
         "counters to 10^9: verify",
         lambda: [

@@ -21,14 +21,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+from benchmarks.peers import dialects
+from benchmarks.peers.dialects import spelling, translate
 from benchmarks.suite import unsteady
 from benchmarks.workload import Workload
 
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.testing.peers import dialects
-from rvmon.testing.peers.dialects import spelling, translate
 from rvmon.trace.schema import Kind
 
 Bounds = tuple[float, float]
@@ -74,24 +74,21 @@ def passes(workload: Workload, sentil: Any) -> dict[str, Pass]:
     trace = sentil.Trace([float(t) for t in range(count)], named)
     arrays = {"t_ns": np.arange(count), **{name: np.array(columns[name]) for name in names}}
 
-    def stepped(engine: str, *, streams: bool) -> Pass:
-        return lambda: online(spec.robustness_monitor(streams=streams, engine=engine).step_ns, ours)
+    def stepped(*, streams: bool) -> Pass:
+        return lambda: online(spec.robustness_monitor(streams=streams).step_ns, ours)
 
     return {
         "SENTIL online": lambda: online(sentil.OnlineMonitor(parsed).update_packed, theirs),
-        "C attempt": stepped("c", streams=False),
-        "C stream": stepped("c", streams=True),
-        "Python attempt": stepped("auto", streams=False),
-        "Python stream": stepped("auto", streams=True),
+        "attempt": stepped(streams=False),
+        "stream": stepped(streams=True),
         "SENTIL offline": lambda: parsed.robustness_signal(trace),
-        "C offline": lambda: spec.robustness(arrays, engine="c").streams["R"],
-        "arrays offline": lambda: spec.robustness(arrays).streams["R"],
+        "offline": lambda: spec.robustness(arrays).streams["R"],
     }
 
 
-def figures(workload: Workload, engine: str, *, streams: bool) -> dict[int, Bounds]:
+def figures(workload: Workload, *, streams: bool) -> dict[int, Bounds]:
     """What a monitor says of each position."""
-    monitor = spec_of(workload).robustness_monitor(streams=streams, engine=engine)
+    monitor = spec_of(workload).robustness_monitor(streams=streams)
     names = [*workload.columns]
     found = []
     for t, row in enumerate(zip(*workload.columns.values(), strict=True)):
@@ -106,17 +103,10 @@ def differences(workload: Workload, found: dict[str, Any]) -> tuple[int, int]:
     It counts a window that the trace cuts short as it is; ours is then no single number.
     """
     signal = np.asarray(found["SENTIL offline"].tolist())
-    offline = found["C offline"]
+    offline = found["offline"]
     sure = np.flatnonzero(offline.low == offline.high).tolist()
-    told: list[dict[int, Bounds]] = [
-        {t: (one.low, one.high) for t, one in found[name]}
-        for name in ("C offline", "arrays offline")
-    ]
-    told += [
-        figures(workload, engine, streams=streams)
-        for engine in ("c", "auto")
-        for streams in (True, False)
-    ]
+    told = [{t: (one.low, one.high) for t, one in offline}]
+    told += [figures(workload, streams=streams) for streams in (True, False)]
     compared = wrong = 0
     for own in told:
         shared = [t for t in sure if t in own]

@@ -2,9 +2,8 @@ r"""Robustness, by every way that measures it, against its oracle on random spec
 
     python -m benchmarks.margin_differential --pairs 10000 --seed 1
 
-`samples` is the monitor that is stepped, `arrays` what measures a recording in columns; `c` and
-`c-arrays` are the same in C; `program` is what `rvmon build --robustness` makes, on JSON lines.
-Prints how much was compared and every disagreement, shrunk; exits 1 if there is one.
+`samples` is the monitor that is stepped, `arrays` what measures a recording in columns. Prints how
+much was compared and every disagreement, shrunk; exits 1 if there is one.
 """
 
 from __future__ import annotations
@@ -18,6 +17,7 @@ from benchmarks.differential import FEATURES, MODELS, profile_of
 from tests.tools.differential import cases_of
 from tests.tools.judgement import Judgement
 from tests.tools.margin_ways import WAYS, Way
+from tests.tools.margins import margins
 from tests.tools.shrink import shrink
 
 from rvmon.errors import RvmonError
@@ -42,7 +42,7 @@ class Specs:
 
 
 def differences(case: Case, way: Way, specs: Specs) -> list[str] | None:
-    """How the figures of a way depart from the oracle's; `None` if it does not measure the case."""
+    """How the figures of a way depart from the oracle's; `None` if the case has no samples."""
     try:
         case = way.adapted(case)
         if not case.samples:
@@ -50,9 +50,7 @@ def differences(case: Case, way: Way, specs: Specs) -> list[str] | None:
         found = way.measure(specs(case.spec), case)
     except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
-    if found is None:
-        return None
-    expected = way.expected(Judgement(case))
+    expected = margins(Judgement(case))
     return [
         f"{key}: {found.get(key)}, expected {expected.get(key)}"
         for key in sorted({*expected, *found})

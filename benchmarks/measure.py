@@ -8,10 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from benchmarks.contenders import Contender
+from benchmarks.peers.client import PeerError
 from benchmarks.workload import Workload
-
-from rvmon.testing.peers.client import PeerError
-from rvmon.testing.peers.core import UntranslatableError
+from tests.tools.common_fragment import UntranslatableError
 
 FEWEST_ROWS = 50
 """Of a pass, however slow the contender; as many tell how slow it is."""

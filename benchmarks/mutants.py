@@ -32,13 +32,13 @@ from pathlib import Path
 from benchmarks.engines import COLUMNS, ENGINES, PACKAGE, RELATED, files_of
 from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutation_c import c_mutants
+from tests.tools.forms import EXPLAINING as SWITCHABLE
 from tests.tools.ways import INTERRUPT, NEXT
 
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.source import mutants
 from rvmon.execute.command import run
 from rvmon.execute.interrupt import interrupted_by_sigterm
-from rvmon.monitor.engines.registry import EXPLAINING as SWITCHABLE
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -6,7 +6,6 @@ import json
 import os
 import resource
 import statistics
-import struct
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -17,12 +16,11 @@ from pathlib import Path
 import numpy as np
 from benchmarks.measure import Figure, Result
 from benchmarks.ours import always_text, specification
+from benchmarks.peers import dialects
+from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import Environment
 from benchmarks.peers.native import Native, packed
 from benchmarks.workload import Column, Workload
-
-from rvmon.testing.peers import dialects
-from rvmon.testing.peers.dialects import translate
 
 BY_PARQUET = Path(__file__).parent / "peers" / "parquet_with_reelay.py"
 FEW = 50_000
@@ -71,7 +69,7 @@ def measure_process(
 
 def _ours(spec: Path, stem: Path, workload: Workload) -> Iterator[Program]:
     columns, rows = workload.columns, workload.rows
-    csv, jsonl = _csv(stem, columns), _jsonl(stem, columns, rows)
+    csv = _csv(stem, columns)
     rvmon = (sys.executable, "-m", "rvmon")
     run = (*rvmon, "run", str(spec))
     judged = (*run, str(csv), "--format", "json")
@@ -85,17 +83,6 @@ def _ours(spec: Path, stem: Path, workload: Workload) -> Iterator[Program]:
     if parquet is not None:
         judged = (*run, str(parquet), "--format", "json")
         yield Program("rvmon run, parquet", judged, _ours_violated, rows)
-    binary = stem.with_name("judge")
-    done = subprocess.run(
-        [*rvmon, "build", str(spec), "-o", str(binary)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if done.returncode == 0:
-        for kind, path in (("csv", csv), ("jsonl", jsonl), ("binary", _fixed(stem, columns))):
-            command = (str(binary), str(path))
-            yield Program(f"rvmon build, {kind}", command, _ours_violated, rows)
 
 
 def _peers(
@@ -135,23 +122,6 @@ def _jsonl(stem: Path, columns: Mapping[str, Column], rows: int) -> Path:
         for t, row in enumerate(islice(_cells(columns), rows)):
             values = {name: bool(cell) for name, cell in zip(columns, row, strict=True)}
             file.write(json.dumps({"t_ns": t, **values}) + "\n")
-    return path
-
-
-def _fixed(stem: Path, columns: Mapping[str, Column]) -> Path:
-    """The fixed layout that programs of `rvmon build` read."""
-    path = stem.with_suffix(".bin")
-    names = [name.encode() for name in columns]
-    header = b"rvmonbin" + struct.pack("=I", len(names))
-    header += b"".join(struct.pack("=I", len(name)) + name for name in names)
-    width = len(names)
-    layout = np.dtype([("t", "i8"), ("values", "f8", (width,)), ("states", "u1", (width,))])
-    table = np.zeros(len(next(iter(columns.values()))), layout)
-    table["t"] = np.arange(len(table))
-    table["states"] = 3
-    for place, column in enumerate(columns.values()):
-        table["values"][:, place] = column
-    path.write_bytes(header + table.tobytes())
     return path
 
 

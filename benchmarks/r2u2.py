@@ -24,6 +24,7 @@ from pathlib import Path
 
 from benchmarks.contenders import COLUMNS, STEPS, Contender, Pass, our_worker
 from benchmarks.measure import Plan, measure
+from benchmarks.peers.dialects import Dialect, spelling, translate
 from benchmarks.peers.positions import Question, answers, ask_engine
 from benchmarks.render import ratio_text, time_text
 from benchmarks.workload import Workload
@@ -31,7 +32,6 @@ from benchmarks.workload import Workload
 from benchmarks import suite
 from rvmon.spec.checked.formula import BinaryOp, UnaryOp
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.peers.dialects import Dialect, spelling, translate
 
 LOOP = Path(__file__).parent / "peers" / "r2u2_native" / "loop.c"
 MEMORY = "R2U2 C, memory"

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 
 from benchmarks.workload import Workload
 from tests.tools.build import always, compared, eventually, historically, no, two
+from tests.tools.common_fragment import names_in
 
 from rvmon.spec.checked.formula import Formula, SignalAtom, SignalValue
-from rvmon.testing.peers.core import names_in
 
 RATES = {"20 Hz": 20, "1 kHz": 1000}
 

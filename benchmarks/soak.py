@@ -5,8 +5,7 @@
 
 A sample per millisecond, in a pattern of a second: attempts that overlap, keys that come again,
 NaN, a signal that becomes stale. How many attempts pass and fail in each second is known, and
-compared at the end. Python (`auto`, `python`, and `prepared`, with compiled code beside it, which
-does without R3) keeps 100 records of each verdict; `c` is generated C
+compared at the end. Python (`auto`, `python`) keeps 100 records of each verdict; `c` is generated C
 in a program of its own, with room for 256 attempts, that tells records and keeps none. It is not
 asked for R5, of which each attempt stays undecided for ever: C has such attempts open until its
 end. Prints memory after each tenth, the times of steps with the time to ask the clock, and what is
@@ -119,9 +118,6 @@ class Lived:
 def live_in_python(seconds: int, first: int, engine: str, only: Sequence[str]) -> tuple[Lived, str]:
     """Feed a monitor of Python; also what it said where it refused a sample."""
     spec = rvmon.loads(SPEC)
-    if engine == "prepared":
-        spec.prepare(only=only)
-        engine = "auto"
     monitor = spec.monitor(engine=engine, keep=100, only=only)
     rows, quiet, step, clock = pattern(), [{}] * TAIL, monitor.step_ns, time.perf_counter_ns
     bins = np.zeros(BINS, dtype=np.int64)
@@ -217,7 +213,7 @@ def main(words: list[str]) -> int:
     """Feed, compare, print, and return 1 if a verdict is wrong."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--samples", type=int, default=1_000_000)
-    parser.add_argument("--engine", choices=("auto", "python", "prepared", "c"), default="auto")
+    parser.add_argument("--engine", choices=("auto", "python", "c"), default="auto")
     parser.add_argument("--only", nargs="+", choices=KNOWN, default=list(KNOWN))
     options = parser.parse_args(words)
     seconds = max(10, options.samples // ROWS)

@@ -1,11 +1,9 @@
 """Fuzz rvmon: `python -m fuzz --seconds 60 [--only spec recording …] [--out out/fuzz]`.
 
-Python is fuzzed by atheris (`pip install atheris`), the reader of C programs by AFL++
-(`apt-get install afl++ clang libclang-rt-14-dev`); what is not installed is said and left out. Each
-target has its part of the time, and goes on from what it found before, in the folder of `--out`.
-Prints by target how many inputs it took, how they ended, how many places of the code were reached,
-and which inputs stumbled; exits 1 if one did. Once it is fixed, that input is a file more in
-`fuzz/corpus`, which a test reads.
+It needs atheris (`pip install atheris`). Each target has its part of the time, and goes on from
+what it found before, in the folder of `--out`. Prints by target how many inputs it took, how they
+ended, how many places of the code were reached, and which inputs stumbled; exits 1 if one did. Once
+it is fixed, that input is a file more in `fuzz/corpus`, which a test reads.
 """
 
 from __future__ import annotations
@@ -19,9 +17,7 @@ import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from shutil import which
 
-from fuzz.programs import FORMS, fuzz_program
 from fuzz.targets import TARGETS
 
 CORPUS = Path(__file__).with_name("corpus")
@@ -43,7 +39,7 @@ class Found:
     stumbled: tuple[Path, ...]
 
 
-def fuzz_python(name: str, out: Path, seconds: int) -> Found:
+def fuzz_target(name: str, out: Path, seconds: int) -> Found:
     """Have atheris change inputs of a target for so many seconds."""
     folder = out / name
     (folder / "found").mkdir(parents=True, exist_ok=True)
@@ -70,33 +66,22 @@ def fuzz_python(name: str, out: Path, seconds: int) -> Found:
 def main(words: list[str]) -> int:
     """Fuzz, print, and return 1 if anything stumbled."""
     parser = argparse.ArgumentParser(prog="python -m fuzz", description="Fuzz rvmon.")
-    everything = [*TARGETS, *FORMS]
     parser.add_argument("--seconds", type=int, default=60, help="in all")
-    parser.add_argument("--only", nargs="+", choices=everything, default=everything)
+    parser.add_argument("--only", nargs="+", choices=TARGETS, default=[*TARGETS])
     parser.add_argument("--out", type=Path, default=Path("out/fuzz"))
     options = parser.parse_args(words)
-    missing = {"atheris": find_spec("atheris"), "afl-fuzz": which("afl-fuzz")}
-    left_out = [name for name in options.only if not missing[_tool(name)]]
-    for name in left_out:
-        print(f"{name}: left out, as {_tool(name)} is not installed")
-    names = [name for name in options.only if name not in left_out]
+    if find_spec("atheris") is None:
+        print("nothing is fuzzed, as atheris is not installed")
+        return 1
     os.environ["RVMON_CACHE"] = "off"
     stumbled = 0
-    for name in names:
-        each = max(1, options.seconds // len(names))
-        if name in TARGETS:
-            found = fuzz_python(name, options.out, each)
-        else:
-            found = Found(*fuzz_program(name, options.out, each))
+    for name in options.only:
+        found = fuzz_target(name, options.out, max(1, options.seconds // len(options.only)))
         print(f"{name:12} {found.inputs:>9,} inputs, {found.places}; {found.answers}", flush=True)
         for path in found.stumbled:
             print(f"  stumbled over {path}")
         stumbled += len(found.stumbled)
-    return 1 if stumbled or not names else 0
-
-
-def _tool(name: str) -> str:
-    return "atheris" if name in TARGETS else "afl-fuzz"
+    return 1 if stumbled else 0
 
 
 if __name__ == "__main__":

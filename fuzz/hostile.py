@@ -1,4 +1,4 @@
-"""Recordings that are wrong here and there, judged by engines of Python and by the C program.
+"""Recordings that are wrong here and there, judged by engines of Python and of C.
 
     python -m fuzz.hostile --inputs 100000 --seed 1 [--engine python auto c]
 
@@ -121,8 +121,8 @@ def main(words: list[str]) -> int:
     parser.add_argument(
         "--engine",
         nargs="+",
-        default=["auto"],
-        help="of python, auto and c, beside the program; what any judges, the first has to judge",
+        default=["python", "auto"],
+        help="of python, auto and c; what any judges, the first has to judge",
     )
     options = parser.parse_args(words)
     ends: Counter[str] = Counter()

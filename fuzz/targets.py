@@ -1,15 +1,13 @@
 """What is fuzzed: each target takes bytes and raises only if something stumbles over them.
 
 Bad input is to be refused by an `RvmonError`, which a target takes for an answer. A target of
-recordings also compares what our engines, and the C program, say of what they judge.
+recordings also compares what our engines say of what they judge.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import subprocess
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -20,7 +18,6 @@ from tests.tools.bags import SHOP
 from tests.tools.timed_damage import survives
 
 import rvmon
-from rvmon.cli import main
 from rvmon.diagnostics.render import render_full
 from rvmon.errors import ModelError, RvmonError, SnapshotError, SpecError
 from rvmon.spec.print.formatter import format_text
@@ -60,9 +57,6 @@ requirement R6
 """Values of all kinds, dropouts, keys and captured values."""
 
 TIMES = ("held", "sampled", "sampled every 100 ms")
-
-SANITIZED = "-fsanitize=undefined -fno-sanitize-recover=all"
-"""Has the program end where C does not say what happens; AFL++ looks for wrong addresses."""
 
 ENDS = (".csv", ".jsonl")
 
@@ -199,22 +193,8 @@ def _recorded(time: str) -> rvmon.Spec:
     return rvmon.loads(RECORDED.format(time=time))
 
 
-@cache
-def _program(time: str) -> Path:
-    """The C program of a specification."""
-    source, program = _file("p.rv", RECORDED.format(time=time).encode()), f"judge-{time[-3:]}"
-    before = os.environ.get("CC")
-    os.environ["CC"] = f"{before or 'cc'} {SANITIZED} -DBLOCK=100"
-    assert main(["build", str(source), "-o", str(folder() / program)]) == 0
-    if before is None:
-        del os.environ["CC"]
-    else:
-        os.environ["CC"] = before
-    return folder() / program
-
-
 def recording(data: bytes, engines: Sequence[str] = ("python", "auto", "c")) -> str:
-    """A CSV file or JSON lines: Python, columns, C and the C program say the same.
+    """A CSV file or JSON lines: Python, columns and C say the same.
 
     The first byte says which form and time model; the rest is the file. Of the engines the first
     judges all that others do.
@@ -224,7 +204,6 @@ def recording(data: bytes, engines: Sequence[str] = ("python", "auto", "c")) -> 
     ending, time = ENDS[data[0] % 2], TIMES[data[0] // 2 % 3]
     path = _file(f"r{ending}", data[1:])
     found = {name: _told_by_engine(time, path, name) for name in engines}
-    found["program"] = _told_by_program(time, path)
     judged = {name: one for name, one in found.items() if one is not None}
     for name, one in judged.items():
         first = found[engines[0]]
@@ -244,24 +223,6 @@ def _told_by_engine(time: str, path: Path, engine: str) -> object:
     return (
         *(report.origin, report.end),
         {name: (verdict, attempts[name]) for name, verdict in report.verdicts.items()},
-    )
-
-
-def _told_by_program(time: str, path: Path) -> object:
-    words = [str(_program(time)), "--allow-missing", str(path)]
-    done = subprocess.run(words, capture_output=True, check=False)
-    assert done.returncode in (0, 1, 2), done.stderr.decode(errors="replace")
-    if done.returncode == 2:
-        assert done.stderr.startswith(str(path).encode()), "no file, line and cause"
-        return None
-    report = json.loads(done.stdout)
-    keys = ("number", "triggered", "decided", "verdict", "decision")
-    return (
-        *(report["origin"], report["end"]),
-        {
-            name: (one["verdict"], [tuple(a[key] for key in keys) for a in one["attempts"]])
-            for name, one in report["requirements"].items()
-        },
     )
 
 

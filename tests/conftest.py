@@ -23,7 +23,6 @@ _MARK_OF_FIXTURE = {
     "directed_results": "campaign",
     "extensions": "compiler",
     "gcc": "compiler",
-    "program": "compiler",
     "subject": "law",
 }
 

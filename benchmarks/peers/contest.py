@@ -6,7 +6,11 @@ import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+from benchmarks.peers.client import Peer
+from benchmarks.peers.dialects import translate
 from benchmarks.peers.positions import Question
+from benchmarks.peers.ways import WAYS, Way, truths
+from tests.tools.common_fragment import UntranslatableError, names_in
 from tests.tools.shrink import smaller_formulas
 
 from rvmon.spec.checked.formula import (
@@ -22,10 +26,6 @@ from rvmon.spec.checked.formula import (
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.rng import chance, pick
 from rvmon.testing.generate.vocabulary import CARRIER, EVENTS, FURTHER, NUMBERS
-from rvmon.testing.peers.client import Peer
-from rvmon.testing.peers.core import UntranslatableError, names_in
-from rvmon.testing.peers.dialects import translate
-from rvmon.testing.peers.ways import WAYS, Way, truths
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,11 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from benchmarks.peers.client import Peer, PeerError
+from benchmarks.peers.dialects import spelling
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.peers.positions import Question, answers, ask_oracle
+from benchmarks.peers.ways import Cell, Columns
 from tests.tools.build import (
     always,
     compared,
@@ -30,9 +33,6 @@ from tests.tools.build import (
 
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.peers.client import Peer, PeerError
-from rvmon.testing.peers.dialects import spelling
-from rvmon.testing.peers.ways import Cell, Columns
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from benchmarks.peers.ways import Columns
+
 from rvmon.spec.checked.formula import EventAtom, Formula
 from rvmon.spec.checked.specification import (
     CheckedSpec,
@@ -15,7 +17,6 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.testing.peers.ways import Columns
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Attempt, Decision

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import rvmon
-from rvmon.monitor.c.prepared import prepare_beside
 
 
 class Peer:
@@ -42,18 +41,10 @@ class Peer:
             columns: by name the value at each row.
             rows: their number.
             period: ticks from row to row.
-            engine: by name; `prepared`: `auto` with what is compiled ahead.
-
-        Raises:
-            RvmonError: `auto` takes nothing that is compiled ahead.
+            engine: by name.
         """
         if spec != self._text:
             self._spec, self._text = rvmon.loads(spec), spec
-        if engine == "prepared":
-            engine = "auto"
-            compiled = self._spec._compiled
-            if prepare_beside(compiled, compiled.chosen(None)) is None:
-                raise rvmon.RvmonError("auto takes nothing that is compiled of this")
         self._kind, self._engine, self._period = kind, engine, period
         if kind == "evaluate":
             import numpy as np

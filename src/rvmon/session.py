@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
-    from rvmon.monitor.c.prepare import Prepared
     from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
@@ -112,12 +111,11 @@ class Spec:
 
         return choices(self._compiled.chosen(requirements_asked(self.checked, only)))
 
-    def plan(self, *, only: Iterable[str] | None = None, robustness: bool = False) -> Plan:
-        """What `rvmon.codegen` makes Python and C of that run without rvmon.
+    def plan(self, *, only: Iterable[str] | None = None) -> Plan:
+        """What `rvmon.codegen` makes C of that runs without rvmon.
 
         Args:
             only: ids of the requirements; default all.
-            robustness: whether it says what is measured, too.
 
         Raises:
             UnknownNameError: there is no such requirement.
@@ -125,32 +123,7 @@ class Spec:
         """
         from rvmon.monitor.compiled.code_plan import plan_alone
 
-        return plan_alone(self._compiled, only, measured=robustness)
-
-    def prepare(
-        self,
-        *,
-        only: Iterable[str] | None = None,
-        ready: Callable[[Prepared], object] = id,
-        robustness: bool = False,
-    ) -> tuple[Prepared, ...]:
-        """Compile ahead, into the cache, what makes streams faster and nothing else different.
-
-        `monitor()` then has compiled code beside it, where `engines` says of no requirement that
-        it is refused as `prepared`. Compiled as well is what the engine `c` would at its first use.
-
-        Args:
-            only: ids of the requirements, as the engines will be asked for them; default all.
-            ready: called with each file when it is there.
-            robustness: whether `robustness_monitor()` is to have compiled code as well.
-
-        Raises:
-            UnknownNameError: there is no such requirement.
-            RvmonError: there is no compiler or no cache, or the engine refuses a requirement.
-        """
-        from rvmon.monitor.c.prepare import prepare
-
-        return prepare(self._compiled, requirements_asked(self.checked, only), ready, robustness)
+        return plan_alone(self._compiled, only)
 
     def monitor(
         self,
@@ -257,16 +230,19 @@ class Spec:
             engine: as for `evaluate`; so is `only`, and so are the errors.
             only: see there.
             decided: called with each attempt as it is decided, where samples are judged one by one.
-            robustness: whether each attempt is to have its robustness.
+            robustness: whether each attempt is to have its robustness; not by the engine `c`.
         """
         from rvmon.monitor.engines.registry import Asked, engine_named
 
         asked = Asked(requirements_asked(self.checked, only), decided=decided)
         judge = engine_named(engine).judge
         if robustness:
+            from rvmon.monitor.compiled.refusal import no_robustness
             from rvmon.monitor.measure import measuring
 
-            judge = measuring(judge, engine)
+            if engine == "c":
+                raise no_robustness(engine)
+            judge = measuring(judge)
         return judge(self._compiled, source, asked)
 
     def _reading(
@@ -326,7 +302,6 @@ class Spec:
         only: Iterable[str] | None = None,
         until: float | None = None,
         streams: bool = True,
-        engine: str = "auto",
         **reading: Unpack[ReadingArguments],
     ) -> Margins:
         """By how much a finished trace meets each requirement, or fails to, in base units.
@@ -339,7 +314,6 @@ class Spec:
             only: see there; so is `reading`.
             until: see there.
             streams: whether to give a figure per sample, too; they are kept in memory.
-            engine: `auto`, or `c`: compiled C, which does not measure every requirement.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
@@ -347,9 +321,7 @@ class Spec:
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         end = None if until is None else ticks_of_seconds(until)
-        return margins_of(
-            self._compiled, trace, given, only=asked, until=end, streams=streams, engine=engine
-        )
+        return margins_of(self._compiled, trace, given, only=asked, until=end, streams=streams)
 
     def robustness_monitor(
         self,
@@ -358,7 +330,6 @@ class Spec:
         settle: str = "now",
         sources: Iterable[str] | None = None,
         streams: bool = False,
-        engine: str = "auto",
     ) -> RobustnessMonitor:
         """Make an online monitor that gives figures of robustness; see `robustness`.
 
@@ -367,15 +338,14 @@ class Spec:
             settle: see there.
             sources: see there.
             streams: whether to give a figure per sample as well as per attempt.
-            engine: see `robustness`.
 
         Raises:
-            UnknownNameError: `only`, `settle`, `sources` or `engine` names what does not exist.
+            UnknownNameError: `only`, `settle` or `sources` names what does not exist.
         """
-        from rvmon.monitor.measure import robustness_monitor
+        from rvmon.monitor.robustness.monitor import RobustnessMonitor
 
         only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
-        return robustness_monitor(self._compiled, only, settle, names, engine, streams=streams)
+        return RobustnessMonitor(self._compiled, only, settle, names, streams=streams)
 
     @cached_property
     def coverage_model(self) -> SpecCoverage:

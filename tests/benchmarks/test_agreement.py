@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 from benchmarks.agreement import COMPILED, Agreement, Referee
 from benchmarks.measure import Figure
+from benchmarks.peers.client import Peer
 from benchmarks.workload import Workload
 from tests.tools.build import once, p
-
-from rvmon.testing.peers.client import Peer
 
 BOUND = 500
 SECONDS = 90

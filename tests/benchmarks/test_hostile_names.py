@@ -22,7 +22,7 @@ def test_what_is_written_reads_back_as_names(documents, writer):
 
 @pytest.mark.compiler
 def test_every_command_shows_names_and_obeys_none(capsys):
-    """Also in what it refuses, and in what the C program says."""
+    """Also in what it refuses, and in what compiled C says."""
     words = ["--names", "40", "--through-commands", "40", "--through-c", "40"]
     assert main(words) == 0
-    assert "C program, broken        40 names, 0 documents wrong" in capsys.readouterr().out
+    assert "run, engine c            40 names, 0 documents wrong" in capsys.readouterr().out

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from benchmarks.contenders import Pass
 from benchmarks.measure import Plan, measure
+from benchmarks.peers.client import PeerError
 from benchmarks.workload import Workload
 from tests.tools.build import p
-
-from rvmon.testing.peers.client import PeerError
-from rvmon.testing.peers.core import UntranslatableError
+from tests.tools.common_fragment import UntranslatableError
 
 WORKLOAD = Workload("online", "a workload", "past", (p,), {"p": [True, True, False, True] * 50})
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.cli import main
 from rvmon.errors import SnapshotError, TraceError, UnknownNameError
 
 DOOR = """
@@ -109,15 +108,6 @@ def test_no_requirement_is_judged(spec, engine):
     for trace in (arrays, [(0, {"gap": 1.0}), (2, {"gap": 5.0})]):
         report = spec.evaluate(trace, only=[], engine=engine)
         assert (report.verdicts, report.attempts) == ({}, ())
-
-
-@pytest.mark.parametrize("only", ["", " , "])
-def test_no_program_without_requirements(tmp_path, capsys, only):
-    """`rvmon build` says what there is."""
-    path = tmp_path / "door.rv"
-    path.write_text(DOOR)
-    assert main(["build", str(path), "-o", str(tmp_path / "door"), "--only", only]) == 2
-    assert "the list of requirements is empty: there are D1, D2" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("engine", ["auto", "automaton", "network", "progression"])

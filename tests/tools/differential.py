@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences
-from rvmon.testing.drive import Monitored, drive
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.law.walk import intervals
 from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.chains import random_chain
+from tests.tools.compare import differences
+from tests.tools.drive import Monitored, drive
 from tests.tools.features import Feature, features
 from tests.tools.frame import frame_differences
 from tests.tools.health import health_differences

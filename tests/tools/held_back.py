@@ -6,11 +6,11 @@ import random
 from collections.abc import Mapping, Sequence
 
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.drive import OnlineMonitor
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from tests.tools.drive import OnlineMonitor
 from tests.tools.health import readers_of
 
 

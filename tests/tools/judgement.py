@@ -7,13 +7,13 @@ from functools import cached_property
 
 from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key, Outcome, outcomes
 from rvmon.testing.law.attempts import is_upon_end
 from rvmon.testing.law.follow import Followed, Followings
 from rvmon.testing.law.kleene import Truth
 from rvmon.testing.oracle import judge_views, report_on
 from rvmon.trace.health import Health
 from rvmon.verdict.report import Report
+from tests.tools.compare import Key, Outcome, outcomes
 from tests.tools.health import expected_health, may_be_simplified
 from tests.tools.law import word
 from tests.tools.moments import Moment

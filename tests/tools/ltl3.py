@@ -23,7 +23,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.formula import UnaryOp as Op
 from rvmon.testing.law.walk import subformulas
-from rvmon.testing.peers.core import both, either, to_core
+from tests.tools.common_fragment import both, either, to_core
 
 Letter = frozenset[str]
 """The propositions that are true at a position."""

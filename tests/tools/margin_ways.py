@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import random
-import subprocess
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rvmon.codegen.c_build import built
-from rvmon.codegen.c_program import program_build
-from rvmon.dataflow.margins import INFINITE
-from rvmon.monitor.compiled.refusal import of_measured_c
-from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor, measuring_library
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.session import Spec
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key, key_of
 from rvmon.trace.sample import Sample
+from tests.tools.compare import Key
 from tests.tools.doors import content_of, whole
-from tests.tools.judgement import Judgement
-from tests.tools.margins import margins
 
 Figures = tuple[float, float, float]
 """The least that robustness can be, the greatest, and what is kept up to the end."""
@@ -37,14 +26,12 @@ class Way:
     """A way to find robustness.
 
     Attributes:
-        measure: gives each attempt its figures; `None` if it does not measure such cases.
+        measure: gives each attempt its figures.
         adapted: the case that is like another one and can be measured so.
-        expected: what the law has it give.
     """
 
-    measure: Callable[[Spec, Case], Mapping[Key, object] | None]
+    measure: Callable[[Spec, Case], Mapping[Key, Figures]]
     adapted: Callable[[Case], Case] = lambda case: case
-    expected: Callable[[Judgement], Mapping[Key, object]] = margins
 
 
 def by_samples(spec: Spec, case: Case) -> Mapping[Key, Figures]:
@@ -52,67 +39,16 @@ def by_samples(spec: Spec, case: Case) -> Mapping[Key, Figures]:
     return _stepped(RobustnessMonitor(spec._compiled, sources=case.names), case)
 
 
-def by_compiled(spec: Spec, case: Case) -> Mapping[Key, Figures] | None:
-    """The same in C."""
-    if not _is_compiled(spec):
-        return None
-    return _stepped(CompiledRobustnessMonitor(spec._compiled, sources=case.names), case)
-
-
-def by_arrays(spec: Spec, case: Case, engine: str = "auto") -> Mapping[Key, Figures]:
+def by_arrays(spec: Spec, case: Case) -> Mapping[Key, Figures]:
     """As a recording in columns."""
     samples = case.samples
     columns: dict[str, Any] = {"t_ns": np.array([one.t for one in samples], np.int64)}
     for name in sorted(case.names or ()):
         columns[name] = np.array([one.values[name] for one in samples])
     until = None if case.end is None else case.end * 1e-9
-    found = spec.robustness(columns, until=until, engine=engine, allow_missing=True)
+    found = spec.robustness(columns, until=until, allow_missing=True)
     bounds = {(name, False, n): one for (name, n), one in found.attempts.items()}
     return _bounds(bounds | {(name, True, n): one for (name, n), one in found.doubtful.items()})
-
-
-def by_compiled_arrays(spec: Spec, case: Case) -> Mapping[Key, Figures] | None:
-    """The same in C."""
-    return by_arrays(spec, case, "c") if _is_compiled(spec) else None
-
-
-def by_program(spec: Spec, case: Case) -> Mapping[Key, object] | None:
-    """What a program prints with the attempts of JSON lines."""
-    if any(map(of_measured_c, spec._compiled.requirements.values())):
-        return None
-    build = program_build(spec.plan(robustness=True), measured=True)
-    program = built(replace(build, flags=("-O0",)))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "a.jsonl"
-        path.write_text("".join(f"{json.dumps(_line(sample))}\n" for sample in case.samples))
-        done = subprocess.run([program, path], capture_output=True, text=True, check=False)  # noqa: S603
-    if done.returncode not in (0, 1):
-        return None
-    return {
-        (name, one.get("in_doubt", False), one["number"]): one.get("robustness", "none")
-        for name, own in json.loads(done.stdout)["requirements"].items()
-        for one in own["attempts"]
-    }
-
-
-def _line(sample: Sample) -> dict[str, object]:
-    values = {name: None if value != value else value for name, value in sample.values.items()}
-    return {"t_ns": sample.t, **values}
-
-
-def _printed(judgement: Judgement) -> Mapping[Key, object]:
-    found = margins(judgement)
-    texts: dict[Key, object] = {}
-    for attempt in judgement.report.attempts:
-        key = key_of(attempt)
-        figure = Robustness(*found[key]).of(attempt)
-        texts[key] = "none" if figure is None else None if abs(figure) == INFINITE else figure
-    return texts
-
-
-def in_lines(case: Case) -> Case:
-    """A case that has nothing but its samples."""
-    return replace(case, actions=case.samples, end=None, names=None)
 
 
 def in_columns(case: Case) -> Case:
@@ -120,15 +56,6 @@ def in_columns(case: Case) -> Case:
     content = whole(content_of(random.Random(len(case.actions)), case))
     samples = tuple(Sample(t, cells) for t, cells in content.rows)
     return replace(case, actions=samples, names=frozenset(content.columns))
-
-
-def _is_compiled(spec: Spec) -> bool:
-    """Whether C measures a specification; that is then compiled without optimisation."""
-    requirements = [*spec._compiled.requirements.values()]
-    if any(map(of_measured_c, requirements)):
-        return False
-    measuring_library(spec._compiled, requirements, optimised=False)
-    return True
 
 
 def _stepped(monitor: RobustnessMonitor, case: Case) -> Mapping[Key, Figures]:
@@ -150,8 +77,5 @@ def _bounds(found: Mapping[Key, Robustness]) -> Mapping[Key, Figures]:
 
 WAYS: Mapping[str, Way] = {
     "samples": Way(by_samples),
-    "c": Way(by_compiled),
     "arrays": Way(by_arrays, in_columns),
-    "c-arrays": Way(by_compiled_arrays, in_columns),
-    "program": Way(by_program, in_lines, _printed),
 }

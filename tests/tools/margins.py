@@ -11,7 +11,6 @@ from typing import assert_never
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
 from rvmon.spec.checked.specification import Mode
-from rvmon.testing.compare import Key
 from rvmon.testing.law.attempts import Start, counts_in_favour, is_upon_end
 from rvmon.testing.law.kleene import Truth, truth_of
 from rvmon.testing.law.past import is_within
@@ -19,6 +18,7 @@ from rvmon.testing.law.truths import EVER
 from rvmon.testing.law.walk import is_proposition
 from rvmon.testing.law.word import Word
 from rvmon.trace.sample import Scalar
+from tests.tools.compare import Key
 from tests.tools.judgement import Judgement
 from tests.tools.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
 

@@ -7,12 +7,12 @@ from typing import Any, TypeGuard
 
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Key, Outcome, key_of
-from rvmon.testing.drive import Monitored, OnlineMonitor, feed
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from tests.tools.compare import Key, Outcome, key_of
+from tests.tools.drive import Monitored, OnlineMonitor, feed
 from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.moments import moments

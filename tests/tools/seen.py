@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from rvmon.spec.checked.formula import BoundAtom, Compare, EventAtom, Formula, ProbeAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print.printer import format_formula
-from rvmon.testing.compare import Key, key_of
 from rvmon.testing.law.attempts import Start
 from rvmon.testing.law.kleene import Truth
 from rvmon.testing.law.truths import Truths
@@ -15,6 +14,7 @@ from rvmon.testing.law.walk import subformulas
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+from tests.tools.compare import Key, key_of
 from tests.tools.health import may_be_simplified
 
 _SCALARS: Mapping[Truth, tuple[Scalar, ...]] = {

@@ -11,8 +11,6 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import UnaryOp
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences
-from rvmon.testing.drive import drive
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.walk import subformulas
@@ -31,12 +29,14 @@ from tests.tools.build import (
     spec_of,
     timeline,
 )
+from tests.tools.compare import differences
 from tests.tools.differential import (
     campaign,
     campaign_of,
     decided_on_bound,
     disagreements,
 )
+from tests.tools.drive import drive
 from tests.tools.frame import frame_differences
 from tests.tools.health import expected_health, health_differences
 from tests.tools.judgement import Judgement

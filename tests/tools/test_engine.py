@@ -8,10 +8,10 @@ from __future__ import annotations
 import pytest
 
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from tests.tools.differential import campaign
+from tests.tools.forms import Maker
 
 pytestmark = pytest.mark.law
 

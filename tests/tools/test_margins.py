@@ -5,14 +5,14 @@ import pytest
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
-from rvmon.testing.compare import key_of
-from rvmon.testing.drive import feed
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
+from tests.tools.compare import key_of
 from tests.tools.differential import case_of
+from tests.tools.drive import feed
 from tests.tools.judgement import Judgement
 from tests.tools.margins import margins
 

@@ -14,14 +14,14 @@ from rvmon.monitor import Monitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.compare import outcomes
-from rvmon.testing.drive import drive
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.attempts import is_upon_end
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.build import always, eventually, no, p, q, requirement, spec_of, timeline, two
+from tests.tools.compare import outcomes
 from tests.tools.differential import campaign_of, case_of
+from tests.tools.drive import drive
 from tests.tools.health import health_differences
 from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement

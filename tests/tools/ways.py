@@ -6,11 +6,10 @@ import random
 
 from rvmon.errors import RvmonError
 from rvmon.monitor import CompiledSpec, build_monitor
-from rvmon.monitor.engines.registry import EXPLAINING
-from rvmon.testing import forms
 from rvmon.testing.case import Case
-from rvmon.testing.drive import OnlineMonitor
-from rvmon.testing.forms import FORMS, Compiler
+from tests.tools import forms
+from tests.tools.drive import OnlineMonitor
+from tests.tools.forms import EXPLAINING, FORMS, Compiler
 from tests.tools.held_back import HeldBack
 from tests.tools.interrupt import Interrupted
 
@@ -42,7 +41,7 @@ class Maker(forms.Maker):
         self._interrupts = INTERRUPT in ways
 
     def online(self, compiled: CompiledSpec, case: Case) -> OnlineMonitor:
-        """See `rvmon.testing.forms.Maker`."""
+        """See `tests.tools.forms.Maker`."""
         rng = random.Random(len(case.actions))
         monitor = build_monitor(compiled, engine=self.form, settle=self._settle, sources=case.names)
         driven = Interrupted(monitor, rng) if self._interrupts else monitor

@@ -30,7 +30,13 @@ class TableMachine(Table):
 
 @dataclass(frozen=True, slots=True)
 class TableData:
-    """See `rvmon.runtime.table.Table`, whose arguments these are, in its order."""
+    """The arguments of `rvmon.runtime.table.Table`, and when a location holds at the end.
+
+    Attributes:
+        initial: see there; so for the others.
+        end_clauses: per location, when the rule for the end of a trace makes it true: one of these
+            lists of `(clock, least age, whether at the end or as far as time has come)`.
+    """
 
     initial: int
     cuts: tuple[tuple[tuple[int, ...], ...], ...]
@@ -44,7 +50,8 @@ class TableData:
 
 def tables_of(automaton: Automaton) -> TableData:
     """Lay an automaton out; the classes of its letters have to stand in a table."""
-    return TableData(*_layout(automaton, tuple(_table(automaton.class_of))))
+    at_end = tuple(end_clauses(location.residual) for location in automaton.locations)
+    return TableData(*(*_layout(automaton, tuple(_table(automaton.class_of))), at_end))
 
 
 def _layout(automaton: Automaton, class_of: Any) -> tuple[Any, ...]:
@@ -61,7 +68,6 @@ def _layout(automaton: Automaton, class_of: Any) -> tuple[Any, ...]:
         class_of,
         tuple(tuple(edges[row : row + width]) for row in range(0, len(edges), width)),
         tuple(automaton.time_values),
-        tuple(end_clauses(location.residual) for location in automaton.locations),
     )
 
 

@@ -24,18 +24,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compile",
-        help="a specification as Python or C that runs alone, or as automata",
-        description="Write a monitor that needs nothing of rvmon: one Python file, or C99 (a "
-        "header, a source, a header for C++) that allocates nothing. Or the automata: dot for "
-        "Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time). "
-        "Or costs: a line per requirement with its monitor and what open attempts cost.",
+        help="a specification as C that runs alone, or as automata",
+        description="Write a monitor that needs nothing of rvmon: C99 (a header, a source, a "
+        "header for C++) that allocates nothing. Or the automata: dot for Graphviz, json, hoa "
+        "(the least LTL3 monitors of requirements without windows of time). Or costs: a line per "
+        "requirement with its monitor and what open attempts cost.",
         epilog="examples: rvmon compile examples/base.rv --to c -o monitor/; rvmon compile "
         "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg",
     )
     parser.add_argument("spec", metavar="SPEC", help="a .rv file")
-    parser.add_argument(
-        "--to", choices=("python", "c", "dot", "json", "hoa", "costs"), required=True
-    )
+    parser.add_argument("--to", choices=("c", "dot", "json", "hoa", "costs"), required=True)
     parser.add_argument(
         "-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)"
     )
@@ -54,12 +52,6 @@ def run(arguments: argparse.Namespace) -> int:
             raise RvmonError(f"error: {arguments.spec} has no requirement: it has no automaton")
         _write_or_print(_automata(spec, ids, arguments.to), arguments.output)
         return 0
-    plan = spec.plan(only=ids)
-    if arguments.to == "python":
-        from rvmon.codegen.python_file import python_file
-
-        _write_or_print(python_file(plan), arguments.output)
-        return 0
     from rvmon.codegen.c_source import c_files
 
     if arguments.output is None:
@@ -67,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.output)
     if folder.exists() and not folder.is_dir():
         raise RvmonError(f"cannot write to {folder}: C is several files: name a folder with -o DIR")
-    texts = c_files(plan).texts
+    texts = c_files(spec.plan(only=ids)).texts
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():

@@ -118,7 +118,6 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             is_cut=True,
             row_by_row="" if beside.is_idle else "coverage is found sample by sample",
             read=read if beside.is_idle else beside.reading(read),
-            is_alone=is_alone,
         )
         try:
             report = spec.judge(

@@ -34,11 +34,6 @@ def unit_source(plan: Plan, arriving: frozenset[str] | None = None) -> str:
     return "\n".join(_Writer(plan, arriving).lines()) + "\n"
 
 
-def judges(plan: Plan) -> str:
-    """A sentence for the docstring of what is generated."""
-    return comment(f"Judges {', '.join(rule.requirement.id for rule in plan.rules)}.")
-
-
 class _Writer:
     def __init__(self, plan: Plan, arriving: frozenset[str] | None) -> None:
         self.plan = plan
@@ -64,7 +59,8 @@ class _Writer:
         yield from self._letters()
         yield from self.intake.functions()
         yield "class Generated(Unit):"
-        yield f'    """{judges(self.plan)}"""'
+        ids = ", ".join(rule.requirement.id for rule in self.plan.rules)
+        yield f'    """{comment(f"Judges {ids}.")}"""'
         yield ""
         yield f"    __slots__ = {slots(self.plan)!r}"
         yield from indented(self._constants())
@@ -129,7 +125,6 @@ class _Writer:
             trigger = self._trigger(rule, hidden)
             yield f"    ({judge}, letters{index}, {trigger}),  # {comment(rule.requirement.id)}"
         yield ")"
-        yield f"HIDDEN_OF = {plan.hidden_of!r}"
         determined = [self._place(rule.determined) for rule in plan.rules]
         yield f"DETERMINED = {tuple(determined)!r}"
 

@@ -19,7 +19,6 @@ def build_monitor(
     settle: str = "now",
     sources: Iterable[str] | None = None,
     keep: int | None = None,
-    left: Iterable[str] | None = None,
 ) -> Monitor:
     """Build a monitor from a compiled specification.
 
@@ -31,7 +30,6 @@ def build_monitor(
             each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
         keep: so many records of each verdict, the newest, are kept per requirement; default all.
-        left: see `rvmon.monitor.engines.registry.Asked`.
 
     Raises:
         UnknownNameError: `only`, `engine` or `settle` names what does not exist.
@@ -44,5 +42,4 @@ def build_monitor(
         raise UnknownNameError(f"no way to settle `{settle}`: there are now, next")
     given = None if sources is None else frozenset(sources)
     ids = requirements_asked(compiled.checked, only)
-    asked = Asked(ids, settle, given, keep, left=None if left is None else frozenset(left))
-    return engine_named(engine).online(compiled, asked)
+    return engine_named(engine).online(compiled, Asked(ids, settle, given, keep))

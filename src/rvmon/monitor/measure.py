@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Protocol
 
-from rvmon.errors import TraceError, UnknownNameError
-from rvmon.monitor.c.notes import MEASURING, noted
-from rvmon.monitor.compiled.refusal import of_measured_c
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.monitor.engines.rows import columns_of
@@ -38,52 +34,6 @@ class Judge(Protocol):
         """See `rvmon.monitor.engines.registry.Engine`."""
 
 
-def robustness_monitor(
-    compiled: CompiledSpec,
-    only: Sequence[str] | None,
-    settle: str,
-    sources: frozenset[str] | None,
-    engine: str,
-    *,
-    streams: bool = False,
-) -> RobustnessMonitor:
-    """A monitor of an engine that measures; see `RobustnessMonitor`.
-
-    Args:
-        compiled: the specification.
-        only: ids of the requirements; `None`: all.
-        settle: see there.
-        sources: see there.
-        engine: `c`, compiled C; or `auto`, which takes that where it was prepared.
-        streams: see there.
-
-    Raises:
-        UnknownNameError: no such engine measures, or there is no such way to settle.
-        RvmonError: compiled C does not measure a requirement, or there is no compiler.
-    """
-    if not _is_c(engine) and not _is_prepared(compiled, only):
-        return RobustnessMonitor(compiled, only, settle, sources, streams=streams)
-    from rvmon.monitor.measure_in_c import CompiledRobustnessMonitor
-
-    return CompiledRobustnessMonitor(compiled, only, settle, sources, streams=streams)
-
-
-def _is_prepared(compiled: CompiledSpec, only: Sequence[str] | None) -> bool:
-    """Whether compiled C lies ready that measures the requirements as Python does."""
-    chosen = compiled.chosen(only)
-    if not noted(MEASURING, compiled, chosen):
-        return False
-    from rvmon.monitor.c.prepared import measuring_prepared
-
-    return measuring_prepared(compiled, chosen) is not None
-
-
-def _is_c(engine: str) -> bool:
-    if engine not in ("auto", "c"):
-        raise UnknownNameError(f"no engine `{engine}` measures: there are auto, c")
-    return engine == "c"
-
-
 def margins_of(
     compiled: CompiledSpec,
     trace: Any,
@@ -92,7 +42,6 @@ def margins_of(
     only: Sequence[str] | None = None,
     until: int | None = None,
     streams: bool = True,
-    engine: str = "auto",
 ) -> Margins:
     """The robustness of all attempts on a trace.
 
@@ -103,54 +52,31 @@ def margins_of(
         only: ids of the requirements; default all.
         until: the end of the trace in ticks, if after its last sample.
         streams: whether to measure each position, too.
-        engine: see `robustness_monitor`; so are the further errors.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     named = "" if reading.sources is None else "its sources are named"
     source = Source(recording, until, row_by_row=named)
     asked = Asked(None if only is None else tuple(only))
-    margins = None
-    if _is_c(engine):
-        margins = _in_c(compiled, source, asked, streams=streams)
-    elif _is_prepared(compiled, asked.only):
-        with suppress(TraceError):  # what C does not take, or nobody: the others say so
-            margins = _in_c(compiled, source, asked, streams=streams)
-    if margins is None and not _is_c(engine):
-        judge = engine_named("auto").judge
-        found = _by_columns(compiled, source, asked, judge, streams=streams)
-        margins = found and found[1]
-    return margins or _by_samples(compiled, source, asked, engine, streams=streams)
+    found = _by_columns(compiled, source, asked, engine_named("auto").judge, streams=streams)
+    return _by_samples(compiled, source, asked, streams=streams) if found is None else found[1]
 
 
-def measuring(judge: Judge, engine: str) -> Judge:
-    """What judges a recording as `judge` does, and gives each attempt its robustness.
-
-    Args:
-        judge: of the engine.
-        engine: its name: compiled C measures what it judges, if it can.
-    """
+def measuring(judge: Judge) -> Judge:
+    """What judges a recording as `judge` does, and gives each attempt its robustness."""
 
     def measured(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-        chosen = compiled.chosen(asked.only)
-        in_c = engine == "c" and chosen and not any(map(of_measured_c, chosen))
-        margins = _in_c(compiled, source, asked, streams=False) if in_c else None
-        if margins is not None:
-            report = judge(compiled, source, asked)
-        elif in_c:
-            report, margins = _beside(compiled, source, asked, judge, "c")
-        else:
-            found = _by_columns(compiled, source, asked, judge, streams=False)
-            report, margins = found or _beside(compiled, source, asked, judge, "auto")
+        found = _by_columns(compiled, source, asked, judge, streams=False)
+        report, margins = found or _beside(compiled, source, asked, judge)
         return replace(report, attempts=tuple(map(margins.of, report.attempts)))
 
     return measured
 
 
 def _beside(
-    compiled: CompiledSpec, source: Source, asked: Asked, judge: Judge, engine: str
+    compiled: CompiledSpec, source: Source, asked: Asked, judge: Judge
 ) -> tuple[Report, Margins]:
     """A report, and the figures by a monitor that sees each sample once it was judged."""
-    monitor = robustness_monitor(compiled, asked.only, "now", source.names, engine)
+    monitor = RobustnessMonitor(compiled, asked.only, "now", source.names)
     found: list[Measured] = []
 
     def read(recording: Any) -> Iterable[Sample]:
@@ -164,26 +90,11 @@ def _beside(
     return report, margins_from([*found, *monitor.finish_ns(source.end)])
 
 
-def _by_samples(
-    compiled: CompiledSpec, source: Source, asked: Asked, engine: str, *, streams: bool
-) -> Margins:
+def _by_samples(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins:
     """The figures by a monitor."""
-    names = source.names
-    monitor = robustness_monitor(compiled, asked.only, "now", names, engine, streams=streams)
+    monitor = RobustnessMonitor(compiled, asked.only, "now", source.names, streams=streams)
     found = [one for sample in source.recording for one in monitor.step_ns(sample.t, sample.values)]
     return margins_from([*found, *monitor.finish_ns(source.end)])
-
-
-def _in_c(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins | None:
-    """The figures by compiled C; `None` if the recording has no columns."""
-    from rvmon.monitor.measure_in_c import margins_of_columns
-
-    chosen = compiled.chosen(asked.only)
-    try:
-        columns = columns_of(compiled, source, asked)
-        return margins_of_columns(compiled, chosen, columns, source.end, streams=streams)
-    except NotPlainError:
-        return None
 
 
 def _by_columns(

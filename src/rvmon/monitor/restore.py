@@ -53,7 +53,6 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
         settle=document["settle"],
         sources=document["sources"],
         keep=document["keep"],
-        left=document["left"],
     )
     put_back(document, monitor.options, monitor.evaluators, monitor)
     for instant in (monitor._last, monitor._reached, monitor._torn):

@@ -39,9 +39,6 @@ class PlannedRule:
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
         asked: further state formulas that are asked for their values.
-        measured: what is owed, as its robustness is measured; `None`: it is not.
-        is_lettered: whether what its automaton reads is noted, as a network is told of it: one
-            judges wherever else these attempts are.
     """
 
     requirement: Requirement
@@ -60,8 +57,6 @@ class PlannedRule:
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
-    measured: Core | None = None
-    is_lettered: bool = False
 
     @property
     def states(self) -> Iterator[State]:

@@ -156,12 +156,6 @@ class FileRecording:
             yield line
 
     @property
-    def is_configured(self) -> bool:
-        """Whether somebody has stated how columns are called, or what cells and stamps mean."""
-        schema = self._schema
-        return bool(schema.columns or schema.gaps or schema.stamps is not None)
-
-    @property
     def is_short(self) -> bool:
         """Whether it is a file of so little text that columns do not pay."""
         with suppress(OSError):

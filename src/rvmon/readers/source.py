@@ -40,7 +40,6 @@ class Source:
         is_cut: whether what comes after that end is left out.
         row_by_row: why columns are not to be looked at; empty if they may be.
         read: gives the samples of the recording.
-        is_alone: whether this process judges nothing else, so that what is imported for it counts.
     """
 
     recording: Recording
@@ -48,7 +47,6 @@ class Source:
     is_cut: bool = False
     row_by_row: str = ""
     read: Callable[[Any], Iterable[Sample]] = iter
-    is_alone: bool = False
 
     @property
     def names(self) -> frozenset[str] | None:

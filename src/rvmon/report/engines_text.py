@@ -12,28 +12,20 @@ from rvmon.report.plain_table import plain_table
 
 _HEAD = ("", "online", "recording", "why not another")
 
-_OF_PREPARED = (
-    "in streams auto has what rvmon prepare compiled beside it, if it takes all requirements"
-)
 _OF_C = "the engine c is taken by name only: it gives no reasons"
 
 
 def engines_text(choices: Mapping[str, EngineChoice]) -> str:
     """A line per requirement: what `auto` takes, and what faster engines and `c` refuse.
 
-    Below them, if something compiled ahead would be taken, when; and if `c` refuses not all, why it
-    is not taken all the same.
+    Below them, if `c` refuses not all, why it is not taken all the same.
     """
     rows = [
         (shown_line(name), choice.online, choice.recording, _why(choice))
         for name, choice in choices.items()
     ]
-    notes = []
-    if not any("prepared" in choice.refused for choice in choices.values()):
-        notes.append(_OF_PREPARED)
-    if not all("c" in choice.refused for choice in choices.values()):
-        notes.append(_OF_C)
-    return plain_table([_HEAD, *rows]) + "\n".join(notes)
+    note = "" if all("c" in choice.refused for choice in choices.values()) else _OF_C
+    return plain_table([_HEAD, *rows]) + note
 
 
 def _why(choice: EngineChoice) -> str:

@@ -280,7 +280,7 @@ class Nodes(Timers):
         silent, occurred = self.silent, self.p
         choices = [[None] if silent[event] == UNKNOWN else occurred[event] for event in events]
         for payloads in product(*choices):
-            one = UNKNOWN if None in payloads else truth(dict(zip(events, payloads)))
+            one = UNKNOWN if None in payloads else truth(dict(zip(events, payloads, strict=True)))
             if one > found:
                 found = one
         return found

@@ -29,8 +29,6 @@ class Table:
         rows: per row and class the edge: its target, and for each clock of that the old clock it
             is, or `NOW`; `None` where no run comes.
         time_values: per row, the truth if time alone has come to it.
-        end_clauses: per location, when the rule for the end of a trace makes it true: one of these
-            lists of `(clock, least age, whether at the end or as far as time has come)`.
     """
 
     def __init__(
@@ -42,7 +40,6 @@ class Table:
         class_of: Sequence[int],
         rows: Sequence[Sequence[Any]],
         time_values: Sequence[int],
-        end_clauses: Sequence[Sequence[Sequence[tuple[int, int, bool]]]],
     ) -> None:
         self.start: Token = (initial, ())
         self.cuts_of = cuts
@@ -51,7 +48,6 @@ class Table:
         self.class_of = class_of
         self.rows = rows
         self.time_values = time_values
-        self.end_clauses = end_clauses
         self.kept = [tuple(range(count)) for count in range(1 + max(map(len, cuts)))]
         self.bare: list[Token] = [(location, ()) for location in range(len(cuts))]
         self.moves = moves_of(self) if len(self.kept) <= 2 else None
@@ -95,17 +91,6 @@ class Table:
     def time_value(self, token: Token, t: int) -> int:
         """The truth once time has come to `t` and no position came."""
         return self.time_values[self.row(token, t)]
-
-    def holds_at_end(self, token: Token, end: int, reached: int) -> bool:
-        """Whether the rule for the end of a trace makes true what is owed."""
-        location, anchors = token
-        return any(
-            all(
-                clock < 0 or (end if at_end else reached) - anchors[clock] >= age
-                for clock, age, at_end in clause
-            )
-            for clause in self.end_clauses[location]
-        )
 
 
 BARE, FRESH, KEPT = 0, 1, 2
@@ -168,7 +153,8 @@ def letter_table(worse: Sequence[Sequence[int]], better: Sequence[Sequence[int]]
     >>> letter_table([(0, 0, 1)], [(0, 1, 1)])
     [(0, 0), (0, 1), (1, 1)]
     """
-    return [(sum(one), sum(other)) for one, other in zip(product(*worse), product(*better))]
+    letters = zip(product(*worse), product(*better), strict=True)
+    return [(sum(one), sum(other)) for one, other in letters]
 
 
 def next_cut(machine: Any, token: Token, t: int) -> int:
@@ -252,7 +238,7 @@ def _loops(before: Token, behind: Token, period: int) -> bool:
     """Whether a step only looped: each clock was kept, or moved by a period."""
     if before[0] != behind[0]:
         return False
-    return all(new in (old, old + period) for old, new in zip(before[1], behind[1]))
+    return all(new in (old, old + period) for old, new in zip(before[1], behind[1], strict=True))
 
 
 def _kept_cut(machine: Any, before: Token, behind: Token, t: int) -> int:
@@ -269,5 +255,5 @@ def _kept_cut(machine: Any, before: Token, behind: Token, t: int) -> int:
 
 def _slide(before: Token, behind: Token, ticks: int) -> Token:
     return behind[0], tuple(
-        [new if new == old else new + ticks for old, new in zip(before[1], behind[1])]
+        [new if new == old else new + ticks for old, new in zip(before[1], behind[1], strict=True)]
     )

@@ -61,8 +61,6 @@ class Unit(Nodes, Schedule):
     RULES: tuple[tuple[Any, ...], ...]
     """Per rule its class, what gives its letters, and what else it takes. Rules judge requirements;
     behind these stand those that judge attempts in doubt."""
-    HIDDEN_OF: tuple[int, ...] = ()
-    """For each of the latter, the requirement."""
     DETERMINED: tuple[int, ...] = ()
     """Per requirement the node that is true once its trigger was true or false; −1: always."""
 
@@ -176,15 +174,6 @@ class Unit(Nodes, Schedule):
             wake = min(wake, self.position + 1)
         self.wake = wake
 
-    def resume(self) -> None:
-        """Find anew whom what concerns, where rules were given another state between positions."""
-        self.set_up(self.rules)
-        for rule in self.rules:
-            self.note(rule)
-            if rule.pulse and rule.repeats:
-                self.repeating |= 1 << rule.index
-        self.set_alarm()
-
     # Time.
 
     def through(self, limit: int) -> None:
@@ -204,12 +193,6 @@ class Unit(Nodes, Schedule):
             self.visit(t)
         else:
             self.reach(t)
-        self.set_alarm()
-
-    def advance(self, t: int) -> None:
-        """Learn that no sample before `t` will come; `t` is later than all before."""
-        self.through(t - 1)
-        self.reach(t)
         self.set_alarm()
 
     def last_position(self, end: int) -> int:

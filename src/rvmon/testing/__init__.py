@@ -1,1 +1,1 @@
-"""For testing monitors: the reference oracle, Hypothesis strategies, the agreement of engines."""
+"""For testing monitors: the reference oracle, random specifications and traces."""

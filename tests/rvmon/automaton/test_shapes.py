@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from random import Random
 
 import pytest
+from tests.tools.scale import retimed
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
@@ -18,7 +19,6 @@ from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.scale import retimed
 
 BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)
 

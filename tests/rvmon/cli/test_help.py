@@ -12,7 +12,7 @@ import handover.cli
 from rvmon.cli import COMMANDS, _parser, main
 
 ROOT = Path(__file__).parents[3]
-PARSED = {"bind", "build", "cross", "lsp", "prepare", "watch"}
+PARSED = {"bind", "lsp", "watch"}
 """Commands whose examples need a bag, a compiler or a pipe."""
 HANDOVER = ("run", "demo", "close", "replay", "shrink", "mutate", "evidence verify")
 

@@ -4,10 +4,10 @@ from collections import UserDict, defaultdict
 
 import pytest
 from tests.tools.differential import campaign
+from tests.tools.forms import Maker
 
 import rvmon
 from rvmon.codegen import python_nodes, python_visit
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

@@ -3,9 +3,9 @@
 import json
 
 import pytest
+from tests.tools.compare import outcomes
 
 import rvmon
-from rvmon.testing.compare import outcomes
 
 SPEC = """
 spec s

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
+from tests.tools.compare import differences
 from tests.tools.differential import campaign, cases_of
 from tests.tools.filled import filled, judge_columns
 from tests.tools.law import judge
@@ -11,7 +12,6 @@ from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.engines.registry import engine_named
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

@@ -90,7 +90,7 @@ DIAGRAM = (
 
 def planned(text: str) -> Planned:
     """The plan of a specification, as it is to be packed."""
-    return plan_alone(rvmon.loads(text)._compiled, diagrams=True)
+    return plan_alone(rvmon.loads(text)._compiled)
 
 
 def packed(text: str) -> Packed:
@@ -101,7 +101,7 @@ def packed(text: str) -> Packed:
 def drawn(seed: int) -> Planned | None:
     """The plan of a random specification; `None` if it is refused."""
     try:
-        return plan_alone(CompiledSpec(random_spec(random.Random(seed), MANY)), diagrams=True)
+        return plan_alone(CompiledSpec(random_spec(random.Random(seed), MANY)))
     except RvmonError:
         return None
 

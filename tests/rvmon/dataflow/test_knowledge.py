@@ -31,9 +31,10 @@ def test_nothing_becomes_known_while_it_sleeps(seed, monkeypatch):
         now, t = t, t + step * rng.choice((1, 1, 1, 2, 4))
         waiting += [] if gap is None else range(now + step, t, step)
         network.grow(2 * t, waiting[0])
-        noted = letters.since(waiting[0], now) if rng.random() < 0.5 else None
-        if noted is not None:
-            journal = journal_of(plan, gap, noted, waiting[0])
+        reach = compiled.reach
+        all_noted = reach is not None and letters.noted[0][0] <= max(waiting[0], now - reach)
+        if all_noted and rng.random() < 0.5:
+            journal = journal_of(plan, gap, letters.noted, waiting[0])
             journal.grow(None, 2 * t)
             network = journal.after(len(journal)).copy()
         known = [one for one in waiting if network.truth(one) is not None]

@@ -7,7 +7,10 @@ from itertools import accumulate
 import pytest
 from tests.tools import build
 from tests.tools.differential import campaign, case_of
+from tests.tools.drive import drive, feed
+from tests.tools.forms import Maker
 from tests.tools.generate_ltl import random_mtl
+from tests.tools.scale import in_units, scaled
 
 import rvmon
 from rvmon.dataflow.network import MOST_NOTED, Network
@@ -17,11 +20,8 @@ from rvmon.monitor.compiled.costs import compile_report
 from rvmon.runtime.values import NEVER
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.drive import drive, feed
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.testing.scale import in_units, scaled
 
 SECOND = 10**9
 RESPAWNED = "whenever a then F[2 s, 5 s] b"

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from tests.tools.compare import differences
+from tests.tools.drive import drive
+from tests.tools.forms import Maker
 from tests.tools.law import judge as oracle
 
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences
-from rvmon.testing.drive import drive
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.verdict.report import Report
 
@@ -61,7 +61,6 @@ SUBJECTS = {
     "automaton": Subject(Form("automaton"), AHEAD, 6),
     "progression": Subject(Form("progression"), AHEAD, 6),
     "network": Subject(Form("network"), ALL, 8),
-    "file": Subject(Form("file"), BARE, 3),
     "c": Subject(Form("c"), BARE, 2),
 }
 

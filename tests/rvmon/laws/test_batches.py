@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tools.build import e, requirement, spec_of
+from tests.tools.compare import differences
+from tests.tools.drive import drive
+from tests.tools.forms import Maker
 
 from rvmon.session import Spec
 from rvmon.testing.case import Case
-from rvmon.testing.compare import differences
-from rvmon.testing.drive import drive
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample

@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import Any
 
 from hypothesis import strategies as st
+from tests.tools.compare import differences, outcomes
 
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.compare import differences, outcomes
 from rvmon.testing.law.attempts import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample

@@ -8,14 +8,14 @@ from types import FrameType
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from tests.tools.drive import drive
+from tests.tools.forms import Maker
+from tests.tools.scale import compact, in_units, scaled
 
 from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
-from rvmon.testing.drive import drive
-from rvmon.testing.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.law.walk import numerics, parts_of
-from rvmon.testing.scale import compact, in_units, scaled
 from rvmon.testing.strategies import cases
 from rvmon.verdict.report import Report
 
@@ -24,7 +24,7 @@ SPARSE = 1_000
 
 FURTHER = 1_000_000
 
-FORMS = ("auto", "automaton", "network", "file")
+FORMS = ("auto", "automaton", "network")
 """Progression may have to step at every tick; C is made of the automaton's tables."""
 
 ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
@@ -37,8 +37,7 @@ ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
 @given(data=st.data())
 def test_scaling(form: str, data: st.DataObject) -> None:
     """A million times longer: the same attempts and verdicts, as many steps, the same instants."""
-    plain = Profile(mixed=False, requirements=1, captures=False, for_each=False)
-    case = data.draw(cases(plain if form == "file" else Profile(mixed=False, requirements=1)))
+    case = data.draw(cases(Profile(mixed=False, requirements=1)))
     parts = [part for r in case.spec.requirements.values() for part in _numbers(r.trigger)]
     parts += [part for r in case.spec.requirements.values() for part in _numbers(r.consequent)]
     parts += [

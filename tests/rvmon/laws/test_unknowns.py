@@ -9,10 +9,10 @@ from typing import Any
 from hypothesis import assume
 from hypothesis import strategies as st
 from tests.tools.build import start
+from tests.tools.compare import outcomes
 
 from rvmon.spec.checked.formula import Probe, ProbeAtom
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Event, Mode, Type
-from rvmon.testing.compare import outcomes
 from rvmon.testing.law.walk import subformulas
 from rvmon.testing.strategies import specs, traces
 from rvmon.trace.sample import Payload, Sample, Scalar, Value

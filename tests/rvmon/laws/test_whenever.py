@@ -8,13 +8,13 @@ from typing import Any
 from hypothesis import assume
 from hypothesis import strategies as st
 from tests.tools.build import always, end, no, p, requirement, two
+from tests.tools.compare import Outcome, outcomes
 
 from rvmon.formula.numeric import signals_of
 from rvmon.spec.checked.formula import Compare, Formula, SignalAtom
 from rvmon.spec.checked.specification import Mode
 from rvmon.spec.checked.tense import subformulas
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Outcome, outcomes
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.generate.vocabulary import signals
 from rvmon.testing.law.pulse import is_pulse

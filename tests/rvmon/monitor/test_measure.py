@@ -122,6 +122,14 @@ def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
     assert by_arrays > PAIRS
 
 
+def test_the_engine_c_measures_nothing():
+    """It says so before anything is compiled."""
+    spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x > 1\n")
+    source = Source(spec.recording(arrays_of([0, 1], {"x": [3.0, 2.0]})))
+    with pytest.raises(rvmon.RvmonError, match="the engine `c` measures no robustness"):
+        spec.judge(source, engine="c", robustness=True)
+
+
 TEXT = "spec s\ntime {}\nsignal x : real{}\nrequirement R\n  upon start then immediately x > 1\n"
 INFINITE = float("inf")
 

@@ -4,17 +4,17 @@ import random
 
 import pytest
 from tests.tools.differential import disagreements
+from tests.tools.forms import FORMS, Maker
 
 import rvmon
 from rvmon.testing.case import Case
-from rvmon.testing.forms import FORMS, Maker
 from rvmon.trace.sample import Sample
 
 ALL = [
     pytest.param(form, marks=pytest.mark.compiler) if form in ("c", "c rows") else form
     for form in FORMS
 ]
-ONLINE = [one for one, form in zip(ALL, FORMS, strict=True) if form not in ("file", "c rows")]
+ONLINE = [one for one, form in zip(ALL, FORMS, strict=True) if form != "c rows"]
 """Forms that are told one thing after the other."""
 
 CASES = {

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from tests.tools.compare import differences
 from tests.tools.differential import case_of
 from tests.tools.law import judge
 
 import rvmon
 from rvmon.spec.checked.specification import Requirement
-from rvmon.testing.compare import differences
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.oracle import evaluate

@@ -89,35 +89,6 @@ def generated(
     return made
 
 
-def names_looked_at(
-    spec: CheckedSpec, requirements: Iterable[CompiledRequirement]
-) -> Mapping[str, bool]:
-    """The names that concern requirements; whether an update does that brings no other value.
-
-    Args:
-        spec: of the requirements.
-        requirements: that evaluators judge.
-    """
-    judged = [*requirements]
-    graphs = [
-        graph
-        for one in judged
-        for graph in (one.shared_graph, *(each.consequent_graph for each in one.judges.values()))
-    ]
-    uses = _uses_of(graphs, judged)
-    names = {*uses}.union(*(one.reads for one in judged))
-    names |= {one.requirement.for_each.value.event for one in judged if one.requirement.for_each}
-    # Instances that are over are let go of when a sample has a name that they read.
-    often = set().union(*(one.reads for one in judged if one.requirement.for_each))
-    return {
-        name: name in often
-        or name in spec.events
-        or spec.signals[name].stale_after is not None
-        or (name in uses and (uses[name].history or uses[name].marked))
-        for name in names
-    }
-
-
 def _uses_of(graphs: list[Graph], capturing: Iterable[CompiledRequirement]) -> dict[str, Uses]:
     """What is asked of signals and events, also by the captured attempts of requirements."""
     captured = []

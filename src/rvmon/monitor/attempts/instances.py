@@ -44,16 +44,6 @@ class Instances:
             for value, evaluator in keyed.open.items():
                 yield evaluator, keyed.known[value]
 
-    @property
-    def alarm(self) -> int:
-        """An instant before which nothing happens in any of them, no sample being taken."""
-        if not self.keyed:
-            return NEVER
-        if any(one.sees_all and one.open for one in self.keyed.values()):
-            return -NEVER
-        found = min(one.template.alarm for one in self.keyed.values())
-        return min(found, self._alarms[0][0]) if self._alarms else found
-
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`; what nothing happens in follows when it is looked at."""
         for keyed in self.keyed.values():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from rvmon.automaton.location import FAILED, PASSED
@@ -18,7 +18,7 @@ from rvmon.dataflow.sweep import Carried
 from rvmon.dataflow.time_decisions import Moment
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
-from rvmon.monitor.attempts.network_letters import Clear, Letters, Noted, journal_of, letter_reader
+from rvmon.monitor.attempts.network_letters import Letters, letter_reader
 from rvmon.monitor.attempts.waiting import learnt, position_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.standing import Standing
@@ -72,7 +72,7 @@ class NetworkJudge(AttemptJudge):
         self._moments: list[tuple[Network, tuple[int, ...], Moment]] = []
         """Those that were asked for last, of each network one."""
         self.now = -1 << 64
-        self.sleeps, self._clear = -NEVER, Clear(compiled.reach, flow.gap)
+        self.sleeps = -NEVER
         self._bounded_at = -FOREVER
         """The stamp as of which `sleeps` holds for all that begins then, too."""
         self._looks = 0
@@ -121,7 +121,6 @@ class NetworkJudge(AttemptJudge):
         if self.worse is None:
             self.worse = Network(self.plan, self.flow.gap)
             self._letters = None
-            self._clear.forget()
             self._journals = [None, None]
             self.now = -1 << 64
             self.sleeps = -NEVER if self.plan.looks_back else NEVER
@@ -136,7 +135,6 @@ class NetworkJudge(AttemptJudge):
         self.position = t
         if self.worse is not None:
             roused = False
-            self._clear.note(t, letters)
             if letters != self._letters or self.flow.gap is None:
                 self._turn(t, self.worse, letters)
                 roused = any(map(Network.is_roused, self._networks, letters))
@@ -229,36 +227,6 @@ class NetworkJudge(AttemptJudge):
             # Mostly another letter comes first: it is not worked out what is next.
             self.due = max((self.now + 1) // 2, self.sleeps)
         self.restless = self.flow.gap is None and self.worse is not None
-
-    def lent(self) -> Sequence[Noted] | None:
-        """The letters that what is open may depend on; `None`: not all of them are known."""
-        if not self.attempts:
-            return ()
-        return self._clear.since(position_of(self.attempts[0]), self.position)
-
-    def take_back(self, attempts: list[Open], noted: Sequence[Noted], limit: int) -> None:
-        """Go on with attempts that were judged elsewhere.
-
-        Args:
-            attempts: all of which wait.
-            noted: the letters that they may depend on.
-            limit: the stamp that time has come to.
-        """
-        self.attempts, self.better, self._journals = attempts, None, [None, None]
-        self.worse = self._letters = self._stood = self._ahead = None
-        self.now, self.due, self._looks, self._bounded_at = limit, NEVER, 0, -FOREVER
-        if attempts:
-            self._go_on(noted, limit)
-
-    def _go_on(self, noted: Sequence[Noted], limit: int) -> None:
-        """Have a network know what letters report."""
-        journal = journal_of(self.plan, self.flow.gap, noted, position_of(self.attempts[0]))
-        journal.grow(None, limit)
-        self.worse = journal.after(len(journal)).copy()
-        self._letters = self._read(self.flow.values)
-        self._clear.take(noted)
-        self.sleeps = -NEVER
-        self._rest()
 
     def _soonest(self) -> int:
         """An instant before which no network has news of what is waited for in it."""

@@ -92,11 +92,6 @@ class Clear:
         self.noted: list[Noted] = []
         self._most = _LEAST
 
-    def take(self, noted: Sequence[Noted]) -> None:
-        """Go on behind letters."""
-        self.noted = [*noted]
-        self._most = _LEAST + 2 * len(noted)
-
     def note(self, t: int, letters: Letters) -> None:
         """Take the letters at a position."""
         if letters[0] != letters[1] or self._reach is None:
@@ -106,25 +101,19 @@ class Clear:
         if not noted or noted[-1][1] != letters[0] or self._gap is None:
             noted.append((t, letters[0]))
         if len(noted) > self._most:
-            self.take(self._from(t - self._reach))
+            self._forget_before(t - self._reach)
+
+    def _forget_before(self, t: int) -> None:
+        """Keep the letters from `t` on; where all instants are positions, the first one at `t`."""
+        noted = self.noted
+        count = max(bisect_right(noted, t, key=itemgetter(0)), 1)
+        at, letter = noted[count - 1]
+        self.noted = [(at if self._gap is None else max(t, at), letter), *noted[count:]]
+        self._most = _LEAST + 2 * len(self.noted)
 
     def is_over(self, t: int) -> bool:
         """Whether at `t` all that was unknown is too long ago to matter."""
         return self._reach is not None and bool(self.noted) and t - self.noted[0][0] > self._reach
-
-    def since(self, first: int, t: int) -> Sequence[Noted] | None:
-        """What positions from `first` on may depend on at `t`; `None`: not all of it is known."""
-        if self._reach is None or not self.noted:
-            return None
-        start = max(first, t - self._reach)
-        return self._from(start) if self.noted[0][0] <= start else None
-
-    def _from(self, t: int) -> list[Noted]:
-        """The letters from `t` on; where all instants are positions, the first one at `t`."""
-        noted = self.noted
-        count = max(bisect_right(noted, t, key=itemgetter(0)), 1)
-        at, letter = noted[count - 1]
-        return [(at if self._gap is None else max(t, at), letter), *noted[count:]]
 
 
 def journal_of(

@@ -16,7 +16,7 @@ from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import Network
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge
-from rvmon.monitor.attempts.network_letters import Letters, Noted, journal_of
+from rvmon.monitor.attempts.network_letters import Clear, Letters, Noted, journal_of
 from rvmon.monitor.attempts.waiting import position_of
 from rvmon.runtime.values import NEVER
 
@@ -37,6 +37,7 @@ class WindowJudge(NetworkJudge):
         self._torn = False
         """Whether the code is at work; else, if an interrupt left it with a part of a position."""
         super().__init__(*args, **kind)
+        self._clear = Clear(self.compiled.reach, self.flow.gap)
 
     @property
     def worse(self) -> Network | None:
@@ -63,16 +64,20 @@ class WindowJudge(NetworkJudge):
         """See `NetworkJudge`."""
         if self._torn:
             self._recover()
+        letters = self._read(self.flow.values)
         if self._windows is None and not (self._network is None and self._is_waited_for):
-            super().visit(t)
+            self._visit_networks(t, letters)
             if self._network is not None and self._clear.is_over(t):
                 self._use_windows(t)
-            return
-        letters = self._read(self.flow.values)
-        if letters[0] == letters[1]:
+        elif letters[0] == letters[1]:
             self._follow(t, letters)
-            return
-        self._fall_back()
+        else:
+            self._fall_back()
+            self._visit_networks(t, letters)
+
+    def _visit_networks(self, t: int, letters: Letters) -> None:
+        if self._network is not None:
+            self._clear.note(t, letters)
         super().visit(t)
 
     def _follow(self, t: int, letters: Letters) -> None:
@@ -110,24 +115,6 @@ class WindowJudge(NetworkJudge):
     def _journal_of(self, noted: Sequence[Noted]) -> Journal:
         """A journal that begins with what may still be asked for."""
         return journal_of(self.plan, self.flow.gap, noted, self._first_waiting(better=False))
-
-    def lent(self) -> Sequence[Noted] | None:
-        """See `NetworkJudge`."""
-        windows, journal = self._windows, self._journals[0]
-        if not self.attempts or self._torn or windows is None or journal is None:
-            return None if self._torn else super().lent()
-        gap = self.flow.gap or 1
-        return journal.noted_since(windows.forget(self.position // gap) * gap)
-
-    def take_back(self, attempts: list[Open], noted: Sequence[Noted], limit: int) -> None:
-        """See `NetworkJudge`."""
-        self._windows, self._torn, self.restless = None, False, False
-        super().take_back(attempts, noted, limit)
-
-    def _go_on(self, noted: Sequence[Noted], limit: int) -> None:
-        self._begin_windows(noted)
-        self._letters = self._read(self.flow.values)
-        self._look(limit)
 
     def _fall_back(self) -> None:
         """Have networks judge what is open."""

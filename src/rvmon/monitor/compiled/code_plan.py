@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.errors import UnknownNameError
 from rvmon.formula.core import Literal
 from rvmon.formula.state import State
-from rvmon.monitor.compiled.refusal import of_c, of_measured_c, of_tables, refuse
+from rvmon.monitor.compiled.refusal import of_c, of_tables, refuse
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan, PlannedRule
@@ -51,14 +49,13 @@ def _rule(
     hidden: bool = False,
     measured: bool = False,
     stepped: bool = False,
-    diagrams: bool = False,
 ) -> PlannedRule:
     if explained:
         # In this process what judges attempts in doubt is made when one comes up.
         is_judged = hidden or (one.follows_windows and not (measured or stepped))
         automaton = None if is_judged or of_tables(one) is not None else one.automaton
     else:
-        automaton = _slim(one, diagrams)
+        automaton = one.slim
     obligation = one.obligation
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
@@ -66,8 +63,7 @@ def _rule(
     def beside(other: CompiledRequirement | None) -> PlannedRule | None:
         if other is None:
             return None
-        how = {"explained": explained, "measured": measured, "diagrams": diagrams}
-        return _rule(other, hidden=True, **how)
+        return _rule(other, explained=explained, hidden=True, measured=measured)
 
     read = [core for _, core in one.measured_plan.leaves] if measured else []
     return PlannedRule(
@@ -87,7 +83,6 @@ def _rule(
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
-        measured=one.measured.owed if measured else None,
     )
 
 
@@ -98,28 +93,12 @@ def _blurs(one: CompiledRequirement) -> State | None:
     return obligation.doubt or (obligation.trigger if one.is_beside else None)
 
 
-def _slim(requirement: CompiledRequirement, diagrams: bool) -> Automaton | None:
-    """The automaton that is stepped without rvmon; `None`: a network judges."""
-    found = requirement.slim
-    if found is None or (isinstance(found.class_of, LetterDiagram) and not diagrams):
-        return None
-    return found
-
-
-def plan_alone(
-    compiled: CompiledSpec,
-    only: Iterable[str] | None = None,
-    *,
-    measured: bool = False,
-    diagrams: bool = False,
-) -> Plan:
+def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
     """The plan of what is to run without rvmon.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
-        measured: see `plan_requirements`.
-        diagrams: whether automata may have diagrams of their letters.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
@@ -130,10 +109,6 @@ def plan_alone(
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     chosen = compiled.chosen(ids)
-    if measured:
-        refuse(chosen, of_measured_c, "compiled C, which measures,")
-    else:
-        refuse(chosen, of_c, "generated code")
-    how = {"explained": False, "measured": measured, "diagrams": diagrams}
-    rules = [_rule(one, **how) for one in chosen]
+    refuse(chosen, of_c, "the core")
+    rules = [_rule(one, explained=False) for one in chosen]
     return plan_in_units(compiled.checked, rules)

@@ -140,7 +140,7 @@ def planned_core(
     found = compiled.forms.get(("core", ids))
     if not isinstance(found, PlannedCore):
         single = frozenset().union(*(one.single_payloads for one in requirements))
-        plan = plan_alone(compiled, ids, diagrams=True)
+        plan = plan_alone(compiled, ids)
         found = compiled.forms["core", ids] = _planned(plan, single)
     return found
 

@@ -17,8 +17,7 @@ class EngineChoice:
     Attributes:
         online: the engine that judges it in a stream, and in recordings sample by sample.
         recording: the engine that judges it in a recording of plain columns.
-        refused: by name of a faster engine, or of `c`, why not that; as `prepared` why not what
-            `rvmon prepare` compiles to stand beside `python`.
+        refused: by name of a faster engine, or of `c`, why not that.
     """
 
     online: str
@@ -40,8 +39,7 @@ def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineC
 def _choice(one: CompiledRequirement, count: int) -> EngineChoice:
     online, refused = _online(one, count)
     of_columns, of_c = refusal.of_columns(one), refusal.of_c(one)
-    prepared = refusal.of_prepared(one)
-    refusals = {"columns": of_columns, **refused, "c": of_c, "prepared": prepared}
+    refusals = {"columns": of_columns, **refused, "c": of_c}
     return EngineChoice(
         online,
         "columns" if of_columns is None else online,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.monitor.c.notes import BESIDE, noted
 from rvmon.monitor.compiled.refusal import MOST_GENERATED, Refusal, of_generated, too_many
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -48,28 +47,7 @@ def generated_or_tables(
     if len(chosen) > MOST_GENERATED or not any(one.is_fed for one in chosen):
         monitor = Monitor(compiled, chosen, engine, *how)
     else:
-        prepared = None
-        if (
-            engine == "auto"
-            and asked.settle == "now"
-            and compiled.checked.max_delay is None
-            and noted(BESIDE, compiled, chosen)
-        ):
-            from rvmon.monitor.c.prepared import prepared_beside
-
-            prepared = prepared_beside(compiled, chosen, asked.sources)
-        left = asked.left
-        if left is None:
-            left = frozenset() if prepared is None else prepared.left
-        forms = _forms(compiled, chosen, asked.sources, left)
-        if prepared is not None and prepared.left == left:
-            from rvmon.monitor.c.prepared import lending_monitor
-
-            monitor = lending_monitor(prepared, forms, compiled, chosen, asked.sources, asked.keep)
-            apart = () if forms.left is None else forms.left.requirements
-            others = judged_by([*apart, *forms.others])
-            monitor.judged_by = f"c, {others}" if others else "c"
-            return monitor
+        forms = _forms(compiled, chosen, asked.sources)
         monitor = GeneratedMonitor(forms, compiled, chosen, engine, *how)
     monitor.judged_by = judged_by(chosen)
     return monitor
@@ -79,13 +57,12 @@ def _forms(
     compiled: CompiledSpec,
     chosen: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
-    left: frozenset[str],
 ) -> Forms:
     """What is generated for some requirements, made once."""
-    key = (tuple(one.requirement.id for one in chosen), sources, left)
+    key = (tuple(one.requirement.id for one in chosen), sources)
     found = compiled.forms.get(key)
     if not isinstance(found, Forms):
-        found = compiled.forms[key] = forms_of(compiled, chosen, sources, left=left)
+        found = compiled.forms[key] = forms_of(compiled, chosen, sources)
     return found
 
 

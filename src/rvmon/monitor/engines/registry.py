@@ -31,12 +31,6 @@ _HOMES = {
 
 ENGINES = tuple(_HOMES)
 
-EXPLAINING = ("auto", "python", "automaton", "progression", "network")
-"""The engines that judge streams and give reasons."""
-
-HANDING_ON = ("auto", "python")
-"""The engines that have others judge beside them what they refuse; the rest refuse it."""
-
 
 @dataclass(frozen=True, slots=True)
 class Asked:
@@ -47,8 +41,6 @@ class Asked:
         settle: when a sample is taken for complete: `now`, or by the `next` stamp.
         sources: the signals and events that can arrive; `None`: all.
         keep: so many records of each verdict are kept per requirement; `None`: all.
-        left: ids of those that have generated Python of their own, as in a run that goes on;
-            `None`: as suits what was compiled ahead.
         decided: called with the attempts as they are decided, where samples are judged one by one.
     """
 
@@ -56,7 +48,6 @@ class Asked:
     settle: str = "now"
     sources: frozenset[str] | None = None
     keep: int | None = None
-    left: frozenset[str] | None = None
     decided: Callable[[Sequence[Attempt]], object] = len
 
 

@@ -75,19 +75,6 @@ class Evaluators(EvaluatorMaker):
         return [evaluator for evaluator, _ in self._entries]
 
     @property
-    def left_requirements(self) -> Sequence[CompiledRequirement]:
-        """Those that have generated code of their own beside the rest."""
-        return ()
-
-    @property
-    def alarm(self) -> int:
-        """An instant before which nothing happens in any of them, no sample being taken."""
-        if self.gap is None:
-            return -NEVER  # each sample is a position
-        captured = min((evaluator.alarm for evaluator, _ in self._captured), default=NEVER)
-        return min(self.main.alarm, self.instances.alarm, captured)
-
-    @property
     def arrivals(self) -> Arrivals:
         """What was seen of signals and events."""
         return arrivals_of(self.main)

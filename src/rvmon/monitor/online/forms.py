@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.machine import Machine
@@ -25,7 +25,6 @@ class Forms:
         plan: of `requirements`.
         unit: the generated class.
         machines: per requirement, what judges its attempts; `None`: a judge.
-        left: the same of those that this code is not to judge, as compiled code takes its place.
     """
 
     requirements: Sequence[CompiledRequirement]
@@ -33,12 +32,6 @@ class Forms:
     plan: Plan
     unit: type[Unit]
     machines: Sequence[Machine | None]
-    left: Forms | None = None
-
-    @property
-    def are_all(self) -> bool:
-        """Whether the generated code judges all."""
-        return not self.others and self.left is None
 
 
 def forms_of(
@@ -48,7 +41,6 @@ def forms_of(
     rule: type[Rule] | None = None,
     *,
     measured: bool = False,
-    left: Container[str] = (),
 ) -> Forms:
     """Generate what monitors of some requirements run.
 
@@ -58,10 +50,8 @@ def forms_of(
         sources: the names that can arrive; `None`: all.
         rule: see `rvmon.codegen.python_unit.unit_class`.
         measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
-        left: ids of those that are to have code of their own, where they have any.
     """
-    apart = [one for one in requirements if one.is_fed and one.requirement.id in left]
-    fed = [one for one in requirements if one.is_fed and one not in apart]
+    fed = [one for one in requirements if one.is_fed]
     plan = plan_requirements(compiled, fed, measured=measured, stepped=rule is not None)
     machines = [
         None if rule.automaton is None else one.machine("automaton")
@@ -71,5 +61,4 @@ def forms_of(
     machines += [None for _ in plan.hidden_of]
     others = [one for one in requirements if not one.is_fed]
     unit = unit_class(plan, sources, Unit, rule)
-    rest = forms_of(compiled, apart, sources) if apart else None
-    return Forms(fed, others, plan, unit, machines, rest)
+    return Forms(fed, others, plan, unit, machines)

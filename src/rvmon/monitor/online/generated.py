@@ -32,14 +32,9 @@ _HELD = BUSY + 1
 
 
 class GeneratedEvaluators(Evaluators):
-    """Evaluators of which one is generated code; the others are for what that cannot judge.
+    """Evaluators of which one is generated code; the others are for what that cannot judge."""
 
-    Attributes:
-        lent: whether compiled code has the state of what is generated: only the others are led.
-        left: the evaluators of what has generated code of its own; `None`: nothing has.
-    """
-
-    STATE = ("outages", "unit", "counts", "left", *Evaluators.STATE)
+    STATE = ("outages", "unit", "counts", *Evaluators.STATE)
 
     alone = False
 
@@ -54,16 +49,9 @@ class GeneratedEvaluators(Evaluators):
         other: Step,
     ) -> None:
         self.other = other
-        self.lent = False
         self.flush: Flush = self._flush
         spec = compiled.checked
         super().__init__(spec, forms.others, engine, sources, ledger)
-        self.left = None
-        if forms.left is not None:
-            made = forms.left.unit(forms.left.machines, unit.absent)
-            self.left = GeneratedEvaluators(
-                forms.left, made, compiled, engine, sources, ledger, other
-            )
         self.forms = forms
         self.unit = unit
         self.outages = Outages(spec, sources)
@@ -112,33 +100,15 @@ class GeneratedEvaluators(Evaluators):
 
     @property
     def arrivals(self) -> Arrivals:
-        """See `Evaluators`; what the others read they have seen, be the rest lent or not."""
+        """See `Evaluators`."""
         own, others = arrivals_of(self.unit), arrivals_of(self.main)
         first, expired = {**own.first, **others.first}, {**own.expired, **others.expired}
-        if self.left is not None:
-            read = {name for one in self.left.forms.requirements for name in one.reads}
-            theirs = self.left.arrivals
-            first |= {name: at for name, at in theirs.first.items() if name in read}
-            expired |= {name: found for name, found in theirs.expired.items() if name in read}
         return Arrivals(own.absent, first, expired)
-
-    @property
-    def left_requirements(self) -> Sequence[CompiledRequirement]:
-        """See `Evaluators`."""
-        return () if self.left is None else self.left.forms.requirements
-
-    @property
-    def alarm(self) -> int:
-        """See `Evaluators`; of all that is not lent."""
-        found = super().alarm if self.left is None else min(super().alarm, self.left.alarm)
-        return found if self.lent else min(found, self.unit.wake)
 
     @property
     def judges(self) -> Sequence[AttemptJudge]:
         """The judges of all evaluators."""
-        own = [self._judge_now(rule) for rule in self.unit.rules]
-        left = () if self.left is None else self.left.judges
-        return [*own, *left, *super().judges]
+        return [*(self._judge_now(rule) for rule in self.unit.rules), *super().judges]
 
     def holders(self) -> Sequence[tuple[str, Rule, Open | None]]:
         """See `Evaluators`."""
@@ -148,8 +118,7 @@ class GeneratedEvaluators(Evaluators):
             else (self._clerks[rule.index].id, rule, rule.running_attempt)
             for rule in self.unit.rules
         ]
-        left = () if self.left is None else self.left.holders()
-        return [*own, *left, *super().holders()]
+        return [*own, *super().holders()]
 
     def _judge_now(self, rule: Rule) -> AttemptJudge:
         """A rule that knows its requirement, or how one would stand in its place."""
@@ -157,57 +126,31 @@ class GeneratedEvaluators(Evaluators):
             return rule
         return self._clerks[rule.index].judge_now(rule)
 
-    @property
-    def numbered(self) -> Sequence[int]:
-        """Per requirement, the number of its last attempt."""
-        pairs = zip(self._clerks, self.unit.rules, self.counts, strict=False)
-        return [
-            self.ledger.count_of(clerk.id) if isinstance(rule, AttemptJudge) else count
-            for clerk, rule, count in pairs
-        ]
-
-    def number_from(self, index: int, count: int) -> None:
-        """Go on behind the last attempt of a requirement, which was numbered elsewhere."""
-        if isinstance(self.unit.rules[index], AttemptJudge):
-            self.ledger.count_to(self._clerks[index].id, count)
-        else:
-            self.counts[index] = count
-
     def take_along(self, t: int) -> None:
         """See `Evaluators`."""
         for rule in self.unit.rules:
             if rule.slides:
                 rule.pass_to(t)
-        if self.left is not None:
-            self.left.take_along(t)
         super().take_along(t)
 
     def through(self, limit: int) -> None:
         """Let time pass up to `limit`."""
-        if not self.lent:
-            self.unit.through(limit)
-        if self.left is not None:
-            self.left.through(limit)
+        self.unit.through(limit)
         if self.forms.others:
             super().through(limit)
 
     def reach(self, t: int) -> None:
         """Let time come to `t`, from the instant before."""
-        if not self.lent and t >= self.unit.wake:
+        if t >= self.unit.wake:
             self.unit.reach(t)
             self.unit.set_alarm()
-        if self.left is not None:
-            self.left.reach(t)
         if self.forms.others:
             super().reach(t)
 
     def sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a valid sample; time has come to `t − 1` before."""
-        if not self.lent:
-            self.unit.take(t, values)
-            self.unit.after = _HELD  # the call goes on
-        if self.left is not None:
-            self.left.sample(t, values)
+        self.unit.take(t, values)
+        self.unit.after = _HELD  # the call goes on
         if self.forms.others:
             super().sample(t, values)
 
@@ -221,8 +164,6 @@ class GeneratedEvaluators(Evaluators):
             for attempt in judge.attempts:
                 self.ledger.ended(judge, attempt, end, reached)
             rule.attempts, rule.runs = [], {}
-        if self.left is not None:
-            self.left.finish(end, reached)
         super().finish(end, reached)
 
     def undetermined(self) -> list[str]:
@@ -232,8 +173,7 @@ class GeneratedEvaluators(Evaluators):
             for index, one in enumerate(self._clerks)
             if not self.unit.is_determined(index)
         ]
-        left = () if self.left is None else self.left.undetermined()
-        return [*own, *left, *super().undetermined()]
+        return [*own, *super().undetermined()]
 
 
 class GeneratedMonitor(Monitor):
@@ -260,7 +200,7 @@ class GeneratedMonitor(Monitor):
         self._forms = forms
         self._unit = forms.unit(forms.machines, absent)
         super().__init__(compiled, requirements, engine, settle, sources, keep)
-        self._by_unit = forms.are_all and self._intake is None
+        self._by_unit = not forms.others and self._intake is None
         """Whether the unit alone takes samples as they come."""
         # Generated code looks and closes in one go only where one thread has a turn at a time.
         if self._by_unit and getattr(sys, "_is_gil_enabled", lambda: True)():
@@ -334,9 +274,7 @@ class GeneratedMonitor(Monitor):
         return data
 
     def _next_due(self) -> int | None:
-        left = self._unit_evaluators.left
-        units = [self._unit] if left is None else [self._unit, left.unit]
-        own = min(min(unit.next_position(), unit.next_due()) for unit in units)
+        own = min(self._unit.next_position(), self._unit.next_due())
         others = super()._next_due()
         found = own if others is None else min(own, others)
         if found >= NEVER or self._reached is None or self._report is not None:

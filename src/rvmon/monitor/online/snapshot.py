@@ -44,7 +44,6 @@ def snapshot(options: Options, evaluators: Evaluators, run: object) -> bytes:
         "settle": options.settle,
         "sources": None if options.sources is None else sorted(options.sources),
         "keep": options.keep,
-        "left": [one.requirement.id for one in evaluators.left_requirements],
         "machines": _machines(options),
         "locations": {
             name: machine.table() for name, _, machine in _progressing(options, evaluators)

@@ -147,8 +147,11 @@ class UnitClerk(DeferredReasons):
     def reopened(
         self, _: Rule, number: int, triggered: int, token: Token, seen: tuple[int, ...] | int
     ) -> Open:
-        """An attempt that was moved together with others, by itself."""
-        return reopened(number, triggered, token, self.unpacked(seen))
+        """An attempt that was moved together with others, by itself; it is sure."""
+        attempt = Open(triggered, token, self.unpacked(seen))
+        attempt.number = number
+        attempt.sure = True
+        return attempt
 
     def parted(self, rule: Rule, attempt: Open, apart: bool) -> None:
         """Hear that unknown input made the two runs of an attempt part, or that they met."""
@@ -201,14 +204,6 @@ class UnitClerk(DeferredReasons):
             self.id, number, triggered, decided, _PASS if verdict else _FAIL, self.details, noted
         )
         self._record((decided, self._rank, number, record))
-
-
-def reopened(number: int, triggered: int, token: Token, seen: tuple[int, ...]) -> Open:
-    """An attempt that was no object for a while, and is sure."""
-    attempt = Open(triggered, token, seen)
-    attempt.number = number
-    attempt.sure = True
-    return attempt
 
 
 def _picking(places: tuple[int, ...]) -> Pick:

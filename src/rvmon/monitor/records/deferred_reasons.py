@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -41,7 +41,6 @@ class DeferredReasons:
         read = [(index[leaf], text) for leaf, text in compiled.leaves if leaf in index]
         self.leaves = tuple(leaf for leaf, _ in read)
         self.texts = tuple(text for _, text in read)
-        self.details: Callable[[Attempt, Any], Mapping[str, Any]] = self._details
 
     @cached_property
     def _machine(self) -> Machine:
@@ -90,7 +89,7 @@ class DeferredReasons:
         kept = dict(zip(self.places, since, strict=True))
         return seen, Stood(self._plan, nodes, kept, instants, {}, position)
 
-    def _details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
+    def details(self, attempt: Attempt, noted: tuple[Any, ...]) -> Mapping[str, Any]:
         """All that a record says beside the verdict, from what was noted at the decision."""
         seen_then, t, before, letter, other, position, *rest = noted
         seen_then = self.unpacked(seen_then)

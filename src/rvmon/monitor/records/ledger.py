@@ -58,14 +58,6 @@ class Ledger:
         """Take a new attempt of which it is not known whether there was a trigger; see `sure`."""
         self._doubtful.append((t, judge, attempt))
 
-    def count_of(self, name: str) -> int:
-        """How many attempts of a requirement were numbered."""
-        return self._counts.get(name, 0)
-
-    def count_to(self, name: str, count: int) -> None:
-        """Go on numbering behind what was numbered elsewhere."""
-        self._counts[name] = count
-
     def next_doubtful(self, name: str) -> int:
         """The number of another attempt in doubt of a requirement."""
         self._doubts[name] = self._doubts.get(name, 0) + 1

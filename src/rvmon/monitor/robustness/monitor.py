@@ -6,7 +6,7 @@ What comes behind a decision counts as long as the window is open.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -18,25 +18,6 @@ from rvmon.monitor.robustness.evaluators import MeasuringEvaluators, measuring_f
 from rvmon.monitor.robustness.gauged import Gauged, measured
 from rvmon.monitor.robustness.values import Measured
 from rvmon.trace.time import ticks_of_seconds
-
-
-class Run(Protocol):
-    """Takes samples as every monitor does and gives margins in the place of verdicts."""
-
-    step: Any
-    step_ns: Any
-
-    def followed(self, returned: Any) -> Sequence[Measured]:
-        """The figures that are settled now that a step was taken, which returned something."""
-
-    def advanced(self, t_ns: int) -> Sequence[Measured]:
-        """See `RobustnessMonitor.advance_ns`."""
-
-    def finished(self, t_ns: int | None) -> Sequence[Measured]:
-        """See `RobustnessMonitor.finish_ns`."""
-
-    def open_figures(self) -> Sequence[Measured]:
-        """See `RobustnessMonitor.open`."""
 
 
 class RobustnessMonitor:
@@ -70,27 +51,17 @@ class RobustnessMonitor:
             raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
         requirements = compiled.requirements.items()
         chosen = [one for name, one in requirements if only is None or name in only]
-        self._run = self._begun(compiled, chosen, settle, sources, streams=streams)
-
-    def _begun(
-        self,
-        compiled: CompiledSpec,
-        chosen: Sequence[CompiledRequirement],
-        settle: str,
-        sources: frozenset[str] | None,
-        *,
-        streams: bool,
-    ) -> Run:
-        """What takes the samples."""
-        return _Run(compiled, chosen, settle, sources, streams=streams)
+        self._run = _Run(compiled, chosen, settle, sources, streams=streams)
 
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Measured]:
         """Take one sample (seconds); see `step_ns`."""
-        return self._run.followed(self._run.step(t, values))
+        self._run.step(t, values)
+        return self._run.followed()
 
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Measured]:
         """Take one sample and return the figures that nothing can change any more."""
-        return self._run.followed(self._run.step_ns(t_ns, values))
+        self._run.step_ns(t_ns, values)
+        return self._run.followed()
 
     def advance(self, t: float) -> Sequence[Measured]:
         """Say that no sample before `t` (seconds) will come; see `advance_ns`."""
@@ -98,7 +69,8 @@ class RobustnessMonitor:
 
     def advance_ns(self, t_ns: int) -> Sequence[Measured]:
         """Say that no sample before `t_ns` will come; returns the figures that this settled."""
-        return self._run.advanced(t_ns)
+        self._run.advance_ns(t_ns)
+        return self._run.taken()
 
     @property
     def open(self) -> Sequence[Measured]:
@@ -111,11 +83,12 @@ class RobustnessMonitor:
 
     def finish_ns(self, t_ns: int | None = None) -> Sequence[Measured]:
         """End the run, at `t_ns` if that is later than all so far, and return the other figures."""
-        return self._run.finished(t_ns)
+        self._run.finish_ns(t_ns)
+        return self._run.taken()
 
 
 class _Run(GeneratedMonitor):
-    """See `Run`."""
+    """Takes samples as every monitor does, and measures the attempts that it judges."""
 
     def __init__(
         self,
@@ -146,17 +119,7 @@ class _Run(GeneratedMonitor):
         self._unit_evaluators = self._measured
         return self._measured
 
-    def advanced(self, t_ns: int) -> Sequence[Measured]:
-        """See `Run`; so are the next."""
-        self.advance_ns(t_ns)
-        return self.taken()
-
-    def finished(self, t_ns: int | None) -> Sequence[Measured]:
-        """See `Run`."""
-        self.finish_ns(t_ns)
-        return self.taken()
-
-    def followed(self, _: object) -> Sequence[Measured]:
+    def followed(self) -> Sequence[Measured]:
         """The figures that are settled now that a sample was taken; see `taken`."""
         if not self._by_unit:
             return self.taken()

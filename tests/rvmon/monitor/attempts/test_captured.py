@@ -2,10 +2,10 @@
 
 import pytest
 from tests.tools.differential import disagreements
+from tests.tools.forms import Maker
 
 import rvmon
 from rvmon.testing.case import Case
-from rvmon.testing.forms import Maker
 from rvmon.trace.sample import Sample
 
 HEAD = "spec s\ntime {}\nsignal q : bool\nsignal x : real\nevent e\nevent g(k: int)\n"

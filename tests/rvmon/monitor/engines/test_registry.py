@@ -5,14 +5,15 @@ import re
 
 import numpy as np
 import pytest
+from tests.tools.compare import differences
 from tests.tools.filled import BlockRecording
+from tests.tools.forms import HANDING_ON
 
 import rvmon
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.monitor.engines.registry import ENGINES, HANDING_ON, engine_named
+from rvmon.monitor.engines.registry import ENGINES, engine_named
 from rvmon.readers.blocks import Block
 from rvmon.readers.source import Source
-from rvmon.testing.compare import differences
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 

@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 import rvmon
-from rvmon.codegen.python_file import python_file
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.report.junit import junit_xml
 from rvmon.report.run_text import health_lines
@@ -210,34 +209,6 @@ def test_a_snapshot_keeps_that_a_step_was_torn(engine: str) -> None:
         other = spec.restore(monitor.snapshot())
         assert other.verdicts == monitor.verdicts
         assert other.finish_ns(3 * _S + 1) == monitor.finish_ns(3 * _S + 1)
-
-
-def test_a_generated_file_passes_nothing_after_a_torn_step() -> None:
-    """Its verdicts are those of a run with the step, or without it, or none but `F` and `I`."""
-    made: dict[str, Any] = {}
-    text = python_file(rvmon.loads(_SPEC).plan())
-    exec(compile(text, "<generated monitor>", "exec"), made)  # noqa: S102 - written a line above
-
-    def begun() -> Any:
-        monitor = made["SpecMonitor"]()
-        monitor.step_ns(2 * _S, {"x": 1.0, "y": 1.0, "e": True, "f": True})
-        return monitor
-
-    known = [begun().finish_ns(3 * _S + 1)]
-    for make in (dict[str, object], _Odd):
-        places = _Strike()
-        monitor = begun()
-        _struck(monitor, places, make)
-        known.append(monitor.finish_ns(3 * _S + 1))
-        torn = 0
-        for place in places.passed:
-            monitor = begun()
-            with pytest.raises(KeyboardInterrupt):
-                _struck(monitor, _Strike(place), make)
-            found = monitor.finish_ns(3 * _S + 1)
-            assert found in known or set(found.values()) <= {"F", "I"}
-            torn += found not in known
-        assert torn > len(places.passed) / 2
 
 
 def test_what_a_sample_raises_itself_tears_nothing() -> None:

@@ -3,12 +3,12 @@
 import math
 
 import pytest
+from tests.tools.forms import EXPLAINING as ENGINES
 
 import rvmon
 from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
-from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.verdict.verdict import Verdict
 

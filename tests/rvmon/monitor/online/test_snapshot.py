@@ -7,13 +7,13 @@ import random
 
 import pytest
 from tests.tools.differential import campaign, case_of
+from tests.tools.drive import feed
 from tests.tools.interrupt import Interrupted
 from tests.tools.ways import Maker
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError
 from rvmon.session import Spec
-from rvmon.testing.drive import feed
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

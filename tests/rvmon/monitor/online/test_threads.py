@@ -7,12 +7,10 @@ import threading
 from collections import Counter
 from collections.abc import Iterator
 from itertools import count
-from types import ModuleType
 
 import pytest
 
 import rvmon
-from rvmon.codegen.python_file import python_file
 from rvmon.errors import OverlapError
 from rvmon.monitor.online.monitor import Monitor
 
@@ -117,46 +115,6 @@ def test_a_call_within_another_is_refused(engine: str) -> None:
     monitor.step_ns(2, Values(x=4.0))
     assert len(refused) >= 9
     assert monitor.finish_ns(3).verdicts["R1"] == "F"
-
-
-def test_a_call_within_one_of_a_file_is_refused() -> None:
-    """A generated file, too, takes one call at a time, and stays open when that call fails."""
-    module = ModuleType("generated")
-    exec(compile(python_file(rvmon.loads(_SPEC).plan()), "generated", "exec"), module.__dict__)  # noqa: S102
-    monitor = module.SpecMonitor()
-    refused, looks = [], []
-
-    class Values(dict[str, object]):
-        def items(self):  # type: ignore[no-untyped-def]
-            looks.append(self)
-            if looks.count(self) == 1:  # the call is not under way before the second look
-                return super().items()
-            for call in (
-                lambda: monitor.step_ns(5, {"x": 1.0}),
-                lambda: monitor.step_ns(5, {"x": None}),
-                lambda: monitor.step(5.0, {}),
-                lambda: monitor.advance_ns(5),
-                lambda: monitor.finish_ns(5),
-                monitor.reset,
-            ):
-                with pytest.raises(RuntimeError, match="lock round the calls"):
-                    call()
-                refused.append(call)
-            return super().items()
-
-    monitor.step_ns(1, {"x": 1.0})
-    assert monitor.step_ns(2, Values(x=None)) == []
-    assert len(refused) == 6
-    with pytest.raises(ValueError, match="no value of it"):
-        monitor.step_ns(3, Values(x="high"))
-    monitor.advance_ns(3)
-    monitor.step_ns(3, {"x": 5.0})
-    assert monitor.finish_ns(9)["R1"] == "F"
-    with pytest.raises(ValueError, match="the run is finished"):
-        monitor.advance_ns(10)
-    monitor.reset()
-    monitor.step_ns(1, {"x": 1.0})
-    assert monitor.finish_ns(2)["R1"] == "P"
 
 
 @pytest.mark.usefixtures("quick_turns")

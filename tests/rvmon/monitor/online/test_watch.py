@@ -3,10 +3,10 @@
 import itertools
 
 import pytest
+from tests.tools.forms import EXPLAINING as ENGINES
 
 import rvmon
 from rvmon.errors import RvmonError, TraceError
-from rvmon.monitor.engines.registry import EXPLAINING as ENGINES
 from rvmon.verdict.report import Report
 
 SPEC = """

@@ -1,1 +1,0 @@
-"""Compiled C as a monitor: of streams, of columns, of one recording alone."""

@@ -1,1 +1,0 @@
-"""Other monitors, asked for their verdicts: what formulas are in their words, and how to ask."""

@@ -1,0 +1,16 @@
+"""The page about other monitors holds what the benchmark runs."""
+
+from pathlib import Path
+
+import pytest
+from benchmarks.peers.differences import DIFFERENCES
+
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "other-monitors.md"
+
+
+@pytest.mark.parametrize("difference", DIFFERENCES, ids=lambda one: f"{one.package}: {one.formula}")
+def test_every_difference_stands_on_the_page(difference):
+    """Its reading and its formula are in one row."""
+    rows = [row for row in PAGE.read_text().splitlines() if row.startswith("|")]
+    [row] = [row for row in rows if difference.reading in row and difference.formula in row]
+    assert difference.package.removesuffix("-python") in row
