@@ -244,6 +244,9 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     if (t <= m->after) {
         return RV_TOO_EARLY;
     }
+    if (m->spoilt) {
+        return RV_NO_MEMORY;
+    }
     if (m->is_alone) {
         step_alone(m, t, updates, count);
     } else if (!step_parts(m, t, updates, count)) {
@@ -272,7 +275,7 @@ int rv_advance(rv_monitor *m, int64_t t)
     if (!is_in_range(t)) {
         return RV_OUT_OF_RANGE;
     }
-    if (t > m->reached) {
+    if ((t > m->reached) && !m->spoilt) {
         for (i = 0; i < m->plan.part_count; i++) {
             home_wait(&m->homes[i], t);
         }
@@ -308,7 +311,7 @@ int rv_finish(rv_monitor *m, int64_t t)
         return RV_OUT_OF_RANGE;
     }
     m->finished = true;
-    if (end != RV_NO_TIME) {
+    if ((end != RV_NO_TIME) && !m->spoilt) {
         const int64_t reached = (m->reached > end) ? m->reached : end;
         for (i = 0; i < m->plan.part_count; i++) {
             home_close(&m->homes[i], end, reached);
@@ -322,7 +325,7 @@ int64_t rv_next_due(rv_monitor *m)
 {
     int64_t found = NEVER;
     int32_t i;
-    for (i = 0; !m->finished && (i < m->plan.part_count); i++) {
+    for (i = 0; !m->finished && !m->spoilt && (i < m->plan.part_count); i++) {
         found = least(found, home_due(&m->homes[i]));
     }
     return found;
