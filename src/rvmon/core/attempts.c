@@ -187,6 +187,9 @@ void leave(run *r, int32_t index, int32_t before, int32_t at)
 /* Whether the rule for the end of a trace makes an attempt true. */
 static bool is_kept(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
+    if (is_chained(r, index)) {
+        return chain_outlasts(r, index, x, end, reached);
+    }
     if (is_networked(r, index)) {
         return network_outlasts(r, index, x);
     }

@@ -12,7 +12,8 @@ static bool prepare_part(rv_monitor *m, part *p)
     p->timed = arena_take(&m->memory, (size_t)(p->plan->timers + 1) * sizeof *p->timed);
     p->perishable = arena_take(&m->memory, (size_t)(p->plan->perishable + 1) * sizeof *p->perishable);
     p->machines = arena_take(&m->memory, (size_t)p->plan->judges.count * sizeof *p->machines);
-    if ((p->timed == NULL) || (p->perishable == NULL) || (p->machines == NULL)) {
+    p->networked = arena_take(&m->memory, (size_t)p->plan->judges.count * sizeof *p->networked);
+    if ((p->networked == NULL) || (p->timed == NULL) || (p->perishable == NULL) || (p->machines == NULL)) {
         return false;
     }
     for (i = 0; i < p->plan->nodes.count; i++) {
@@ -28,6 +29,10 @@ static bool prepare_part(rv_monitor *m, part *p)
     for (i = 0; i < p->plan->judges.count; i++) {
         p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
         p->restarts = p->restarts || (p->judges[i].again >= 0);
+        if ((p->judges[i].automaton < 0) && (p->forms[p->judges[i].form].windows.count == 0)) {
+            p->networked[p->networked_count] = i;
+            p->networked_count++;
+        }
         if (p->judges[i].automaton >= 0) {
             p->machines[i] = machine_view(&m->plan, &m->plan.automata[p->judges[i].automaton]);
         }

@@ -222,8 +222,13 @@ void clear_judges(run *r)
     r->failing_count = 0;
     for (i = 0; i < p->judges.count; i++) {
         networks *net = r->judges[i].net;
+        chain *windows = r->judges[i].chain;
         (void)memset(&r->judges[i], 0, sizeof r->judges[i]);
         r->judges[i].net = net;
+        r->judges[i].chain = windows;
+        if (windows != NULL) {
+            windows->begun = false;
+        }
         if (net != NULL) {
             net->begun = false;
             net->parted = false;
