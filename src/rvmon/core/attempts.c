@@ -166,8 +166,8 @@ void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
     }
 }
 
-/* Take an attempt out of those of a judge; `before` is the one before it, -1 if there is none. */
-void leave(run *r, int32_t index, int32_t before, int32_t at)
+/* Unlink an attempt from those of a judge; `before` is the one before it, -1 if there is none. */
+static void unlink(run *r, int32_t index, int32_t before, int32_t at)
 {
     judge *j = &r->judges[index];
     const int32_t next = attempt_at(r->home, at)->next;
@@ -179,9 +179,44 @@ void leave(run *r, int32_t index, int32_t before, int32_t at)
     if (next < 0) {
         j->last = before;
     }
+}
+
+/* Take an attempt that is decided out of those of a judge. */
+void leave(run *r, int32_t index, int32_t before, int32_t at)
+{
+    unlink(r, index, before, at);
     if (r->part->plan->captured == 0) {
         give_back(r->home, at);
     }
+}
+
+/* Whether nothing more can be said of an attempt: it fails for the worse, and passes for the better. */
+bool is_moot(const attempt *x)
+{
+    return x->parted && (x->location == FAILED) && (x->better == PASSED);
+}
+
+/* Put an attempt that stays open for good where nobody comes by until the end. */
+void lay_aside(run *r, int32_t index, int32_t before, int32_t at)
+{
+    judge *j = &r->judges[index];
+    unlink(r, index, before, at);
+    attempt_at(r->home, at)->next = j->moot;
+    j->moot = at;
+}
+
+/* The open attempt of a judge behind another, those for good last; -1 before the first, and behind
+ * all. */
+int32_t next_open(const run *r, int32_t index, int32_t at)
+{
+    const judge *j = &r->judges[index];
+    if (at < 0) {
+        return (j->first >= 0) ? j->first : j->moot;
+    }
+    if (at == j->last) {
+        return j->moot;
+    }
+    return attempt_at(r->home, at)->next;
 }
 
 /* Whether the rule for the end of a trace makes an attempt true. */

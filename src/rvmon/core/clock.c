@@ -368,7 +368,7 @@ void settle_all(run *r, int64_t end, int64_t reached)
         if (is_networked(r, i) && !is_chained(r, i)) {
             network_close(r, i, end);
         }
-        for (at = r->judges[i].first; at >= 0; at = attempt_at(r->home, at)->next) {
+        for (at = next_open(r, i, -1); at >= 0; at = next_open(r, i, at)) {
             settle_attempt(r, i, at, end, reached);
         }
     }

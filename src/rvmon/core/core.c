@@ -389,7 +389,7 @@ void rv_each_open(const rv_monitor *m, rv_take take, void *user)
             int32_t k;
             for (k = 0; k < r->part->plan->judges.count; k++) {
                 int32_t at;
-                for (at = r->judges[k].first; at >= 0; at = attempt_at(h, at)->next) {
+                for (at = next_open(r, k, -1); at >= 0; at = next_open(r, k, at)) {
                     const rv_record one = open_record(r, k, at);
                     if (!take(user, &one, r->captured)) {
                         return;
@@ -417,7 +417,7 @@ static void count_home(const home *h, int32_t requirement, rv_counts *counts)
             if (h->part->judges[i].requirement != requirement) {
                 continue;
             }
-            counts->open = counts->open || (j->first >= 0);
+            counts->open = counts->open || (j->first >= 0) || (j->moot >= 0);
             if (h->part->plan->captured > 0) {
                 counts->heard = counts->heard
                                 || ((i == 0) && (r->parent == NULL) && occurred && was_heard(r, i));

@@ -129,13 +129,15 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
         attempt *x = attempt_at(r->home, at);
         const int32_t next = x->next;
         const bool waits = some && (x->due > t); /* and so do all behind it */
-        if (waits || drive(r, a, index, at, how, from, t, &x->due)) {
+        if (!waits && !drive(r, a, index, at, how, from, t, &x->due)) {
+            leave(r, index, before, at);
+        } else if (is_moot(x)) {
+            lay_aside(r, index, before, at);
+        } else {
             next_due = least(next_due, x->due);
             j->sorted = j->sorted && (latest <= x->due);
             latest = x->due;
             before = at;
-        } else {
-            leave(r, index, before, at);
         }
         if (waits) {
             break;

@@ -239,6 +239,7 @@ void clear_judges(run *r)
         r->judges[i].position = -LIMIT;
         r->judges[i].first = -1;
         r->judges[i].last = -1;
+        r->judges[i].moot = -1;
         r->judges[i].current = -1;
         r->judges[i].failed_at = NEVER;
     }

@@ -274,6 +274,7 @@ typedef struct {
     chain *chain;
     int32_t first;
     int32_t last;
+    int32_t moot;              /* the first of those that stay open for good */
     int32_t current;           /* the attempt of the episode that runs */
     int32_t letter;            /* the class of letters that they stepped with */
     int32_t other;             /* the same, the unknown taken for the better */
@@ -477,7 +478,6 @@ struct rv_monitor {
 #define GAP(r) ((r)->home->monitor->plan.header->gap)
 #define LIST(p, l) (&(p)->lists[(l).first])
 #define PLAN(r) (&(r)->home->monitor->plan)
-#define JUDGE_ALIVE(r, i) ((r)->judges[i].first >= 0)
 
 static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
 
@@ -591,6 +591,9 @@ void look_at(run *r, int32_t index, int64_t t);
 void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
 void leave(run *r, int32_t index, int32_t before, int32_t at);
+bool is_moot(const attempt *x);
+void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
+int32_t next_open(const run *r, int32_t index, int32_t at);
 void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
 
 /* ---- records.c */

@@ -545,12 +545,6 @@ static bool weigh_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
     return true;
 }
 
-/* Whether nothing more can be said of an attempt. */
-static bool is_open_for_good(const attempt *x)
-{
-    return (x->location == FAILED) && (x->better == PASSED);
-}
-
 /* Judge the attempts by all that is known as of a stamp. */
 static void look_through(chaining *g, int64_t limit)
 {
@@ -563,14 +557,16 @@ static void look_through(chaining *g, int64_t limit)
         if (g->f.monitor->spoilt) {
             break;
         }
-        if (is_open_for_good(attempt_at(g->r->home, at)) || weigh_in_chain(g, at, limit, &due)) {
+        if (!weigh_in_chain(g, at, limit, &due)) {
+            leave(g->r, g->index, before, at);
+        } else if (is_moot(attempt_at(g->r->home, at))) {
+            lay_aside(g->r, g->index, before, at);
+        } else {
             next_due = least(next_due, due);
             before = at;
             if (!g->c->parted && !attempt_at(g->r->home, at)->parted) {
                 break; /* what is known is known in order */
             }
-        } else {
-            leave(g->r, g->index, before, at);
         }
         at = next;
     }
