@@ -13,21 +13,21 @@ bool is_current(const run *r, int32_t index, int32_t at)
     return r->judges[index].current == at;
 }
 
-/* Make room for more open attempts; false if there is none. */
-static bool grow_pool(home *h)
+/* Make room for so many open attempts; false if there is none. */
+bool grow_pool(home *h, int64_t wanted)
 {
     rv_monitor *m = h->monitor;
     int32_t capacity = h->capacity;
     int32_t same = h->capacity;
     char *pool;
     if (h->part->plan->captured > 0) {
-        turn *turns = grown(m, h->turns, &same, (int64_t)h->capacity + 1, sizeof *turns);
+        turn *turns = grown(m, h->turns, &same, wanted, sizeof *turns);
         if (turns == NULL) {
             return false;
         }
         h->turns = turns;
     }
-    pool = grown(m, h->pool, &capacity, (int64_t)h->capacity + 1, h->stride);
+    pool = grown(m, h->pool, &capacity, wanted, h->stride);
     if (pool == NULL) {
         return false;
     }
@@ -42,7 +42,7 @@ int32_t place_taken(run *r)
     int32_t at = h->free_slot;
     if (at >= 0) {
         h->free_slot = attempt_at(h, at)->next;
-    } else if ((h->used < h->capacity) || grow_pool(h)) {
+    } else if ((h->used < h->capacity) || grow_pool(h, (int64_t)h->capacity + 1)) {
         at = h->used;
         h->used++;
     } else {

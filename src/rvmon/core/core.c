@@ -137,6 +137,21 @@ void rv_free(rv_monitor *m)
     }
 }
 
+int rv_reserve(rv_monitor *m, int32_t attempts)
+{
+    bool done = (attempts <= 0) || grow_records(m, attempts);
+    int32_t i;
+    for (i = 0; (attempts > 0) && done && (i < m->plan.part_count); i++) {
+        done = (m->homes[i].part->plan->judges.count == 0) || home_reserve(&m->homes[i], attempts);
+    }
+    return done ? RV_OK : RV_NO_MEMORY;
+}
+
+size_t rv_memory_used(const rv_monitor *m)
+{
+    return m->memory.used;
+}
+
 int rv_reset(rv_monitor *m)
 {
     return begin_run(m) ? RV_OK : RV_NO_MEMORY;

@@ -26,6 +26,7 @@ typedef struct {
     chunk *chunks;
     char *free;
     size_t left;
+    size_t used;               /* all that was handed out anew, together */
     void *spare[SIZE_CLASSES];
 } arena;
 
@@ -581,6 +582,7 @@ bool holds_at_end(const machine *a, const attempt *x, int64_t end, int64_t reach
 /* ---- attempts.c */
 bool is_true(const run *r, int32_t node);
 bool is_current(const run *r, int32_t index, int32_t at);
+bool grow_pool(home *h, int64_t wanted);
 int32_t place_taken(run *r);
 void give_back(home *h, int32_t at);
 void number_attempt(run *r, int32_t index, int32_t at, int64_t t);
@@ -597,6 +599,7 @@ int32_t next_open(const run *r, int32_t index, int32_t at);
 void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
 
 /* ---- records.c */
+bool grow_records(rv_monitor *m, int64_t wanted);
 void report(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
 void sort_records(rv_monitor *m);
 
@@ -707,6 +710,7 @@ int32_t concerning(const run *r, const rv_update *u);
 
 /* ---- homes.c: all runs of a part */
 bool home_begin(home *h);
+bool home_reserve(home *h, int32_t attempts);
 void home_lack(home *h, bool event, int32_t local);
 void home_sample(home *h, int64_t t);
 void home_wait(home *h, int64_t t);

@@ -36,7 +36,7 @@ def copied(hook, monkeypatch, tmp_path):
     folder = tmp_path / "core"
     folder.mkdir()
     for source in Path(rvmon.core.sources.FOLDER).iterdir():
-        if source.suffix == ".h" or source.name in {"module.c", "sources.py"}:
+        if source.suffix == ".h" or source.name in {"amalgamate.py", "module.c", "sources.py"}:
             shutil.copy(source, folder)
     monkeypatch.setattr(hook, "CORE", folder)
     return folder
