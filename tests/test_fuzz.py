@@ -19,7 +19,7 @@ def test_kept_inputs_are_read_or_refused(name):
         assert run(name, path.read_bytes())
 
 
-@pytest.mark.compiler
+@pytest.mark.slow
 def test_kept_recordings_are_judged_alike():
     """By Python, columns and C; those in held time, for which one is compiled."""
     held = [path.read_bytes() for path in sorted((CORPUS / "recording").iterdir())]
