@@ -56,6 +56,7 @@ _RUNTIME = tuple(
     )
 )
 _GENERATED = tuple(f"monitor/online/{name}.py" for name in ("generated", "unit_clerks"))
+_CORE_MONITORS = tuple(f"monitor/core/{name}.py" for name in ("captured", "monitor", "planned"))
 
 COLUMNS = "columns"
 """Has a test of its own, of recordings."""
@@ -70,7 +71,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
-    "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/c/monitor.py"),
+    "c": (*_PLANS, "core/*.py", "core/*.c", "core/module_*.h", *_CORE_MONITORS),
     "network": (
         "dataflow/time_decisions.py",
         "dataflow/at_end.py",
@@ -100,15 +101,11 @@ RELATED = {
     "progression": ("auto", "automaton", "network"),
     "network": ("auto",),
     "python": ("auto",),
-    "c": ("c rows",),
 }
 """By engine, others that have files in common with it, but run other parts of them."""
 
-_ELSEWHERE = (
-    "codegen/c_build.py",
-    "codegen/c/monitor.hpp.in",
-)
-"""What the differential test of the engine does not run: it compiles and reads files."""
+_ELSEWHERE = ("core/__init__.py", "core/sources.py")
+"""What the differential test of the engine does not run: it tells whether the core is built."""
 
 
 def files_of(engine: str) -> list[Path]:
