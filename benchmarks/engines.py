@@ -56,6 +56,21 @@ _RUNTIME = tuple(
     )
 )
 _GENERATED = tuple(f"monitor/online/{name}.py" for name in ("generated", "unit_clerks"))
+_PACKING = tuple(
+    f"core/{name}.py"
+    for name in (
+        "atoms",
+        "automata",
+        "forms",
+        "judges",
+        "nodes",
+        "part",
+        "plan",
+        "programs",
+        "sections",
+        "unit",
+    )
+)
 _CORE_MONITORS = tuple(f"monitor/core/{name}.py" for name in ("captured", "monitor", "planned"))
 
 COLUMNS = "columns"
@@ -71,7 +86,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
-    "c": (*_PLANS, "core/*.py", "core/*.c", "core/module_*.h", *_CORE_MONITORS),
+    "c": (*_PLANS, *_PACKING, "core/*.c", "core/module_*.h", *_CORE_MONITORS),
     "network": (
         "dataflow/time_decisions.py",
         "dataflow/at_end.py",
@@ -104,9 +119,6 @@ RELATED = {
 }
 """By engine, others that have files in common with it, but run other parts of them."""
 
-_ELSEWHERE = ("core/__init__.py", "core/sources.py")
-"""What the differential test of the engine does not run: it tells whether the core is built."""
-
 
 def files_of(engine: str) -> list[Path]:
     """The files of an engine.
@@ -120,6 +132,4 @@ def files_of(engine: str) -> list[Path]:
         if not files:
             raise FileNotFoundError(f"{PACKAGE / pattern}, which is listed in {__file__}")
         found |= files
-    wanted = {PACKAGE / pattern for pattern in ENGINES[engine]}
-    left = {file for pattern in _ELSEWHERE for file in PACKAGE.glob(pattern)} - wanted
-    return sorted(found - left)
+    return sorted(found)
