@@ -11,7 +11,6 @@ from enum import IntEnum
 from pathlib import Path
 
 import pytest
-from tests.tools.gcc import STRICT
 from tests.tools.plan_reader import (
     HEADER,
     SECTIONS,
@@ -39,6 +38,8 @@ from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]
 WRITTEN = sorted([*ROOT.glob("specs/*.rv"), *ROOT.glob("examples/**/*.rv")])
+
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic")
 
 MANY = Profile(many=20)
 
