@@ -1,18 +1,16 @@
-"""The runtime forms of automata against the oracle: table, generated Python, batch, C.
+"""What judges, against the oracle: tables, generated Python, arrays, the core.
 
     python -m benchmarks.all_forms --pairs 10000 --workers 2
 
 Each form judges so many pairs of a random specification and a random trace; what it does not judge
-counts apart. Columns in memory (`batch`, and `batch in C`) have whole rows, in blocks of random
+counts apart. Columns in memory (`batch`, and `core, columns`) have whole rows, in blocks of random
 length. Prints a line per form and every disagreement, and exits with 1 if there is one.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import sys
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -39,16 +37,7 @@ Judge = Callable[[list[str]], "Counter[str]"]
 
 def stepped(engine: str, each: int, seeds: list[str]) -> Counter[str]:
     """Judge the cases of some seeds sample by sample; runs in a worker."""
-    whole = not engine.startswith("c")
-    profile = Profile(captures=whole, for_each=whole)
-    tally = campaign(
-        Maker(engine),
-        seeds,
-        profile,
-        TraceProfile(),
-        each=each,
-        online_every=10 * (engine != "c rows"),
-    )
+    tally = campaign(Maker(engine), seeds, Profile(), TraceProfile(), each=each)
     for text in tally.disagreements:
         print(text, flush=True)
     return Counter(
@@ -71,9 +60,8 @@ FORMS: dict[str, Callable[[int], Judge]] = {
     "table": lambda each: partial(stepped, "automaton", each),
     "generated Python": lambda each: partial(stepped, "python", each),
     "batch": lambda each: partial(batched, "auto", each),
-    "C, stepped": lambda each: partial(stepped, "c", each),
-    "C, rows": lambda each: partial(stepped, "c rows", each),
-    "batch in C": lambda each: partial(batched, "c", each),
+    "core, stepped": lambda each: partial(stepped, "c", each),
+    "core, columns": lambda each: partial(batched, "c", each),
 }
 
 
@@ -110,8 +98,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--form", choices=FORMS, nargs="+", default=FORMS, metavar="FORM")
     options = parser.parse_args(argv)
     wrong = 0
-    with interrupted_by_sigterm(), tempfile.TemporaryDirectory() as cache:
-        os.environ["XDG_CACHE_HOME"] = cache  # nobody runs these monitors again
+    with interrupted_by_sigterm():
         for form in options.form:
             began = time.perf_counter()
             found = judge_form(form, options)

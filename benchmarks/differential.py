@@ -54,7 +54,6 @@ def judging(
         each=options.traces,
         online_every=options.online_every,
         shrunk=0 if options.fail_fast else options.show,
-        silent=("c rows",),
         windows=options.windows,
     )
 

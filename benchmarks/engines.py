@@ -56,6 +56,22 @@ _RUNTIME = tuple(
     )
 )
 _GENERATED = tuple(f"monitor/online/{name}.py" for name in ("generated", "unit_clerks"))
+_PACKING = tuple(
+    f"core/{name}.py"
+    for name in (
+        "atoms",
+        "automata",
+        "forms",
+        "judges",
+        "nodes",
+        "part",
+        "plan",
+        "programs",
+        "sections",
+        "unit",
+    )
+)
+_CORE_MONITORS = tuple(f"monitor/core/{name}.py" for name in ("captured", "monitor", "planned"))
 
 COLUMNS = "columns"
 """Has a test of its own, of recordings."""
@@ -70,7 +86,7 @@ ENGINES: dict[str, tuple[str, ...]] = {
         *_ATTEMPTS,
     ),
     "python": (*_PLANS, "codegen/python_*.py", *_RUNTIME, *_GENERATED),
-    "c": (*_PLANS, "codegen/c_*.py", "codegen/c/*.in", "monitor/c/monitor.py"),
+    "c": (*_PLANS, *_PACKING, "core/*.c", "core/module_*.h", *_CORE_MONITORS),
     "network": (
         "dataflow/time_decisions.py",
         "dataflow/at_end.py",
@@ -100,15 +116,8 @@ RELATED = {
     "progression": ("auto", "automaton", "network"),
     "network": ("auto",),
     "python": ("auto",),
-    "c": ("c rows",),
 }
 """By engine, others that have files in common with it, but run other parts of them."""
-
-_ELSEWHERE = (
-    "codegen/c_build.py",
-    "codegen/c/monitor.hpp.in",
-)
-"""What the differential test of the engine does not run: it compiles and reads files."""
 
 
 def files_of(engine: str) -> list[Path]:
@@ -123,6 +132,4 @@ def files_of(engine: str) -> list[Path]:
         if not files:
             raise FileNotFoundError(f"{PACKAGE / pattern}, which is listed in {__file__}")
         found |= files
-    wanted = {PACKAGE / pattern for pattern in ENGINES[engine]}
-    left = {file for pattern in _ELSEWHERE for file in PACKAGE.glob(pattern)} - wanted
-    return sorted(found - left)
+    return sorted(found)

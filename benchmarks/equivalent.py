@@ -69,14 +69,6 @@ EQUIVALENT = {
     "python_nodes.py dropped operand: `state.high or 0` => `0`": (
         "samples are looked at that could have been passed over"
     ),
-    "c_nodes.py off by one: `mask >> place % GROUP & 1` => `mask >> place % GROUP`": (
-        "more changes are noted than anybody hears of"
-    ),
-    "monitor_tokens.c.in off by one: `due = settle_token(a, k, position - STEP, "
-    "least(position - 1, last));` => `due = settle_token(a, k, position - STEP, "
-    "least(position, last));`": (
-        "time passes up to the position before its letter is read, here or in the step itself"
-    ),
     "python_leaf_cases.py dropped not: `not isinstance(self.plan.graph.nodes[leaves[0]].leaf, "
     "SignalAtom)` => `isinstance(self.plan.graph.nodes[leaves[0]].leaf, SignalAtom)`": (
         "a value that brings a leaf no other truth is gone through all the same; another value of "
@@ -157,25 +149,6 @@ EQUIVALENT = {
     ),
     "python_nodes.py operator: `asked >> n & 1` => `asked >> n | 1`": (
         "nodes have values of their own that nobody asks for"
-    ),
-    "monitor_clock.c.in comparison: `for (i = 0; (m->failures > 0) && (i < RULES_HERE); "
-    "i++) {` => `for (i = 0; (m->failures >= 0) && (i < RULES_HERE); i++) {`": (
-        "requirements are gone through of which none has failed"
-    ),
-    "monitor_clock.c.in comparison: `|| m->rules_restless || (m->failures > 0);` => `|| "
-    "m->rules_restless || (m->failures >= 0);`": (
-        "it is only looked at earlier than need be whether something is due"
-    ),
-    "monitor_clock.c.in off by one: `const int64_t ahead = (m->rule[i].failed_at - "
-    "m->position) / STEP + 1;` => `const int64_t ahead = (m->rule[i].failed_at - m->position) "
-    "/ STEP;`": "a position before the next is visited, at which no attempt starts yet",
-    "monitor_past.c.in constant: `uint8_t found = (value != IS_FALSE) ? IS_TRUE : IS_FALSE;` "
-    "=> `uint8_t found = (value != IS_FALSE) ? IS_TRUE : IS_TRUE;`": (
-        "where nothing is hidden no attempt in doubt begins, and none runs that asks for the value"
-    ),
-    "c_nodes.py function: `all((found.get(operand) == first for operand in operands))` => "
-    "`any((found.get(operand) == first for operand in operands))`": (
-        "what stands above a doubt reads nothing else"
     ),
     "core_form.py and/or: `isinstance(formula, Unary) and formula.op is UnaryOp.PREVIOUS` => "
     "`isinstance(formula, Unary) or formula.op is UnaryOp.PREVIOUS`": (

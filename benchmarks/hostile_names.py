@@ -1,6 +1,6 @@
 """Hostile names and cells through every output, each parsed again: nothing is forged or obeyed.
 
-    python -m benchmarks.hostile_names --names 100000 --through-commands 100000 --through-c 1000
+    python -m benchmarks.hostile_names --names 100000 --through-commands 100000
 
 Every writer gets all names, as ids, texts, columns, reasons and names of files; the commands, and
 what is compiled C, get so many of them, in specifications, models and recordings. Prints by output
@@ -294,6 +294,7 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "conform, labels": ["conform", model, trace, "--observe", ids[0]],
         "conform, time": ["conform", model, trace, "--time", ids[0]],
         "run, json": [*run, "--format", "json"],
+        "run, c, json": [*run, "--engine", "c", "--format", "json"],
         "compile, json": ["compile", spec, "--to", "json"],
     }
     texts = {name: _printed(lambda given=given: command(given)) for name, given in words.items()}
@@ -318,20 +319,11 @@ def _holds(name: str, text: str, ids: Names) -> bool:
     return True
 
 
-def through_c(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
-    """What compiled C makes of names; as `through_commands`."""
-    files = written(names, folder)
-    run = ["run", files.spec, files.trace, "--format", "json", "--engine", "c"]
-    text = _printed(lambda: command(run))
-    yield "run, engine c", _calm(text) and _holds("run, json", text, files.ids)
-
-
 def main(words: Sequence[str] | None = None) -> int:
     """Write, read again, print, and return 1 if anything was forged or obeyed."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--names", type=int, default=100_000)
     parser.add_argument("--through-commands", type=int, default=10_000)
-    parser.add_argument("--through-c", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args(words)
     began = time.perf_counter()
@@ -347,19 +339,15 @@ def main(words: Sequence[str] | None = None) -> int:
                 print(
                     f"{writer.__name__}: wrong among names {first} to {first + BATCH}", flush=True
                 )
-    ways = (
-        (through_commands, arguments.through_commands, BATCH),
-        (through_c, arguments.through_c, BATCH // 10),
-    )
-    for way, count, size in ways:
-        for first in range(0, min(count, len(names)), size):
-            part = names[first : min(first + size, count)]
-            with tempfile.TemporaryDirectory() as folder:
-                for name, fine in way(part, Path(folder)):
-                    given[name] += len(part)
-                    if not fine:
-                        wrong[name] += 1
-                        print(f"{name}: wrong among {first} to {first + len(part)}", flush=True)
+    count = min(arguments.through_commands, len(names))
+    for first in range(0, count, BATCH):
+        part = names[first : min(first + BATCH, count)]
+        with tempfile.TemporaryDirectory() as folder:
+            for name, fine in through_commands(part, Path(folder)):
+                given[name] += len(part)
+                if not fine:
+                    wrong[name] += 1
+                    print(f"{name}: wrong among {first} to {first + len(part)}", flush=True)
     for name, count in given.items():
         print(f"{name:18} {count:8} names, {wrong[name]} documents wrong")
     print(f"{time.perf_counter() - began:.0f} s")

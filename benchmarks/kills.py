@@ -29,7 +29,7 @@ from xml.etree import ElementTree
 
 from tests.tools import killed_watch
 
-from rvmon.cache import is_whole, read_kept
+from rvmon.cache import read_kept
 from rvmon.writing import SUFFIX
 
 PATIENCE_S = 2.0
@@ -55,25 +55,15 @@ class Parent:
 
     label: str
     words: tuple[str, ...]
-    fresh: bool
-    """Whether each has a cache of its own, so that it compiles."""
 
 
 RVMON = (sys.executable, "-m", "rvmon")
 PARENTS = (
-    Parent("rvmon run --jobs", (*RVMON, "run", "s.rv", *["t.csv"] * 6, "--jobs", "2"), fresh=False),
-    Parent(
-        "rvmon run --report", (*RVMON, "run", "s.rv", "few.csv", "--report", "out"), fresh=False
-    ),
-    Parent(
-        "rvmon run -e c, compiling",
-        (*RVMON, "run", "s.rv", "few.csv", "--engine", "c"),
-        fresh=True,
-    ),
+    Parent("rvmon run --jobs", (*RVMON, "run", "s.rv", *["t.csv"] * 6, "--jobs", "2")),
+    Parent("rvmon run --report", (*RVMON, "run", "s.rv", "few.csv", "--report", "out")),
     Parent(
         "rvmon run -e c",
         (*RVMON, "run", "s.rv", "many.csv", "--engine", "c", "--format", "json"),
-        fresh=False,
     ),
     Parent(
         "handover run",
@@ -89,12 +79,10 @@ PARENTS = (
             "--out",
             "out",
         ),
-        fresh=False,
     ),
     Parent(
         "differential",
         (sys.executable, "-m", "benchmarks.differential", "--pairs", "4000", "--workers", "2"),
-        fresh=False,
     ),
 )
 
@@ -149,7 +137,7 @@ class Trial:
     def kill(self, number: int, after: float) -> None:
         """Begin a parent, kill it so many seconds later, and see what is left."""
         mark = f"{os.getpid()}-{number}"
-        cache = self.folder / (f"cache{number}" if self.parent.fresh else "cache")
+        cache = self.folder / "cache"
         process = self.begun(cache, mark)
         time.sleep(after)
         kind = (signal.SIGKILL, signal.SIGTERM)[number % 2]
@@ -203,7 +191,7 @@ def _is_half_written(path: Path) -> bool:
     if path.parent.name == "rvmon":  # a cache, with a file that is empty
         if not path.suffix:
             return bool(body)
-        return read_kept(path) is None if path.suffix == ".json" else not is_whole(path)
+        return read_kept(path) is None
     if path.suffix in READERS:
         try:
             READERS[path.suffix](path)

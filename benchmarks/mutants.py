@@ -3,7 +3,8 @@
     python -m benchmarks.mutants --engine python --count 30 --seed 1
 
 Changes are drawn evenly over their kinds, from the lines of the engine's files that the test
-executes (of C, from all lines). Each is tried in a copy of the package. A mutant is killed if the
+executes (of C, from all lines). Each is tried in a copy of the package; the core is built anew if
+its C was changed. A mutant is killed if the
 test finds a disagreement, hangs or breaks, or if the engine refuses other specifications than it
 did. A few pairs find most of them; one that survives is tried again with all, with samples in
 portions and with snapshots, with 10,000 pairs, with the engines that have its files in common, then
@@ -236,6 +237,7 @@ class Trial:
         self.package = scratch / "src" / "rvmon"
         self.environment = _environment(scratch, scratch / "src")
         shutil.copytree(PACKAGE, self.package, ignore=shutil.ignore_patterns("__pycache__"))
+        self.build = Path(shutil.copy2(ROOT / "hatch_build.py", scratch))
         # A changed file is newer than what was compiled, and what is compiled then is not kept.
         compileall.compile_dir(self.package, quiet=2)
         self.known: dict[Stage | Tests, tuple[list[str], float]] = {}
@@ -255,13 +257,22 @@ class Trial:
         wanted, seconds = self._as_it_is(stage)
         place = self.package / mutant.path.relative_to(PACKAGE)
         place.write_text(mutant.source, encoding="utf-8")
-        verdict, refused = self._run(stage, 10 + 5 * seconds)
+        verdict, refused = "unbuilt", wanted
+        if mutant.path.suffix == ".py" or self._is_built():
+            verdict, refused = self._run(stage, 10 + 5 * seconds)
         shutil.copy2(mutant.path, place)
+        for built in (PACKAGE / "core").glob("_core*.*so"):
+            shutil.copy2(built, self.package / "core")
         if verdict == "survived" and refused != wanted:
             verdict = "refuses"
         if verdict != "survived":
             print(f"{verdict:9} {mutant}", flush=True)
         return verdict != "survived"
+
+    def _is_built(self) -> bool:
+        """Build the core of the copy; false if a compiler refuses it."""
+        done = run([sys.executable, str(self.build)], cwd=ROOT, env=self.environment)
+        return done.returncode == 0
 
     def _run(self, stage: Stage | Tests, most: float) -> tuple[str, list[str]]:
         """The test on the copy: `survived`, `killed` or `hung`; how many specs were refused."""
@@ -280,13 +291,9 @@ class Trial:
 
 
 def _environment(scratch: Path, source: Path) -> dict[str, str]:
-    """The environment of a test; compiled C is kept in the scratch folder, not made fast."""
-    compiler = scratch / "cc"
-    compiler.write_text('#!/bin/sh\nexec gcc "$@" -O0\n')
-    compiler.chmod(0o755)
+    """The environment of a test."""
     return {
         **os.environ,
-        "CC": str(compiler),
         "XDG_CACHE_HOME": str(scratch / "cache"),
         "PYTHONPATH": f"{source}{os.pathsep}{ROOT}",
         "PYTHONDONTWRITEBYTECODE": "1",

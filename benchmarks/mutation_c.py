@@ -33,7 +33,7 @@ def c_mutants(path: Path) -> Iterator[Mutant]:
     comment = False
     for number, line in enumerate(source.splitlines(keepends=True), start=1):
         begins, ends = "/*" in line, "*/" in line
-        code = not (comment or begins or line.startswith(("#", "static const", "typedef", "@")))
+        code = not (comment or begins or line.startswith(("#", "static const", "typedef")))
         if code and line.startswith(" "):
             for kind, start, end, text in _changes(line.rstrip("\n")):
                 changed = source[: at + start] + text + source[at + end :]

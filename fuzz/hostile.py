@@ -1,4 +1,4 @@
-"""Recordings that are wrong here and there, judged by engines of Python and of C.
+"""Recordings that are wrong here and there, judged by Python, by columns and by the core.
 
     python -m fuzz.hostile --inputs 100000 --seed 1 [--engine python auto c]
 
@@ -121,7 +121,7 @@ def main(words: list[str]) -> int:
     parser.add_argument(
         "--engine",
         nargs="+",
-        default=["python", "auto"],
+        default=["python", "auto", "c"],
         help="of python, auto and c; what any judges, the first has to judge",
     )
     options = parser.parse_args(words)

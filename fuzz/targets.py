@@ -194,7 +194,7 @@ def _recorded(time: str) -> rvmon.Spec:
 
 
 def recording(data: bytes, engines: Sequence[str] = ("python", "auto", "c")) -> str:
-    """A CSV file or JSON lines: Python, columns and C say the same.
+    """A CSV file or JSON lines: Python, columns and the core say the same.
 
     The first byte says which form and time model; the rest is the file. Of the engines the first
     judges all that others do.

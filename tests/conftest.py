@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import sysconfig
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NoReturn
@@ -21,7 +20,6 @@ def pytest_configure(config: pytest.Config) -> None:
 _MARK_OF_FIXTURE = {
     "chromium": "browser",
     "directed_results": "campaign",
-    "extensions": "compiler",
     "gcc": "compiler",
     "subject": "law",
 }
@@ -72,38 +70,15 @@ def gcc() -> str:
     return _program("gcc")
 
 
-@pytest.fixture(scope="session")
-def extensions() -> None:
-    """Extension modules can be compiled."""
-    _program("gcc")
-    if not Path(sysconfig.get_path("include"), "Python.h").is_file():
-        _do_without("needs the headers of Python, `python3-dev`")
-
-
 @pytest.fixture(scope="session", autouse=True)
 def scratch(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A cache of its own for each run of tests, shared by its processes, and a hasty compiler.
-
-    What is compiled in tests runs for milliseconds: to optimise it would take longer.
-    """
+    """A cache of its own for each run of tests, shared by its processes."""
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if os.environ.get("PYTEST_XDIST_WORKER") else base) / "scratch"
     folder.mkdir(mode=0o700, exist_ok=True)
-    made = base / "cc"
-    made.write_text('#!/bin/sh\nexec gcc "$@" -O0\n')
-    made.chmod(0o755)
-    hasty = made.rename(folder / "cc")  # at once, whoever else does it
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(folder))
-        if shutil.which("gcc"):
-            patch.setenv("CC", str(hasty))
         yield folder
-
-
-@pytest.fixture
-def optimised(monkeypatch: pytest.MonkeyPatch) -> None:
-    """C is compiled as it is for users."""
-    monkeypatch.delenv("CC", raising=False)
 
 
 @pytest.fixture

@@ -1,10 +1,9 @@
 """The user's cache folder: data that can be worked out again, whole or not at all.
 
-It holds specifications as data, and with the engine `c` what a C compiler made of our source, which
-is run: so a folder or a file that anyone else can write to is passed over, and so is what differs
-from its checksum. Whatever is wrong with it, it can be done without; it can be deleted at any time,
-and used by several processes at once. `RVMON_CACHE=off` switches it off; `RVMON_CACHE_MB` says how
-large it may become.
+It holds data alone, and nothing of it is run; all the same a folder or a file that anyone else can
+write to is passed over, and so is what differs from its checksum. Whatever is wrong with it, it can
+be done without; it can be deleted at any time, and used by several processes at once.
+`RVMON_CACHE=off` switches it off; `RVMON_CACHE_MB` says how large it may become.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ _MOST_MB = 256
 """Megabytes that are kept, if nothing else is set."""
 
 _IN_USE_S = 60.0
-"""Seconds in which a file that was used is not deleted: a process may be about to load it."""
+"""Seconds in which a file that was used is not deleted: a process may be about to read it."""
 
 _ABANDONED_S = 3_600.0
 """Seconds after which nobody writes any more what is not finished."""
@@ -33,7 +32,7 @@ _TIDY_S = 60.0
 _TIDIED = "tidied"
 """The file whose time of change says when the last look was."""
 
-_NAMES = rf"(?P<unfinished>tmp\w{{8}}|{PREFIX}\w{{8}}{SUFFIX})|(\w+-)?[0-9a-f]{{40,}}[-.].+"
+_NAMES = rf"(?P<unfinished>{PREFIX}\w{{8}}{SUFFIX})|(\w+-)?[0-9a-f]{{40,}}[-.].+"
 """The names of all that rvmon puts there; a folder may by mistake hold other things."""
 
 
@@ -42,13 +41,13 @@ def cache_folder() -> Path | None:
     if os.environ.get("RVMON_CACHE", "").lower() in ("off", "0", "no"):
         return None
     try:
-        folder = made_folder()
+        folder = _made_folder()
         return folder if is_ours(folder) else None
     except (OSError, RuntimeError):
         return None
 
 
-def made_folder() -> Path:
+def _made_folder() -> Path:
     """The user's cache folder of rvmon, made if need be.
 
     Raises:
@@ -117,44 +116,9 @@ def read_kept(path: Path) -> bytes | None:
 def keep(path: Path, body: bytes) -> None:
     """Write a file so that others see it whole or not at all; if that fails, never mind."""
     with suppress(OSError):
-        _place(path, f"{_checksum(body)}\n".encode() + body, 0o600)
+        whole = f"{_checksum(body)}\n".encode() + body
+        place_whole(path, whole, mode=0o600, synced=True)
         _tidy(path.parent)
-
-
-def keep_binary(path: Path, body: bytes) -> Path:
-    """Write a file that is loaded or run as it is, and so has its checksum in its name.
-
-    Args:
-        path: the rest of the name.
-        body: what it holds.
-
-    Returns:
-        Where it is, for `is_whole`.
-
-    Raises:
-        OSError: it cannot be written.
-    """
-    named = path.with_name(f"{path.name.partition('.')[0]}-{_checksum(body)}{_suffix(path)}")
-    _place(named, body, 0o700)
-    return named
-
-
-def is_whole(path: Path) -> bool:
-    """Whether a file is ours and still what `keep_binary` wrote."""
-    body = _read(path)
-    return body is not None and _checksum(body) == path.name.partition(".")[0].rpartition("-")[2]
-
-
-def _place(path: Path, body: bytes, mode: int) -> None:
-    if path.is_dir():
-        import shutil
-
-        shutil.rmtree(path)
-    place_whole(path, body, mode=mode, synced=True)
-
-
-def _suffix(path: Path) -> str:
-    return "".join(path.name.partition(".")[1:])
 
 
 def _checksum(body: bytes) -> str:
@@ -176,7 +140,6 @@ def _read(path: Path) -> bytes | None:
 def _tidy(folder: Path) -> None:
     """Delete what killed processes left, and of too much what was not used for longest."""
     import re
-    import shutil
     import time
 
     now = time.time()
@@ -194,8 +157,7 @@ def _tidy(folder: Path) -> None:
             if not named["unfinished"]:
                 found.append((about.st_mtime, about.st_size, entry.path))
             elif now - about.st_mtime > _ABANDONED_S:
-                remove = shutil.rmtree if entry.is_dir(follow_symlinks=False) else os.unlink
-                remove(entry.path)
+                os.unlink(entry.path)
     most = _most()
     size = sum(bytes_ for _, bytes_, _ in found)
     if size <= most:

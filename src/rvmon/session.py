@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
-    from rvmon.plan.plan import Plan
     from rvmon.readers.reading import Reading, ReadingArguments, SchemaArguments
     from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
@@ -111,20 +110,6 @@ class Spec:
 
         return choices(self._compiled.chosen(requirements_asked(self.checked, only)))
 
-    def plan(self, *, only: Iterable[str] | None = None) -> Plan:
-        """What `rvmon.codegen` makes C of that runs without rvmon.
-
-        Args:
-            only: ids of the requirements; default all.
-
-        Raises:
-            UnknownNameError: there is no such requirement.
-            RvmonError: one of them is beyond generated code; which one and why is in the message.
-        """
-        from rvmon.monitor.compiled.code_plan import plan_alone
-
-        return plan_alone(self._compiled, only)
-
     def monitor(
         self,
         *,
@@ -138,8 +123,8 @@ class Spec:
 
         Args:
             only: ids of the requirements to judge; default all.
-            engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
-                that is installed, and gives records without reasons, a report without input health.
+            engine: `auto` or the name of one; `c`, the native core, gives records without reasons
+                and a report without input health.
             settle: `now` judges each sample at once; `next` merges samples with equal stamps and
                 judges each when the next stamp settles it.
             sources: the signals and events that can arrive; the others are unknown throughout.
@@ -186,8 +171,7 @@ class Spec:
             trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
                 too), a table (arrays or lists by name, an Arrow table, a data frame), a
                 `Recording`, or an iterable of `(t, values)` with t in seconds.
-            engine: `auto` or the name of one; `c` compiles the requirements with the C compiler
-                that is installed, and gives records without reasons.
+            engine: `auto` or the name of one; `c`, the native core, gives records without reasons.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.

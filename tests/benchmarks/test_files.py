@@ -10,7 +10,6 @@ from benchmarks.files import measure_files
 from benchmarks.peers.environment import Environment
 
 
-@pytest.mark.compiler
 @pytest.mark.process
 def test_all_ways_find_the_same_failures(tmp_path: Path) -> None:
     """Each way has a line, with a ratio as its failures are the first's; who is absent is named."""

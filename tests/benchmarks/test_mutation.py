@@ -71,7 +71,7 @@ def test_python_changes(tmp_path):
 
 def test_c_changes(tmp_path):
     """Operators, constants and statements are changed; comments and directives are not."""
-    path = tmp_path / "m.c.in"
+    path = tmp_path / "m.c"
     path.write_text(C, encoding="utf-8")
     found = list(c_mutants(path))
     changes = {(one.line, one.kind) for one in found}

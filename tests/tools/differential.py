@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from rvmon.errors import RvmonError
@@ -210,7 +210,6 @@ def campaign_of(
     each: int = 1,
     online_every: int = 10,
     shrunk: int = 3,
-    silent: Container[str] = (),
     windows: int = 0,
 ) -> Campaign:
     """Judge the cases of each seed with the oracle, once, and with some engines.
@@ -224,7 +223,6 @@ def campaign_of(
         online_every: in every so many-th case the return values of all calls are checked too;
             0 for none.
         shrunk: so many disagreements of an engine are shrunk and shown, the others only named.
-        silent: the engines that say nothing before the end.
         windows: see `cases_of`.
     """
     campaign = Campaign(Mix(), {name: Tally() for name in engines})
@@ -239,14 +237,13 @@ def campaign_of(
         campaign.mix.count(judgement)
         for name, make in engines.items():
             tally = campaign.tallies[name]
-            online = asked and name not in silent
-            found = _found(judgement, make, online)
+            found = _found(judgement, make, asked)
             tally.refused += found is None
             tally.pairs += found is not None
             if found:
                 lines = [f"{name} seed {seed}".lstrip(), *found]
                 if len(tally.disagreements) < shrunk:
-                    lines.append(_shrunk(case, make, online))
+                    lines.append(_shrunk(case, make, asked))
                 tally.disagreements.append("\n".join(lines))
     return campaign
 

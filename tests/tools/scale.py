@@ -131,22 +131,22 @@ def _spec(spec: CheckedSpec, longer: Callable[[int], int]) -> CheckedSpec:
         requirements={
             name: replace(
                 owed,
-                trigger=_retimed(owed.trigger, longer),
-                consequent=_retimed(owed.consequent, longer),
+                trigger=retimed(owed.trigger, longer),
+                consequent=retimed(owed.consequent, longer),
             )
             for name, owed in spec.requirements.items()
         },
     )
 
 
-def _retimed(formula: Formula, longer: Callable[[int], int]) -> Formula:
+def retimed(formula: Formula, longer: Callable[[int], int]) -> Formula:
     """A formula with other bounds."""
     match formula:
         case Unary(operand=operand, interval=window):
-            operand = _retimed(operand, longer)
+            operand = retimed(operand, longer)
             return replace(formula, operand=operand, interval=_window(window, longer))
         case Binary(left=left, right=right, interval=window):
-            left, right = _retimed(left, longer), _retimed(right, longer)
+            left, right = retimed(left, longer), retimed(right, longer)
             return replace(formula, left=left, right=right, interval=_window(window, longer))
         case _:
             return formula

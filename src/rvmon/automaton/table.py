@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.end import EndClause, end_clauses
 from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram
 from rvmon.formula.residual import Residual
 from rvmon.runtime.table import Table
@@ -30,13 +29,7 @@ class TableMachine(Table):
 
 @dataclass(frozen=True, slots=True)
 class TableData:
-    """The arguments of `rvmon.runtime.table.Table`, and when a location holds at the end.
-
-    Attributes:
-        initial: see there; so for the others.
-        end_clauses: per location, when the rule for the end of a trace makes it true: one of these
-            lists of `(clock, least age, whether at the end or as far as time has come)`.
-    """
+    """The arguments of `rvmon.runtime.table.Table`."""
 
     initial: int
     cuts: tuple[tuple[tuple[int, ...], ...], ...]
@@ -45,13 +38,11 @@ class TableData:
     class_of: tuple[int, ...]
     rows: tuple[tuple[Edge | None, ...], ...]
     time_values: tuple[int, ...]
-    end_clauses: tuple[tuple[EndClause, ...], ...]
 
 
 def tables_of(automaton: Automaton) -> TableData:
     """Lay an automaton out; the classes of its letters have to stand in a table."""
-    at_end = tuple(end_clauses(location.residual) for location in automaton.locations)
-    return TableData(*(*_layout(automaton, tuple(_table(automaton.class_of))), at_end))
+    return TableData(*_layout(automaton, tuple(_table(automaton.class_of))))
 
 
 def _layout(automaton: Automaton, class_of: Any) -> tuple[Any, ...]:

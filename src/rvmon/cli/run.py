@@ -76,7 +76,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="NAME",
         default="auto",
         help=f"how to evaluate: auto (default), {', '.join(ENGINES[1:-1])}, or c: "
-        "compiled by the C compiler that is installed, without reasons",
+        "the native core, without reasons",
     )
     parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"

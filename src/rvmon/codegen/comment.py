@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-_HARMLESS = {"\\": "/", '"': "'", "@": "(at)", "*/": "* /", "/*": "/ *"}
-"""What would end a comment or be filled as a place of a template; replaced in this order."""
+_HARMLESS = {"\\": "/", '"': "'", "*/": "* /", "/*": "/ *"}
+"""What would end a comment or a docstring; replaced in this order."""
 
 
 def comment(text: str) -> str:
-    r"""One line that ends no comment of C or Python and no docstring, and is nothing to a template.
+    r"""One line that ends no comment of C or Python and no docstring.
 
     >>> comment('*\\ int x; /*')
     '* // int x; / *'

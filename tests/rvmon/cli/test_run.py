@@ -118,9 +118,8 @@ def told(text: str) -> dict:
     }
 
 
-@pytest.mark.compiler
 @pytest.mark.parametrize("until", [[], ["--until", "2.5"]])
-def test_compiled_c_judges_alike(files, capsys, until):
+def test_the_core_judges_alike(files, capsys, until):
     """`--engine c` gives the same verdicts, attempts and exit codes, from CSV and JSON lines."""
     (files / "whole.csv").write_text("t,closed,knock\n0,1,0\n1,1,1\n2,0,0\n5,1,1\n9,1,0\n")
     (files / "F.jsonl").write_text('{"t": 0, "closed": true}\n{"t": 1, "events": ["knock"]}\n')
@@ -259,9 +258,7 @@ def test_an_option_that_can_go_without_a_value_takes_no_other_word(files, option
     assert main(["run", "door.rv", option, "P.csv"]) == 0
 
 
-@pytest.mark.parametrize(
-    "engine", ["auto", "automaton", pytest.param("c", marks=pytest.mark.compiler)]
-)
+@pytest.mark.parametrize("engine", ["auto", "automaton", "c"])
 def test_a_broken_recording_keeps_what_was_judged(files, capsys, engine):
     """Exit 2, one message with file and line, and the failure before the break is still told."""
     (files / "cut.csv").write_text(FAIL + "6,,\n9,maybe,\n")

@@ -39,8 +39,7 @@ def files(tmp_path, monkeypatch):
     return names
 
 
-@pytest.mark.compiler
-def test_what_run_prints_of_compiled_monitors_parses(files, tmp_path, capfd):
+def test_what_run_prints_by_the_core_parses(files, tmp_path, capfd):
     """Also where it tells of columns that are ignored."""
     (tmp_path / "r.csv").write_text("t,x\x1b,y\x1b\n0,1,1\n1,0,1\n", encoding="utf-8")
     for path in ("r.csv", "r\x1b\x9b.csv"):

@@ -68,8 +68,6 @@ SUBJECTS = {
 @pytest.fixture(scope="session", params=SUBJECTS)
 def subject(request: pytest.FixtureRequest) -> Subject:
     """The oracle, then every form."""
-    if request.param == "c":
-        request.getfixturevalue("extensions")
     return SUBJECTS[request.param]
 
 

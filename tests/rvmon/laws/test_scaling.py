@@ -25,7 +25,7 @@ SPARSE = 1_000
 FURTHER = 1_000_000
 
 FORMS = ("auto", "automaton", "network")
-"""Progression may have to step at every tick; C is made of the automaton's tables."""
+"""Progression may have to step at every tick; the steps of the core are no calls of Python."""
 
 ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
 """The code whose calls are the steps of an engine."""

@@ -10,13 +10,6 @@ import rvmon
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
 
-ALL = [
-    pytest.param(form, marks=pytest.mark.compiler) if form in ("c", "c rows") else form
-    for form in FORMS
-]
-ONLINE = [one for one, form in zip(ALL, FORMS, strict=True) if form != "c rows"]
-"""Forms that are told one thing after the other."""
-
 CASES = {
     "a window that is to hold up to the left operand and with it is not met before it is over": (
         "held",
@@ -165,7 +158,7 @@ CASES = {
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("form", ALL)
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("name", CASES)
 def test_forms_agree_with_the_law(name, form):
     """Each form gives the oracle's verdicts and decision instants, if it judges such a spec."""
@@ -179,7 +172,7 @@ def test_forms_agree_with_the_law(name, form):
     assert not disagreements(case, Maker(form))
 
 
-@pytest.mark.parametrize("form", ALL)
+@pytest.mark.parametrize("form", FORMS)
 def test_a_window_opens_between_samples_that_change_nothing(form):
     """In sampled time, `advance` into a window is no position; the sample after it is one."""
     spec = rvmon.loads(
@@ -191,7 +184,7 @@ def test_a_window_opens_between_samples_that_change_nothing(form):
     assert not disagreements(case, Maker(form))
 
 
-@pytest.mark.parametrize("form", ONLINE)
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("steps", [(3, 8), (3, 6, 8), (6, 8)])
 def test_time_comes_to_a_tick_of_the_clock_and_passes_it(form, steps):
     """What a tick decides, to which time had come before, is told when time has passed it."""
@@ -203,7 +196,7 @@ def test_time_comes_to_a_tick_of_the_clock_and_passes_it(form, steps):
     assert not disagreements(case, Maker(form), online=True)
 
 
-@pytest.mark.parametrize("form", ONLINE)
+@pytest.mark.parametrize("form", FORMS)
 def test_one_deadline_after_the_other_passes_without_a_sample(form):
     """Each attempt is decided by the `advance` that passes its deadline."""
     spec = rvmon.loads(
@@ -215,7 +208,7 @@ def test_one_deadline_after_the_other_passes_without_a_sample(form):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("form", ONLINE)
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("count", [0, 65])
 def test_no_source_and_many(form, count):
     """What no source feeds is unknown; samples may hold more names than are looked at in a row."""
@@ -231,7 +224,7 @@ def test_no_source_and_many(form, count):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("form", ALL)
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
 @pytest.mark.parametrize("sources", ["g", "h", "gh", ""])
 def test_two_events_of_which_one_has_no_source(form, time, sources):
@@ -247,10 +240,10 @@ def test_two_events_of_which_one_has_no_source(form, time, sources):
         for t, values in told
     ]
     case = Case(spec.checked, tuple(samples), 12, frozenset(sources))
-    assert not disagreements(case, Maker(form), online=form != "c rows")
+    assert not disagreements(case, Maker(form), online=True)
 
 
-@pytest.mark.parametrize("form", ONLINE)
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize(
     ("time", "requirement", "samples"),
     [

@@ -1,4 +1,4 @@
-"""The plan of the code that is generated for requirements."""
+"""The plans of requirements, for generated Python and for the core."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _blurs(one: CompiledRequirement) -> State | None:
 
 
 def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
-    """The plan of what is to run without rvmon.
+    """The plan of what the core judges.
 
     Args:
         compiled: the specification.
@@ -102,7 +102,7 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
-        RvmonError: one of them is beyond generated code; which one and why is in the message.
+        RvmonError: one of them is beyond the core; which one and why is in the message.
     """
     ids = requirements_asked(compiled.checked, only)
     if ids is not None and not ids:

@@ -321,7 +321,7 @@ class Monitor:
         return found if self._torn is None else not_passed(found)
 
     def _verdicts_so_far(self) -> Mapping[str, Verdict]:
-        """What was decided by now; the engine C counts otherwise."""
+        """What was decided by now; the core counts its own."""
         return self._kept.verdicts(self._names)
 
     def _end(self, t: int | None) -> int | None:

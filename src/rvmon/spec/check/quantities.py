@@ -133,7 +133,7 @@ def _bare_zero(value: Quantity) -> bool:
 
 def _is_whole(op: NumericOp, args: Sequence[Placed]) -> bool:
     """Whether only whole numbers come in, and go out."""
-    return op.entry.largest is not None and all(
+    return op.entry.whole and all(
         value.integral if value.constant is None else value.constant.denominator == 1
         for value, _ in args
     )

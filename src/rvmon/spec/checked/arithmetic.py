@@ -1,4 +1,4 @@
-"""The operations on numbers: one entry for each, which checker, engines and generators read.
+"""The operations on numbers: one entry for each, which checker and engines read.
 
 The oracle has readings of its own, of which this is to be found right.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, StrEnum, auto
 
@@ -31,9 +31,7 @@ class Operation:
         unit: of the result.
         apply: yields the result, of exact fractions too; an error of arithmetic is unknown.
         numpy: the name of its ufunc, if that has the digits of `apply`.
-        c: the text of a call, its arguments by number, with the functions of the C templates.
-        largest: the greatest magnitude of a result by those of whole arguments; `None`: the result
-            of whole numbers is none.
+        whole: whether the result of whole numbers is one.
         doc: its value in a few words.
     """
 
@@ -42,8 +40,7 @@ class Operation:
     unit: UnitRule
     apply: Callable[..., float]
     numpy: str | None
-    c: str
-    largest: Callable[[Sequence[int]], int] | None
+    whole: bool
     doc: str
 
     @property
@@ -54,7 +51,7 @@ class Operation:
 
     @property
     def of_mathematics(self) -> bool:
-        """Whether the libraries of Python and C have it in their `math`."""
+        """Whether Python has it in `math`."""
         return self.apply.__module__ == "math"
 
 
@@ -81,51 +78,51 @@ class NumericOp(StrEnum):
 
     ADD = (
         "+",
-        Operation(2, 2, UnitRule.SAME, operator.add, "add", "{0} + {1}", sum, "the sum"),
+        Operation(2, 2, UnitRule.SAME, operator.add, "add", True, "the sum"),
     )
     SUB = (
         "-",
-        Operation(2, 2, UnitRule.SAME, operator.sub, "subtract", "{0} - {1}", sum, "a difference"),
+        Operation(2, 2, UnitRule.SAME, operator.sub, "subtract", True, "a difference"),
     )
     MUL = (
         "*",
         Operation(
-            *(2, 2, UnitRule.PRODUCT, operator.mul, "multiply", "{0} * {1}", math.prod),
+            *(2, 2, UnitRule.PRODUCT, operator.mul, "multiply", True),
             "the product",
         ),
     )
     DIV = (
         "/",
         Operation(
-            *(2, 2, UnitRule.QUOTIENT, operator.truediv, "divide", "{0} / {1}", None),
+            *(2, 2, UnitRule.QUOTIENT, operator.truediv, "divide", False),
             "the quotient",
         ),
     )
     NEG = (
         "neg",
-        Operation(1, 1, UnitRule.SAME, operator.neg, "negative", "-{0}", sum, "the opposite"),
+        Operation(1, 1, UnitRule.SAME, operator.neg, "negative", True, "the opposite"),
     )
     ABS = (
         "abs",
-        Operation(1, 1, UnitRule.SAME, abs, "abs", "magnitude({0})", sum, "the magnitude"),
+        Operation(1, 1, UnitRule.SAME, abs, "abs", True, "the magnitude"),
     )
     MIN = (
         "min",
-        Operation(2, None, UnitRule.SAME, min, "minimum", "lesser({0}, {1})", max, "the least"),
+        Operation(2, None, UnitRule.SAME, min, "minimum", True, "the least"),
     )
     MAX = (
         "max",
-        Operation(2, None, UnitRule.SAME, max, "maximum", "greater({0}, {1})", max, "the greatest"),
+        Operation(2, None, UnitRule.SAME, max, "maximum", True, "the greatest"),
     )
     SQRT = (
         "sqrt",
-        Operation(1, 1, UnitRule.ROOT, math.sqrt, "sqrt", "sqrt({0})", None, "the square root"),
+        Operation(1, 1, UnitRule.ROOT, math.sqrt, "sqrt", False, "the square root"),
     )
     # NumPy's differs from Python's in the last digit.
     HYPOT = (
         "hypot",
         Operation(
-            *(2, 2, UnitRule.SAME, math.hypot, None, "length({0}, {1})", None),
+            *(2, 2, UnitRule.SAME, math.hypot, None, False),
             "the length of a vector of two sides",
         ),
     )

@@ -89,29 +89,27 @@ class CompareOp(StrEnum):
 
     Attributes:
         python: the name of the function in `operator`.
-        c: the name of the function in generated C.
         said: it as an English verb.
 
     >>> CompareOp.LE.holds(2, 3), CompareOp.LE.mirrored, CompareOp.LE.denied
     (True, <CompareOp.GE: '>='>, <CompareOp.GT: '>'>)
     """
 
-    LT = "<", "lt", "less", "is below"
-    LE = "<=", "le", "at_most", "is at most"
-    EQ = "==", "eq", "equals", "is"
-    NE = "!=", "ne", "differs", "is not"
-    GE = ">=", "ge", "at_least", "is at least"
-    GT = ">", "gt", "more", "is above"
+    LT = "<", "lt", "is below"
+    LE = "<=", "le", "is at most"
+    EQ = "==", "eq", "is"
+    NE = "!=", "ne", "is not"
+    GE = ">=", "ge", "is at least"
+    GT = ">", "gt", "is above"
 
     python: str
-    c: str
     said: str
 
-    def __new__(cls, sign: str, python: str = "", c: str = "", said: str = "") -> CompareOp:
+    def __new__(cls, sign: str, python: str = "", said: str = "") -> CompareOp:
         """A member: its sign, with how others write it."""
         made = str.__new__(cls, sign)
         made._value_ = sign
-        made.python, made.c, made.said = python, c, said
+        made.python, made.said = python, said
         return made
 
     @property

@@ -77,10 +77,7 @@ def test_auto_judges_by_the_engine_that_is_named(form):
     assert spec.judge(source_of(samples)).engine == choice.recording
 
 
-@pytest.mark.parametrize(
-    "engine",
-    [pytest.param(one, marks=pytest.mark.compiler) if one == "c" else one for one in ENGINES],
-)
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("form", FORMS | OTHERS)
 def test_a_refusal_has_a_reason_a_fix_and_an_engine_that_takes_it(form, engine):
     """Asked for by name, an engine judges what it does not refuse, and else says all three."""
@@ -110,7 +107,7 @@ def test_all_engines_say_what_the_law_says(form):
         samples = samples_of(seed)
         expected = evaluate(spec.checked, samples)
         for engine in ENGINES:
-            if engine == "c" or engine_named(engine).refuses(one) is not None:
+            if engine_named(engine).refuses(one) is not None:
                 continue
             assert not differences(expected, spec.judge(source_of(samples), engine=engine))
             if engine != "columns":

@@ -208,7 +208,7 @@ def test_what_cannot_be_called_is_refused(spec):
         spec.monitor().on_failure(3)
 
 
-def test_compiled_monitors_tell_the_same(spec, extensions):
+def test_monitors_of_the_core_tell_the_same(spec):
     """Callbacks and verdicts so far of the engine `c` are those of the others."""
     for settle in ("now", "next"):
         compiled = spec.monitor(engine="c", settle=settle)
