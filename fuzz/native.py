@@ -114,7 +114,9 @@ def fuzz(target: str, folder: Path, seconds: int) -> Found:
         begun_with(folder, target)
     environment = {
         **os.environ,
-        **dict.fromkeys(("AFL_NO_UI", "AFL_SKIP_CPUFREQ", "AFL_NO_AFFINITY", "AFL_AUTORESUME"), "1"),
+        **dict.fromkeys(
+            ("AFL_NO_UI", "AFL_SKIP_CPUFREQ", "AFL_NO_AFFINITY", "AFL_AUTORESUME"), "1"
+        ),
         "AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES": "1",
         "RVMON_PLANS": str(folder / "held"),
         "ASAN_OPTIONS": "abort_on_error=1:symbolize=0:detect_leaks=0",

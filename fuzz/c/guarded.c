@@ -51,6 +51,7 @@ void *arena_take(arena *a, size_t size)
         return NULL;
     }
     in_use += size;
+    a->used += size;
     h->size = size;
     h->next = next;
     if (next != NULL) {

@@ -365,12 +365,21 @@ static void foresee(judging *g, int64_t until)
     set_due(g, (decided < NEVER) ? decided : until + 1);
 }
 
+/* Whether there is a network; if memory was short there is none, and nothing is due. */
+static bool has_network(judging *g)
+{
+    if (g->net == NULL) {
+        set_due(g, NEVER);
+    }
+    return g->net != NULL;
+}
+
 /* Have a judge due at the next instant at which an attempt is decided if the letter stays, or behind
  * `until`. */
 void network_foresee(run *r, int32_t index, int64_t until)
 {
     judging g = judging_of(r, index);
-    if ((g.j->first >= 0) && (due_of(&g) <= until)) {
+    if ((g.j->first >= 0) && (due_of(&g) <= until) && has_network(&g)) {
         foresee(&g, until);
     }
 }
@@ -411,7 +420,9 @@ static void pass(judging *g, int64_t now, int64_t last)
 void network_pass(run *r, int32_t index, int64_t now, bool is_position)
 {
     judging g = judging_of(r, index);
-    pass(&g, now, last_at(&g, is_position ? now : now - 1));
+    if (has_network(&g)) {
+        pass(&g, now, last_at(&g, is_position ? now : now - 1));
+    }
 }
 
 /* Leave what is decided by `until` to the visit that follows: it finds when that was. It does not where
@@ -432,7 +443,7 @@ void network_put_off(run *r, int32_t index, int64_t until)
 void network_approach(run *r, int32_t index, int64_t until)
 {
     judging g = judging_of(r, index);
-    if ((g.j->first >= 0) && (due_of(&g) <= until)) {
+    if ((g.j->first >= 0) && (due_of(&g) <= until) && has_network(&g)) {
         const int64_t decided = go(&g, until, last_at(&g, until));
         if (decided < NEVER) {
             unlearn_all(&g);
