@@ -4,7 +4,7 @@
 
 Bytes of a plan get a hash that fits, so that what is fuzzed is what is behind it. A plan that is
 accepted judges some samples; each run is repeated after a reset and has to say the same, then with
-memory that ends somewhere, and must not be green. Prints what AFL++ counted, and the inputs at which
+memory that ends somewhere, and must not be green. Prints what AFL++ counted and the inputs at which
 the core crashed, hung, or was found out by AddressSanitizer or UBSan; exits 1 if there are any.
 Needs the Debian packages afl++ and libclang-rt-14-dev.
 """
