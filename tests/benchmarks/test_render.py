@@ -50,7 +50,7 @@ def test_compiled_monitors_have_to_agree_with_ours_too() -> None:
     [label] = COMPILED
     compiled = replace(RESULT, figures=(replace(OURS, label=label), REELAY))
     own = replace(ALIKE, label=label)
-    start = f"| online, one step, generated C | {label} |"
+    start = f"| online, one step, the core | {label} |"
     for agreements in ((ALIKE,), (ALIKE, replace(own, equal=299))):
         page = render(replace(FINDINGS, results=(compiled,), agreements=agreements))
         assert "not measured" in line(page, start)
