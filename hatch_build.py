@@ -1,8 +1,9 @@
 """Compiles the native core when the package is built, and in place: `python hatch_build.py`.
 
-Every `src/rvmon/core/*.c` is compiled and linked to one extension, `rvmon.core._core`. The compiler
-is `$CC`, Python's own, `cc`, `gcc` or `clang`; where none works, the build asks for the package
-`ziglang`, which brings one. Where Python's headers are missing, the C takes its own declarations
+The binding, `src/rvmon/core/module.c`, and all other `src/rvmon/core/*.c` as one unit, which makes
+them faster, are compiled and linked to one extension, `rvmon.core._core`. The compiler is `$CC`,
+Python's own, `cc`, `gcc` or `clang`; where none works, the build asks for the package `ziglang`,
+which brings one. Where Python's headers are missing, the C takes its own declarations
 (`python_abi.h`). `$CFLAGS` and `$LDFLAGS` are added.
 """
 
@@ -120,11 +121,12 @@ def build(folder: Path) -> Path:
     flags = [*shlex.split(os.environ.get("CFLAGS", "")), *FLAGS, *_flags_of_python(), *_machine()]
     target = folder / file_name()
     with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made, _threads() as threads:
-        sources = sorted(path.name for path in CORE.glob("*.c"))
-        objects = [str(Path(made, source).with_suffix(".o")) for source in sources]
+        unit = Path(made, "unit.c")
+        unit.write_text(_unit(), encoding="utf-8")
+        objects = [str(Path(made, name)) for name in ("module.o", "unit.o")]
         lines = [
-            [*command, *flags, "-c", source, "-o", object_]
-            for source, object_ in zip(sources, objects, strict=True)
+            [*command, *flags, "-I.", "-c", source, "-o", object_]
+            for source, object_ in zip(("module.c", str(unit)), objects, strict=True)
         ]
         list(threads.map(_run, lines))
         linked = Path(made, target.name)
@@ -151,6 +153,11 @@ def _flags_of_python() -> list[str]:
 def _source_hash() -> str:
     """As the package computes it at import; the package itself needs what is not installed yet."""
     return str(runpy.run_path(str(CORE / "sources.py"))["source_hash"]())
+
+
+def _unit() -> str:
+    """The sources of the core as one, of which messages name the files."""
+    return str(runpy.run_path(str(CORE / "amalgamate.py"))["core_source"]("core.h", lines=True))
 
 
 def _machine() -> list[str]:

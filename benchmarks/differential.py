@@ -2,8 +2,10 @@ r"""Engines against the oracle on random specs and traces: verdicts and decision
 
     python -m benchmarks.differential --pairs 100000 --traces 8 --seed 1 --workers 2 \
         --engine automaton network progression python --interrupt
+    python -m benchmarks.differential --pairs 100000 --from 100000 --traces 4 --engine c "c rows"
 
-Prints how the attempts were decided and every disagreement, shrunk; exits 1 if there is one.
+Prints what the pairs were, how the attempts were decided and every disagreement, shrunk; exits 1 if
+there is one. Ranges of seeds of one `--seed` hold different pairs: runs add up.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from tests.tools.differential import Campaign, Mix, campaign_of
 from tests.tools.features import Feature, possible
 from tests.tools.forms import EXPLAINING as ENGINES
 from tests.tools.forms import FORMS, Compiler
+from tests.tools.kinds import KINDS
 from tests.tools.ways import INTERRUPT, NEXT, Maker
 
 from rvmon.errors import RvmonError
@@ -28,6 +31,7 @@ from rvmon.execute.parallel import execute
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
+from rvmon.verdict.attempt import Decision
 
 MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeModel.CLOCKED}
 _ENGINES = f"""some of {", ".join(FORMS)}; those of `Spec.monitor` may be followed by
@@ -61,6 +65,9 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--traces", type=int, default=1, help="of the pairs with one spec")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
+        "--from", type=int, default=0, dest="first", metavar="N", help="pass over so many pairs"
+    )
+    parser.add_argument(
         "--windows", type=int, default=0, help="per cent of the specs that are windows in windows"
     )
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
@@ -72,6 +79,15 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--long", type=int, default=8, metavar="PERCENT", help="traces three times as long"
+    )
+    parser.add_argument(
+        "--crowded", type=int, default=0, metavar="PERCENT", help="specs with 20 to 26 requirements"
+    )
+    parser.add_argument(
+        "--wide", type=int, default=0, metavar="PERCENT", help="specs of whole numbers of 64 bits"
+    )
+    parser.add_argument(
+        "--sparse", type=int, default=0, metavar="PERCENT", help="traces of some dozens of samples"
     )
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
@@ -96,7 +112,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
 def profile_of(options: argparse.Namespace) -> Profile:
     """What the specs may hold."""
     without: dict[str, Any] = dict.fromkeys(options.without, False)
-    whole = Profile(time=MODELS.get(options.time or ""), depth=options.depth, many=options.many)
+    whole = Profile(
+        time=MODELS.get(options.time or ""),
+        depth=options.depth,
+        many=options.many,
+        crowded=options.crowded,
+        wide=options.wide,
+    )
     return replace(whole, **without)
 
 
@@ -104,8 +126,11 @@ def main(argv: list[str]) -> int:
     """Run the campaign and print its figures."""
     options = parse(argv)
     profile = profile_of(options)
-    traces = TraceProfile(unknowns=not options.known, long=options.long)
-    seeds = [f"{options.seed}/{number}" for number in range(options.pairs // options.traces)]
+    traces = TraceProfile(unknowns=not options.known, long=options.long, sparse=options.sparse)
+    numbers = range(
+        options.first // options.traces, (options.first + options.pairs) // options.traces
+    )
+    seeds = [f"{options.seed}/{number}" for number in numbers]
     size = 5 if options.fail_fast else 250
     parts = [seeds[start : start + size] for start in range(0, len(seeds), size)]
     begin = partial(judging, options, profile, traces)
@@ -125,12 +150,17 @@ def show(total: Campaign, options: argparse.Namespace, seconds: float) -> None:
     attempts = sum(mix.attempts.values())
     share = {name: f"{100 * n / max(attempts, 1):.1f} %" for name, n in mix.attempts.items()}
     decided = sum(n for name, n in mix.attempts.items() if name != "I")
-    print(f"time {options.time or 'all'}, seed {options.seed}")
+    print(f"time {options.time or 'all'}, seed {options.seed}, from {options.first} on")
     print(f"pairs {mix.pairs}, attempts {attempts}, in {seconds:.0f} s")
     print("verdicts  ", ", ".join(f"{name} {share[name]}" for name in sorted(share)))
     print("settled by", ", ".join(f"{name} {n}" for name, n in mix.decisions.most_common()))
     on_bound = 100 * mix.on_bound / max(decided, 1)
     print(f"on a bound {mix.on_bound} of {decided} decided ({on_bound:.1f} %)")
+    by_prefix = mix.decisions[Decision.PREFIX.value]
+    late = 100 * mix.late / max(by_prefix, 1)
+    print(f"after the third sample {mix.late} of {by_prefix} decided by a prefix ({late:.1f} %)")
+    of_kinds = (f"{kind} {100 * mix.kinds[kind] / max(mix.pairs, 1):.1f} %" for kind in KINDS)
+    print("pairs with", ", ".join(of_kinds))
     if options.features:
         print("\n".join(feature_table(mix.features)))
     width = max(map(len, total.tallies))

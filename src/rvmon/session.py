@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
-    from rvmon.plan.plan import Plan
     from rvmon.readers.reading import Reading, ReadingArguments, SchemaArguments
     from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
@@ -110,20 +109,6 @@ class Spec:
         from rvmon.monitor.engines.choice import choices
 
         return choices(self._compiled.chosen(requirements_asked(self.checked, only)))
-
-    def plan(self, *, only: Iterable[str] | None = None) -> Plan:
-        """What `rvmon.codegen` makes C of that runs without rvmon.
-
-        Args:
-            only: ids of the requirements; default all.
-
-        Raises:
-            UnknownNameError: there is no such requirement.
-            RvmonError: one of them is beyond generated code; which one and why is in the message.
-        """
-        from rvmon.monitor.compiled.code_plan import plan_alone
-
-        return plan_alone(self._compiled, only)
 
     def monitor(
         self,

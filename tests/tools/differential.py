@@ -23,7 +23,8 @@ from tests.tools.frame import frame_differences
 from tests.tools.health import health_differences
 from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
-from tests.tools.online import differences_after_end, is_online, online_differences
+from tests.tools.kinds import kinds_of
+from tests.tools.online import differences_after_end, explains, is_online, online_differences
 from tests.tools.shrink import shrink
 
 MakeMonitor = Callable[[Case], Monitored | None]
@@ -39,6 +40,8 @@ class Mix:
         attempts: by verdict.
         decisions: by what settled them.
         on_bound: attempts that the prefix decided at a window's last instant, or a tick later.
+        late: attempts that the prefix decided after the third sample.
+        kinds: of the pairs, each of which may be of several (see `tests.tools.kinds`).
         features: of the specifications: operators with what they met.
     """
 
@@ -46,6 +49,8 @@ class Mix:
     attempts: Counter[str] = field(default_factory=Counter)
     decisions: Counter[str] = field(default_factory=Counter)
     on_bound: int = 0
+    late: int = 0
+    kinds: Counter[str] = field(default_factory=Counter)
     features: Counter[Feature] = field(default_factory=Counter)
 
     def add(self, other: Mix) -> None:
@@ -54,6 +59,8 @@ class Mix:
         self.attempts += other.attempts
         self.decisions += other.decisions
         self.on_bound += other.on_bound
+        self.late += other.late
+        self.kinds += other.kinds
         self.features += other.features
 
     def count(self, judgement: Judgement) -> None:
@@ -61,9 +68,14 @@ class Mix:
         spec = judgement.case.spec
         self.pairs += 1
         self.features.update(features(spec))
+        self.kinds.update(kinds_of(judgement.case, judgement.report))
+        third = (
+            max(sample.t for sample in judgement.case.samples[:3]) if judgement.case.samples else 0
+        )
         for attempt in judgement.report.attempts:
             self.attempts[attempt.verdict.value] += 1
             self.decisions[attempt.decision.value] += 1
+            self.late += attempt.decision is Decision.PREFIX and (attempt.decided or 0) > third
             self.on_bound += decided_on_bound(spec, attempt)
 
 
@@ -158,11 +170,12 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
         actual, _ = drive(monitor, case)
         found = differences(expected, actual)
         if is_online(monitor):
-            provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += frame_differences(expected, actual)
+            found += differences_after_end(case, monitor, actual)
+        if is_online(monitor) and explains(monitor):
+            provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)
             found += judgement.seen.differences(actual) if not found else ()
-            found += differences_after_end(case, monitor, actual)
         again = make(case) if online and not found else None
         if again is not None:
             found = online_differences(judgement, again)

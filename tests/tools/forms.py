@@ -7,6 +7,7 @@ from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
 from rvmon.monitor.engines.registry import engine_named
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
+from tests.tools.core_forms import ByRows, Stepped
 from tests.tools.drive import Monitored, OnlineMonitor
 
 EXPLAINING = ("auto", "python", "automaton", "progression", "network")
@@ -15,8 +16,8 @@ EXPLAINING = ("auto", "python", "automaton", "progression", "network")
 HANDING_ON = ("auto", "python")
 """The engines that have others judge beside them what they refuse; the rest refuse it."""
 
-FORMS = (*EXPLAINING, "c")
-"""The engines of `Spec.monitor`."""
+FORMS = (*EXPLAINING, "c", "c rows")
+"""The engines of `Spec.monitor` that give reasons; the core, stepped, and fed rows."""
 
 
 class Compiler:
@@ -66,8 +67,13 @@ class Maker:
             self._made, self._spec = self._compiled(case.spec), case.spec
         if self._made is None:
             return None
-        monitor = self.online(self._made, case)
-        return monitor if self.form in EXPLAINING else Terse(monitor)
+        match self.form:
+            case "c":
+                return Stepped(self._made, case)
+            case "c rows":
+                return ByRows(self._made, case)
+            case _:
+                return self.online(self._made, case)
 
     def online(self, compiled: CompiledSpec, case: Case) -> OnlineMonitor:
         """A monitor of this process, for an engine of `Spec.monitor`."""
@@ -77,14 +83,7 @@ class Maker:
         compiled = self._compile(spec)
         if self.form in HANDING_ON:
             return compiled
-        refuses = engine_named(self.form).refuses
-        return None if any(map(refuses, compiled.requirements.values())) else compiled
-
-
-class Terse:
-    """A monitor of which only verdicts are asked: the core gives no reasons."""
-
-    def __init__(self, monitor: Monitored) -> None:
-        self.step_ns = monitor.step_ns
-        self.advance_ns = monitor.advance_ns
-        self.finish_ns = monitor.finish_ns
+        engine = engine_named(self.form if self.form in EXPLAINING else "c")
+        if any(engine.refuses(one) for one in compiled.requirements.values()):
+            return None
+        return compiled

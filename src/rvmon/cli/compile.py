@@ -25,9 +25,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "compile",
         help="a specification as C that runs alone, or as automata",
-        description="Write a monitor that needs nothing of rvmon: C99 (a header, a source, a "
-        "header for C++) that allocates nothing. Or the automata: dot for Graphviz, json, hoa "
-        "(the least LTL3 monitors of requirements without windows of time). Or costs: a line per "
+        description="Write a monitor that needs nothing of rvmon: C99 (the core that judges, the "
+        "plan that it judges by, a header for C++) that runs in one block of memory. Or the "
+        "automata: dot for Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time). Or costs: a line per "
         "requirement with its monitor and what open attempts cost.",
         epilog="examples: rvmon compile examples/base.rv --to c -o monitor/; rvmon compile "
         "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg",
@@ -52,14 +52,16 @@ def run(arguments: argparse.Namespace) -> int:
             raise RvmonError(f"error: {arguments.spec} has no requirement: it has no automaton")
         _write_or_print(_automata(spec, ids, arguments.to), arguments.output)
         return 0
-    from rvmon.codegen.c_source import c_files
-
     if arguments.output is None:
         raise RvmonError("C is several files: name a folder with -o DIR")
     folder = Path(arguments.output)
     if folder.exists() and not folder.is_dir():
         raise RvmonError(f"cannot write to {folder}: C is several files: name a folder with -o DIR")
-    texts = c_files(spec.plan(only=ids)).texts
+    from rvmon.export.c_files import c_files
+    from rvmon.monitor import compile_spec
+    from rvmon.monitor.compiled.code_plan import plan_alone
+
+    texts = c_files(plan_alone(compile_spec(spec.checked), ids))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():

@@ -5,6 +5,13 @@ from rvmon.verdict.attempt import Attempt
 
 source_hash: str
 
+def memory_of(plan: bytes, attempts: int, /) -> int:
+    """The bytes of a block, aligned to 16, in which a run begins with room for open attempts.
+
+    Raises:
+        ValueError: the plan is damaged, or the bytes are not aligned to 8.
+    """
+
 class Monitor:
     """A run of a packed plan; what a call does that is not explained here, `core.h` says.
 

@@ -13,21 +13,21 @@ bool is_current(const run *r, int32_t index, int32_t at)
     return r->judges[index].current == at;
 }
 
-/* Make room for more open attempts; false if there is none. */
-static bool grow_pool(home *h)
+/* Make room for so many open attempts; false if there is none. */
+bool grow_pool(home *h, int64_t wanted)
 {
     rv_monitor *m = h->monitor;
     int32_t capacity = h->capacity;
     int32_t same = h->capacity;
     char *pool;
     if (h->part->plan->captured > 0) {
-        turn *turns = grown(m, h->turns, &same, (int64_t)h->capacity + 1, sizeof *turns);
+        turn *turns = grown(m, h->turns, &same, wanted, sizeof *turns);
         if (turns == NULL) {
             return false;
         }
         h->turns = turns;
     }
-    pool = grown(m, h->pool, &capacity, (int64_t)h->capacity + 1, h->stride);
+    pool = grown(m, h->pool, &capacity, wanted, h->stride);
     if (pool == NULL) {
         return false;
     }
@@ -42,7 +42,7 @@ int32_t place_taken(run *r)
     int32_t at = h->free_slot;
     if (at >= 0) {
         h->free_slot = attempt_at(h, at)->next;
-    } else if ((h->used < h->capacity) || grow_pool(h)) {
+    } else if ((h->used < h->capacity) || grow_pool(h, (int64_t)h->capacity + 1)) {
         at = h->used;
         h->used++;
     } else {
@@ -166,8 +166,8 @@ void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
     }
 }
 
-/* Take an attempt out of those of a judge; `before` is the one before it, -1 if there is none. */
-void leave(run *r, int32_t index, int32_t before, int32_t at)
+/* Unlink an attempt from those of a judge; `before` is the one before it, -1 if there is none. */
+static void unlink(run *r, int32_t index, int32_t before, int32_t at)
 {
     judge *j = &r->judges[index];
     const int32_t next = attempt_at(r->home, at)->next;
@@ -179,14 +179,52 @@ void leave(run *r, int32_t index, int32_t before, int32_t at)
     if (next < 0) {
         j->last = before;
     }
+}
+
+/* Take an attempt that is decided out of those of a judge. */
+void leave(run *r, int32_t index, int32_t before, int32_t at)
+{
+    unlink(r, index, before, at);
     if (r->part->plan->captured == 0) {
         give_back(r->home, at);
     }
 }
 
+/* Whether nothing more can be said of an attempt: it fails for the worse, and passes for the better. */
+bool is_moot(const attempt *x)
+{
+    return x->parted && (x->location == FAILED) && (x->better == PASSED);
+}
+
+/* Put an attempt that stays open for good where nobody comes by until the end. */
+void lay_aside(run *r, int32_t index, int32_t before, int32_t at)
+{
+    judge *j = &r->judges[index];
+    unlink(r, index, before, at);
+    attempt_at(r->home, at)->next = j->moot;
+    j->moot = at;
+}
+
+/* The open attempt of a judge behind another, those for good last; -1 before the first, and behind
+ * all. */
+int32_t next_open(const run *r, int32_t index, int32_t at)
+{
+    const judge *j = &r->judges[index];
+    if (at < 0) {
+        return (j->first >= 0) ? j->first : j->moot;
+    }
+    if (at == j->last) {
+        return j->moot;
+    }
+    return attempt_at(r->home, at)->next;
+}
+
 /* Whether the rule for the end of a trace makes an attempt true. */
 static bool is_kept(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
 {
+    if (is_chained(r, index)) {
+        return chain_outlasts(r, index, x, end, reached);
+    }
     if (is_networked(r, index)) {
         return network_outlasts(r, index, x);
     }

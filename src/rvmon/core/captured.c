@@ -14,7 +14,7 @@ bool starts_here(const run *r, int32_t index)
 
 bool is_idle(const run *r)
 {
-    return (r->judges[r->judged].first < 0) && !r->judges[r->judged].running;
+    return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running;
 }
 
 static int64_t turn_of(const home *h, int32_t at, bool sure)
@@ -174,7 +174,7 @@ static void keep_watch(run *r, int64_t t)
         /* They do. */
     }
     if (r->cut < NEVER) {
-        for (at = r->judges[r->judged].first; at >= 0; at = attempt_at(r->home, at)->next) {
+        for (at = next_open(r, r->judged, -1); at >= 0; at = next_open(r, r->judged, at)) {
             attempt *x = attempt_at(r->home, at);
             x->hollow = true;
             x->clouded = (trigger != IS_FALSE) && (x->clouded || (trigger == IS_UNKNOWN));

@@ -287,8 +287,8 @@ void reach(run *r, int64_t t)
  * `comes` behind it, what networks find can wait for that. */
 void through(run *r, int64_t limit, bool comes)
 {
-    const list networked = r->part->plan->networked;
-    const int32_t *index = LIST(PLAN(r), networked);
+    const int32_t *index = r->part->networked;
+    const int32_t networked = r->part->networked_count;
     const int64_t gap = GAP(r);
     const bool restarts = r->part->restarts && (gap > 0);
     int64_t position;
@@ -298,10 +298,10 @@ void through(run *r, int64_t limit, bool comes)
         int64_t stop;
         position = next_position(r);
         until = least(position - 1, limit);
-        for (i = 0; (gap <= 1) && (comes || (position <= limit)) && (i < networked.count); i++) {
+        for (i = 0; (gap <= 1) && (comes || (position <= limit)) && (i < networked); i++) {
             network_put_off(r, index[i], until);
         }
-        for (i = 0; restarts && (i < networked.count); i++) {
+        for (i = 0; restarts && (i < networked); i++) {
             network_approach(r, index[i], until);
         }
         /* What fails may be followed by another attempt at once. */
@@ -365,10 +365,10 @@ void settle_all(run *r, int64_t end, int64_t reached)
     int32_t i;
     int32_t at;
     for (i = 0; i < r->part->plan->judges.count; i++) {
-        if (is_networked(r, i)) {
+        if (is_networked(r, i) && !is_chained(r, i)) {
             network_close(r, i, end);
         }
-        for (at = r->judges[i].first; at >= 0; at = attempt_at(r->home, at)->next) {
+        for (at = next_open(r, i, -1); at >= 0; at = next_open(r, i, at)) {
             settle_attempt(r, i, at, end, reached);
         }
     }
@@ -377,11 +377,9 @@ void settle_all(run *r, int64_t end, int64_t reached)
 /* The next instant at which something is decided if nothing comes. */
 int64_t next_decision(run *r)
 {
-    const list networked = r->part->plan->networked;
-    const int32_t *index = LIST(PLAN(r), networked);
     int32_t i;
-    for (i = 0; i < networked.count; i++) {
-        network_foresee(r, index[i], LIMIT - 1);
+    for (i = 0; i < r->part->networked_count; i++) {
+        network_foresee(r, r->part->networked[i], LIMIT - 1);
     }
     return least(next_position(r), timers_next(&r->rules));
 }

@@ -12,7 +12,8 @@ static bool prepare_part(rv_monitor *m, part *p)
     p->timed = arena_take(&m->memory, (size_t)(p->plan->timers + 1) * sizeof *p->timed);
     p->perishable = arena_take(&m->memory, (size_t)(p->plan->perishable + 1) * sizeof *p->perishable);
     p->machines = arena_take(&m->memory, (size_t)p->plan->judges.count * sizeof *p->machines);
-    if ((p->timed == NULL) || (p->perishable == NULL) || (p->machines == NULL)) {
+    p->networked = arena_take(&m->memory, (size_t)p->plan->judges.count * sizeof *p->networked);
+    if ((p->networked == NULL) || (p->timed == NULL) || (p->perishable == NULL) || (p->machines == NULL)) {
         return false;
     }
     for (i = 0; i < p->plan->nodes.count; i++) {
@@ -28,6 +29,10 @@ static bool prepare_part(rv_monitor *m, part *p)
     for (i = 0; i < p->plan->judges.count; i++) {
         p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
         p->restarts = p->restarts || (p->judges[i].again >= 0);
+        if ((p->judges[i].automaton < 0) && (p->forms[p->judges[i].form].windows.count == 0)) {
+            p->networked[p->networked_count] = i;
+            p->networked_count++;
+        }
         if (p->judges[i].automaton >= 0) {
             p->machines[i] = machine_view(&m->plan, &m->plan.automata[p->judges[i].automaton]);
         }
@@ -130,6 +135,21 @@ void rv_free(rv_monitor *m)
         arena a = m->memory; /* the monitor itself is in it */
         arena_release(&a);
     }
+}
+
+int rv_reserve(rv_monitor *m, int32_t attempts)
+{
+    bool done = (attempts <= 0) || grow_records(m, attempts);
+    int32_t i;
+    for (i = 0; (attempts > 0) && done && (i < m->plan.part_count); i++) {
+        done = (m->homes[i].part->plan->judges.count == 0) || home_reserve(&m->homes[i], attempts);
+    }
+    return done ? RV_OK : RV_NO_MEMORY;
+}
+
+size_t rv_memory_used(const rv_monitor *m)
+{
+    return m->memory.used;
 }
 
 int rv_reset(rv_monitor *m)
@@ -384,7 +404,7 @@ void rv_each_open(const rv_monitor *m, rv_take take, void *user)
             int32_t k;
             for (k = 0; k < r->part->plan->judges.count; k++) {
                 int32_t at;
-                for (at = r->judges[k].first; at >= 0; at = attempt_at(h, at)->next) {
+                for (at = next_open(r, k, -1); at >= 0; at = next_open(r, k, at)) {
                     const rv_record one = open_record(r, k, at);
                     if (!take(user, &one, r->captured)) {
                         return;
@@ -412,7 +432,7 @@ static void count_home(const home *h, int32_t requirement, rv_counts *counts)
             if (h->part->judges[i].requirement != requirement) {
                 continue;
             }
-            counts->open = counts->open || (j->first >= 0);
+            counts->open = counts->open || (j->first >= 0) || (j->moot >= 0);
             if (h->part->plan->captured > 0) {
                 counts->heard = counts->heard
                                 || ((i == 0) && (r->parent == NULL) && occurred && was_heard(r, i));

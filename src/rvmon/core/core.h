@@ -91,6 +91,14 @@ int32_t rv_plan_check(const void *bytes, size_t size);
 rv_monitor *rv_new(const void *plan, size_t size, rv_memory memory);
 void rv_free(rv_monitor *m);
 
+/* Make room for so many open attempts of each part of the plan, at once and not bit by bit, and for as
+ * many records. Where memory is short the run is spoilt. */
+int rv_reserve(rv_monitor *m, int32_t attempts);
+
+/* Bytes that a block, aligned to 16, has to have for what was done so far; more if not all of it is
+ * done again. */
+size_t rv_memory_used(const rv_monitor *m);
+
 /* Begin another run; names declared absent are so still. */
 int rv_reset(rv_monitor *m);
 

@@ -129,13 +129,15 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
         attempt *x = attempt_at(r->home, at);
         const int32_t next = x->next;
         const bool waits = some && (x->due > t); /* and so do all behind it */
-        if (waits || drive(r, a, index, at, how, from, t, &x->due)) {
+        if (!waits && !drive(r, a, index, at, how, from, t, &x->due)) {
+            leave(r, index, before, at);
+        } else if (is_moot(x)) {
+            lay_aside(r, index, before, at);
+        } else {
             next_due = least(next_due, x->due);
             j->sorted = j->sorted && (latest <= x->due);
             latest = x->due;
             before = at;
-        } else {
-            leave(r, index, before, at);
         }
         if (waits) {
             break;
@@ -153,6 +155,8 @@ void pass_to(run *r, int32_t index, int64_t t)
     const int64_t step = step_of(r);
     if (j->first < 0) {
         set_rule_due(r, index, NEVER);
+    } else if (is_chained(r, index)) {
+        chain_pass(r, index, t, true);
     } else if (is_networked(r, index)) {
         network_pass(r, index, t, true);
     } else if (GAP(r) == 0) {
@@ -178,6 +182,10 @@ void visit_judge(run *r, int32_t index, int64_t t)
     int32_t letter;
     int32_t other;
     bool was;
+    if (is_chained(r, index)) {
+        chain_visit(r, index, t);
+        return;
+    }
     if (is_networked(r, index)) {
         network_come_to(r, index, t);
         return;
@@ -207,6 +215,9 @@ void visit_judge(run *r, int32_t index, int64_t t)
 static bool remains(run *r, int32_t index, int32_t at, int64_t t)
 {
     attempt *x = attempt_at(r->home, at);
+    if (is_chained(r, index)) {
+        return chain_enter(r, index, at, t);
+    }
     if (is_networked(r, index)) {
         return network_enter(r, index, at, t);
     }
@@ -281,6 +292,10 @@ void begin(run *r, int32_t index, int64_t t, int64_t triggered)
 void reach_judge(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
+    if (is_chained(r, index)) {
+        chain_pass(r, index, t, false);
+        return;
+    }
     if (is_networked(r, index)) {
         if (j->first >= 0) {
             network_pass(r, index, t, false);

@@ -7,6 +7,7 @@ from enum import IntEnum, auto
 from typing import assert_never
 
 from rvmon.core.sections import Section, Sections
+from rvmon.dataflow.chain import Chain
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
@@ -31,12 +32,15 @@ class Operator(IntEnum):
     SINCE = auto()
 
 
-def add_form(sections: Sections, plan: NetworkPlan, index: Mapping[State, int]) -> int:
+def add_form(
+    sections: Sections, plan: NetworkPlan, chain: Chain | None, index: Mapping[State, int]
+) -> int:
     """Add a formula; returns its place.
 
     Args:
         sections: of the plan.
         plan: of the formula.
+        chain: that it is; `None`: it is none.
         index: the places of propositions.
     """
     first = sections.count(Section.OPERATORS)
@@ -44,7 +48,11 @@ def add_form(sections: Sections, plan: NetworkPlan, index: Mapping[State, int]) 
     for node in plan.nodes:
         _add(sections, plan, node, leaves, index)
         leaves += isinstance(node, Leaf)
-    return sections.add(Section.FORMS, first, len(plan.nodes), leaves, plan.looks_back)
+    own: tuple[int, ...] = (*sections.listed(()), -1, -1, -1)
+    if chain is not None:
+        ends = (-1 if place is None else place for place in (chain.left, chain.excused))
+        own = (*sections.listed(chain.places), chain.base, *ends)
+    return sections.add(Section.FORMS, first, len(plan.nodes), leaves, plan.looks_back, *own)
 
 
 def _add(

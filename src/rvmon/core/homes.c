@@ -156,6 +156,27 @@ bool home_begin(home *h)
     return (p->each == 0) || begin_keys(h);
 }
 
+/* Make room for so many open attempts, each with a run if it has values of its own. */
+bool home_reserve(home *h, int32_t attempts)
+{
+    const run *one;
+    int32_t runs = 0;
+    if (!grow_pool(h, attempts)) {
+        return false;
+    }
+    for (one = h->spare; one != NULL; one = one->next) {
+        runs++;
+    }
+    for (; is_apart(h) && (runs < attempts); runs++) {
+        run *made = new_run(h);
+        if (made == NULL) {
+            return false;
+        }
+        set_aside(h, made);
+    }
+    return true;
+}
+
 void home_lack(home *h, bool event, int32_t local)
 {
     lack(h->root, event, local);

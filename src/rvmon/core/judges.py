@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cache
 
-from rvmon.automaton.letter_classes import LetterDiagram
+from rvmon.automaton.automaton import Automaton
 from rvmon.core.automata import Automata
 from rvmon.core.forms import add_form
 from rvmon.core.sections import Section, Sections
+from rvmon.dataflow.chain import Chain, chain_of
 from rvmon.dataflow.network_plan import plan_of
+from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.state import State
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.specification import EndPolicy, Mode
@@ -39,7 +41,7 @@ class Judges:
         numbers: of the requirements of its rules, among all.
 
     Attributes:
-        networked: the numbers of those without an automaton.
+        networked: the numbers of those that a network judges, be it a chain of windows.
         forms: how many formulas they have.
         clocks: the most that an automaton of them has, or 1: a position of a network.
         undetermined: how many tell whether their trigger was ever true or false.
@@ -57,15 +59,17 @@ class Judges:
         self.undetermined = sum(rule.determined is not None for _, rule in plan.judges)
         for number, (owner, rule) in enumerate(plan.judges):
             place = form = diagram = -1
-            if rule.automaton is None:
-                form = len(self.networked)
-                self.networked.append(number)
-                add_form(sections, plan_of(rule.owed, plan.gap), self._index)
-            else:
-                place = automata.place(rule.automaton)
-                diagram = automata.diagram(rule.automaton.class_of, rule.alphabet)
-                self.clocks = max(self.clocks, rule.automaton.clocks, 1)
-            self._hear(number, rule)
+            match _machine_of(rule, plan.gap):
+                case Automaton() as automaton:
+                    place = automata.place(automaton)
+                    diagram = automata.diagram(automaton.class_of, rule.alphabet)
+                    self.clocks = max(self.clocks, automaton.clocks)
+                case network, chain:
+                    form = len(self.networked)
+                    self.networked.append(number)
+                    add_form(sections, network, chain, self._index)
+            tabled = place >= 0 and diagram < 0
+            self._hear(number, rule, tabled=tabled)
             self._add(number, rule, owner, numbers[owner], (place, form, diagram))
 
     def links(self, place: int) -> Iterator[tuple[int, ...]]:
@@ -73,11 +77,8 @@ class Judges:
         for judge, (kind, (worse, better)) in self._links.get(place, {}).items():
             yield (judge, kind, *worse, *better)
 
-    def _hear(self, number: int, rule: PlannedRule) -> None:
+    def _hear(self, number: int, rule: PlannedRule, *, tabled: bool) -> None:
         alphabet = rule.alphabet
-        tabled = rule.automaton is not None and not isinstance(
-            rule.automaton.class_of, LetterDiagram
-        )
         for place, state in enumerate(alphabet.propositions):
             weights = _NOTHING
             if tabled:
@@ -123,6 +124,24 @@ class Judges:
             *self._sections.listed(propositions),
             *outcomes(rule.requirement.at_end),
         )
+
+
+def _machine_of(
+    rule: PlannedRule, gap: int | None
+) -> Automaton | tuple[NetworkPlan, Chain | None]:
+    """What judges a rule: an automaton, or a network, which may be a chain of windows.
+
+    An automaton of windows within windows steps each open attempt by itself; a chain is one step
+    for all of them.
+    """
+    automaton = rule.automaton
+    if automaton is not None and (rule.in_runs or rule.trigger is None):
+        return automaton
+    network = plan_of(rule.owed, gap)
+    chain = chain_of(network, gap)
+    if automaton is None or (chain is not None and len(chain.windows) > 1):
+        return network, chain
+    return automaton
 
 
 def _flags(rule: PlannedRule, *, hidden: bool) -> int:

@@ -254,7 +254,7 @@ static bool is_quiet(const run *r)
         return false;
     }
     for (i = 0; i < r->part->plan->judges.count; i++) {
-        if ((r->judges[i].first >= 0) || r->judges[i].running) {
+        if ((next_open(r, i, -1) >= 0) || r->judges[i].running) {
             return false;
         }
     }

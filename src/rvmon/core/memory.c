@@ -73,6 +73,7 @@ void *arena_take(arena *a, size_t size)
         made = a->free;
         a->free += room;
         a->left -= room;
+        a->used += room;
     }
     (void)memset(made, 0, room);
     return made;

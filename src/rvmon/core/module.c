@@ -495,6 +495,36 @@ static PyType_Spec monitor_spec = {
     Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_IMMUTABLETYPE, monitor_slots,
 };
 
+/* memory_of(plan, attempts): the bytes of a block in which a run begins with room for so many. */
+static PyObject *core_memory_of(PyObject *module, PyObject *args)
+{
+    const rv_memory heap = {malloc, free, NULL, 0};
+    Py_buffer plan;
+    int attempts;
+    PyObject *made = NULL;
+    rv_monitor *m;
+    (void)module;
+    if (!PyArg_ParseTuple(args, "y*i", &plan, &attempts)) {
+        return NULL;
+    }
+    m = rv_new(plan.buf, (size_t)plan.len, heap);
+    if ((m != NULL) && (rv_reserve(m, attempts) == RV_OK)) {
+        made = PyLong_FromLongLong((long long)rv_memory_used(m));
+    } else if (rv_plan_check(plan.buf, (size_t)plan.len) >= 0) {
+        PyErr_SetString(PyExc_ValueError, "the plan is damaged");
+    } else {
+        (void)PyErr_NoMemory();
+    }
+    rv_free(m);
+    PyBuffer_Release(&plan);
+    return made;
+}
+
+static PyMethodDef core_methods[] = {
+    {"memory_of", core_memory_of, METH_VARARGS, NULL},
+    {NULL, NULL, 0, NULL},
+};
+
 static int execute(PyObject *module)
 {
     PyObject *type = PyType_FromModuleAndSpec(module, &monitor_spec, NULL);
@@ -512,7 +542,7 @@ static PyModuleDef_Slot slots[] = {
 };
 
 static PyModuleDef definition = {
-    PyModuleDef_HEAD_INIT, "_core", NULL, 0, NULL, slots, NULL, NULL, NULL,
+    PyModuleDef_HEAD_INIT, "_core", NULL, 0, core_methods, slots, NULL, NULL, NULL,
 };
 
 PyMODINIT_FUNC PyInit__core(void);

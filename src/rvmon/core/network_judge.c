@@ -98,12 +98,6 @@ static int64_t position_of(const attempt *x)
     return x->clocks[0];
 }
 
-/* Whether nothing more can be said of an attempt: it is unknown for good. */
-static bool is_moot(const attempt *x)
-{
-    return (x->location == FAILED) && x->parted;
-}
-
 static void set_due(judging *g, int64_t due)
 {
     g->j->lag = 0;
@@ -130,16 +124,13 @@ static bool parts(const judging *g)
 /* Tidy up now and then. The networks may still have to be told of the letter up to here. */
 static void tidy_up(judging *g, int64_t position)
 {
-    int32_t at = g->j->first;
+    const int32_t at = g->j->first;
     int32_t i;
     g->net->visits++;
     if (g->net->visits < TIDY_EVERY) {
         return;
     }
     g->net->visits = 0;
-    while ((at >= 0) && is_moot(attempt_of(g, at))) {
-        at = attempt_of(g, at)->next;
-    }
     for (i = 0; i < readings(g); i++) {
         tidy(&g->f, &g->net->readings[i], (at >= 0) ? position_of(attempt_of(g, at)) : position);
     }
@@ -157,7 +148,7 @@ static bool weigh(judging *g, int32_t at, int64_t t)
     const bool parted = g->net->parted;
     const operator_state *worse = &g->net->readings[0].nodes[g->root];
     const operator_state *better = &g->net->readings[parted ? 1 : 0].nodes[g->root];
-    if (is_moot(x) || is_spoilt(g)) {
+    if (is_spoilt(g)) {
         return true;
     }
     if (knows(worse, 1U, position_of(x))) {
@@ -200,10 +191,7 @@ static int64_t decided_one(const judging *g)
         const int32_t reading = (g->net->parted && (value == 0U)) ? 1 : 0;
         const ranges *news = &g->net->readings[reading].nodes[g->root].news[value];
         for (i = news->first; i < news->end; i++) {
-            int32_t at = attempt_from(g, news->at[i].first);
-            while ((at >= 0) && is_moot(attempt_of(g, at))) {
-                at = attempt_of(g, at)->next;
-            }
+            const int32_t at = attempt_from(g, news->at[i].first);
             if ((at >= 0) && (position_of(attempt_of(g, at)) <= news->at[i].last)) {
                 return position_of(attempt_of(g, at));
             }
@@ -249,10 +237,12 @@ static void hear_news(judging *g, int64_t t)
                 break;
             }
         }
-        if ((position < asked) || weigh(g, at, t)) {
-            before = at;
-        } else {
+        if ((position >= asked) && !weigh(g, at, t)) {
             leave(g->r, g->index, before, at);
+        } else if (is_moot(attempt_of(g, at))) {
+            lay_aside(g->r, g->index, before, at);
+        } else {
+            before = at;
         }
         at = next;
     }

@@ -222,6 +222,16 @@ static rv_number picked(const rv_number *a)
     return (a->kind == RV_REAL) ? real(a->as.real) : *a;
 }
 
+/* What the square of a number below 2^500 lost when it was rounded: by halves of 26 bits, whose
+ * products are exact. C libraries of microcontrollers have an `fma` that rounds twice. */
+static double lost_of_square(double x, double square)
+{
+    const double split = x * 134217729.0; /* 2^27 + 1 */
+    const double high = split - (split - x);
+    const double low = x - high;
+    return ((high * high - square) + 2.0 * high * low) + low * low;
+}
+
 /* The length of a vector, rounded once: a root, and what its square is off by in twice the digits.
  * Large and small vectors are scaled by a power of two. */
 static double length(double a, double b)
@@ -236,10 +246,10 @@ static double length(double a, double b)
     const double xx = x * x;
     const double yy = y * y;
     const double all = xx + yy;
-    const double lost = ((xx - all) + yy) + (fma(x, x, -xx) + fma(y, y, -yy));
+    const double lost = ((xx - all) + yy) + (lost_of_square(x, xx) + lost_of_square(y, yy));
     const double root = sqrt(all);
     const double square = root * root;
-    const double off = ((all - square) - fma(root, root, -square)) + lost;
+    const double off = ((all - square) - lost_of_square(root, square)) + lost;
     return ((root > 0.0) ? root + off / (2.0 * root) : root) / scale;
 }
 

@@ -670,6 +670,35 @@ static bool check_operator(const plan *p, const form_plan *f, const part_plan *x
     }
 }
 
+/* A chain: windows one over the other over leaves and junctions of them. */
+static bool check_chain(const plan *p, const form_plan *f)
+{
+    const operator_plan *nodes = &p->operators[f->operators.first];
+    int32_t under = f->base;
+    int32_t i;
+    if (!lists(p, f->windows, 0, f->operators.count) || (f->windows.count > CLOCKS_MOST)
+        || (f->windows.count == 0)) {
+        return f->windows.count == 0;
+    }
+    if (!is_within(f->base, 0, f->operators.count) || !is_within(f->left, -1, f->operators.count)
+        || !is_within(f->excused, -1, f->operators.count)
+        || ((f->left >= 0) && (nodes[f->left].kind != OP_LEAF))
+        || ((f->excused >= 0) && ((f->left < 0) || (nodes[f->excused].kind != OP_LEAF)))
+        || ((nodes[f->base].kind != OP_LEAF) && (nodes[f->base].kind != OP_JUNCTION))) {
+        return false;
+    }
+    for (i = 0; i < f->windows.count; i++) {
+        const int32_t one = p->lists[f->windows.first + i];
+        const operator_plan *n = &nodes[one];
+        if ((n->kind != OP_WINDOW) || (n->left != under) || (n->low < 0) || (n->high < n->low)
+            || (n->over < 0) || ((p->header->gap == 0) && (n->low != 0))) {
+            return false;
+        }
+        under = one;
+    }
+    return true;
+}
+
 static bool check_forms(const plan *p, const part_plan *x)
 {
     int32_t i;
@@ -684,6 +713,9 @@ static bool check_forms(const plan *p, const part_plan *x)
             if (!check_operator(p, f, x, k)) {
                 return false;
             }
+        }
+        if (!check_chain(p, f)) {
+            return false;
         }
     }
     return true;

@@ -250,6 +250,10 @@ typedef struct {
     list operators;
     int32_t leaves;
     int32_t looks_back;        /* whether it has to see what is before its attempts */
+    list windows;              /* of a chain, operators, the innermost first; empty: it is none */
+    int32_t base;              /* of a chain, what the innermost is over: a leaf, or a junction */
+    int32_t left;              /* of a chain that is kept up, the leaf that ends that; -1: none does */
+    int32_t excused;           /* and the leaf that is true where the windows do not matter; -1 */
 } form_plan;
 
 enum { OP_LEAF, OP_JUNCTION, OP_WINDOW, OP_SHIFT, OP_UNTIL, OP_SINCE, OPS };

@@ -22,16 +22,23 @@ static int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t cou
     return at;
 }
 
+/* Make room for so many records; false if there is none. */
+bool grow_records(rv_monitor *m, int64_t wanted)
+{
+    int32_t room = (int32_t)m->record_room;
+    rv_record *made = grown(m, m->records, &room, wanted, sizeof *made);
+    if (made == NULL) {
+        return false;
+    }
+    m->records = made;
+    m->record_room = room;
+    return true;
+}
+
 static void keep_record(rv_monitor *m, const rv_record *record)
 {
-    if (m->record_count == m->record_room) {
-        int32_t room = (int32_t)m->record_room;
-        rv_record *made = grown(m, m->records, &room, m->record_count + 1, sizeof *made);
-        if (made == NULL) {
-            return;
-        }
-        m->records = made;
-        m->record_room = room;
+    if ((m->record_count == m->record_room) && !grow_records(m, m->record_count + 1)) {
+        return;
     }
     m->records[m->record_count] = *record;
     m->record_count++;

@@ -222,8 +222,13 @@ void clear_judges(run *r)
     r->failing_count = 0;
     for (i = 0; i < p->judges.count; i++) {
         networks *net = r->judges[i].net;
+        chain *windows = r->judges[i].chain;
         (void)memset(&r->judges[i], 0, sizeof r->judges[i]);
         r->judges[i].net = net;
+        r->judges[i].chain = windows;
+        if (windows != NULL) {
+            windows->begun = false;
+        }
         if (net != NULL) {
             net->begun = false;
             net->parted = false;
@@ -234,6 +239,7 @@ void clear_judges(run *r)
         r->judges[i].position = -LIMIT;
         r->judges[i].first = -1;
         r->judges[i].last = -1;
+        r->judges[i].moot = -1;
         r->judges[i].current = -1;
         r->judges[i].failed_at = NEVER;
     }

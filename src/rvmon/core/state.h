@@ -26,6 +26,7 @@ typedef struct {
     chunk *chunks;
     char *free;
     size_t left;
+    size_t used;               /* all that was handed out anew, together */
     void *spare[SIZE_CLASSES];
 } arena;
 
@@ -72,6 +73,8 @@ typedef struct {
     machine *machines;         /* by judge that has an automaton */
     int32_t *timed;            /* by timer, the node */
     int32_t *perishable;       /* by number among these, the signal */
+    int32_t *networked;        /* judges that networks are, neither automata nor chains */
+    int32_t networked_count;
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
     bool restarts;             /* whether some failure may be followed by another attempt */
 } part;
@@ -232,6 +235,35 @@ typedef struct {
     bool parted;
 } networks;
 
+/* Positions at which a value changes, in order, as a ring. */
+typedef struct {
+    int64_t *at;
+    int32_t room;              /* a power of two, or 0 */
+    int32_t head;
+    int32_t count;
+    bool begun;                /* the value before all of them */
+} changes;
+
+/* One reading of a chain of windows: of each level where its value changes if the letter stays; level
+ * 0 is the base. */
+typedef struct {
+    changes *levels;
+    changes ends;              /* of the leaf that ends what is kept up */
+    changes excused;           /* of that which is true where the windows do not matter */
+    int64_t start;             /* up to there it is kept up */
+} chain_reading;
+
+/* A chain of windows that judges: two readings from the first unknown letter on. */
+typedef struct {
+    chain_reading readings[2];
+    changes stamps;            /* the instants of samples, if only these are positions */
+    uint8_t *values;           /* by operator up to the base, room for what it is */
+    uint8_t letter[3];         /* the base, and the two leaves: 1 if it is true for the worse, and 2
+                                * for the better */
+    bool begun;
+    bool parted;
+} chain;
+
 /* What becomes of a judge at a position. */
 enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
 
@@ -240,8 +272,10 @@ typedef struct {
     int64_t lag;               /* what is decided so long before it is due is still to be found */
     int64_t failed_at;         /* when the attempt of the episode that runs did */
     networks *net;
+    chain *chain;
     int32_t first;
     int32_t last;
+    int32_t moot;              /* the first of those that stay open for good */
     int32_t current;           /* the attempt of the episode that runs */
     int32_t letter;            /* the class of letters that they stepped with */
     int32_t other;             /* the same, the unknown taken for the better */
@@ -445,7 +479,6 @@ struct rv_monitor {
 #define GAP(r) ((r)->home->monitor->plan.header->gap)
 #define LIST(p, l) (&(p)->lists[(l).first])
 #define PLAN(r) (&(r)->home->monitor->plan)
-#define JUDGE_ALIVE(r, i) ((r)->judges[i].first >= 0)
 
 static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
 
@@ -549,6 +582,7 @@ bool holds_at_end(const machine *a, const attempt *x, int64_t end, int64_t reach
 /* ---- attempts.c */
 bool is_true(const run *r, int32_t node);
 bool is_current(const run *r, int32_t index, int32_t at);
+bool grow_pool(home *h, int64_t wanted);
 int32_t place_taken(run *r);
 void give_back(home *h, int32_t at);
 void number_attempt(run *r, int32_t index, int32_t at, int64_t t);
@@ -559,9 +593,13 @@ void look_at(run *r, int32_t index, int64_t t);
 void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
 void leave(run *r, int32_t index, int32_t before, int32_t at);
+bool is_moot(const attempt *x);
+void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
+int32_t next_open(const run *r, int32_t index, int32_t at);
 void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
 
 /* ---- records.c */
+bool grow_records(rv_monitor *m, int64_t wanted);
 void report(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
 void sort_records(rv_monitor *m);
 
@@ -637,6 +675,13 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
 void network_close(run *r, int32_t index, int64_t end);
 bool network_outlasts(run *r, int32_t index, const attempt *x);
 
+/* ---- windows.c: attempts that a chain of windows judges */
+bool is_chained(const run *r, int32_t index);
+void chain_visit(run *r, int32_t index, int64_t t);
+void chain_pass(run *r, int32_t index, int64_t t, bool is_position);
+bool chain_enter(run *r, int32_t index, int32_t at, int64_t t);
+bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached);
+
 /* ---- runs.c: made, forked, replayed, let go */
 run *new_run(home *h);
 run *forked(const run *r);
@@ -665,6 +710,7 @@ int32_t concerning(const run *r, const rv_update *u);
 
 /* ---- homes.c: all runs of a part */
 bool home_begin(home *h);
+bool home_reserve(home *h, int32_t attempts);
 void home_lack(home *h, bool event, int32_t local);
 void home_sample(home *h, int64_t t);
 void home_wait(home *h, int64_t t);

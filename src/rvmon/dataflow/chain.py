@@ -24,11 +24,16 @@ class Chain:
         base: the place of what the innermost window is over: a leaf, or a junction of leaves.
         windows: the innermost first.
         left: the place of the leaf that ends what is kept up; `None` if nothing is.
+        places: of the windows.
+        excused: the place of the leaf that is true where the windows do not matter to what is kept
+            up; `None` if they always do. With no unknown it is true where the one on the left is.
     """
 
     base: int
     windows: tuple[Window, ...]
     left: int | None
+    places: tuple[int, ...]
+    excused: int | None
 
 
 def reach_of(plan: NetworkPlan) -> int | None:
@@ -98,7 +103,7 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
             opens later may hold no position, so that what is known does not end at one.
     """
     nodes = plan.nodes
-    top, left = len(nodes) - 1, None
+    top, left, excused = len(nodes) - 1, None, None
     root = nodes[top]
     if isinstance(root, Sweep):
         end = nodes[root.left]
@@ -111,19 +116,22 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
             if right.every or len(inner) != 1 or len(right.operands) != 2:
                 return None
             top = inner[0]
+            excused = next(one for one in right.operands if one != top)
         elif not isinstance(end.core, Constant):
             return None  # what is kept up has to hold where that ends, too
     windows: list[Window] = []
+    places: list[int] = []
     node = nodes[top]
     while isinstance(node, Window) and node.over is not None and node.low <= node.high:
         if gap is None and node.low:
             return None
         windows.append(node)
+        places.append(top)
         top = node.operand
         node = nodes[top]
     if not windows or not _is_read(plan, top):
         return None
-    return Chain(top, tuple(reversed(windows)), left)
+    return Chain(top, tuple(reversed(windows)), left, tuple(reversed(places)), excused)
 
 
 def _ends(plan: NetworkPlan, left: int, place: int) -> bool:

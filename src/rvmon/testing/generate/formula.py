@@ -42,6 +42,7 @@ from rvmon.testing.generate.vocabulary import (
     LABELS,
     NUMBERS,
     SIZE,
+    WIDE,
 )
 
 
@@ -57,6 +58,7 @@ class Shape:
         numbers: whether comparisons and probes may occur.
         events: whether events may be read.
         captured: names of captured numbers that may be read.
+        wide: whether whole numbers lie at the ends of 64 bits; nothing is computed with them then.
         longest: the greatest bound of an interval, ticks.
     """
 
@@ -67,7 +69,12 @@ class Shape:
     numbers: bool = True
     events: bool = True
     captured: tuple[str, ...] = ()
+    wide: bool = False
     longest: int = 6
+
+
+_CHOOSING = (NumericOp.MIN, NumericOp.MAX)
+"""What gives one of its operands, so that no whole number leaves its 64 bits."""
 
 
 def interval(rng: Rng, shape: Shape, *, from_zero: bool = False) -> Interval:
@@ -87,7 +94,7 @@ def atom(rng: Rng, shape: Shape) -> Formula:
         (
             (50, "signal"),
             (22 if shape.events else 0, "event"),
-            (18 if shape.numbers else 0, "compare"),
+            ((60 if shape.wide else 18) if shape.numbers else 0, "compare"),
             (6 if shape.numbers else 0, "probe"),
             (2, "constant"),
             (2, "start"),
@@ -119,7 +126,7 @@ def comparison(rng: Rng, shape: Shape) -> Formula:
         left = field_value(rng)
     elif chance(rng, 40):
         left = arithmetic(rng, shape)
-    right: Numeric = Literal(rng.randint(-1, 2))
+    right: Numeric = Literal(pick(rng, WIDE) if shape.wide else rng.randint(-1, 2))
     if shape.captured and chance(rng, 60):
         right = Captured(pick(rng, shape.captured))
     elif chance(rng, 20):
@@ -130,8 +137,9 @@ def comparison(rng: Rng, shape: Shape) -> Formula:
 def arithmetic(rng: Rng, shape: Shape) -> Numeric:
     """A random expression: of the last two updates, or an operation on a few numbers."""
     if chance(rng, 40):
-        return UpdateValue(pick(rng, tuple(UpdateFunction)), pick(rng, NUMBERS))
-    op = pick(rng, tuple(NumericOp))
+        functions = (UpdateFunction.PREV,) if shape.wide else tuple(UpdateFunction)
+        return UpdateValue(pick(rng, functions), pick(rng, NUMBERS))
+    op = pick(rng, _CHOOSING if shape.wide else tuple(NumericOp))
     first = _input(rng, shape)
     if op.entry.most == 1:
         return Arithmetic(op, (first,))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.formula import (
     Binary,
@@ -62,6 +62,9 @@ class Profile:
         requirements: at most so many.
         many: the per cent of specifications that hold 8 to 14, half of them on truth values and
             their past alone: engines share what such requirements have in common.
+        crowded: the per cent that hold 20 to 26.
+        wide: the per cent whose whole numbers reach to the ends of 64 bits; these are compared, not
+            computed with.
         numbers: whether comparisons and probes may occur.
         past: whether past operators may occur.
         future: whether future operators may occur.
@@ -78,6 +81,8 @@ class Profile:
     depth: int = 4
     requirements: int = 2
     many: int = 0
+    crowded: int = 0
+    wide: int = 0
     numbers: bool = True
     past: bool = True
     future: bool = True
@@ -104,6 +109,10 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
         number = rng.randint(8, 14)
         if profile.past and chance(rng, 50):
             draw = _law
+    if profile.crowded and chance(rng, profile.crowded):
+        number = rng.randint(20, 26)
+    if profile.wide:
+        profile = replace(profile, wide=100 if chance(rng, profile.wide) else 0)
     found = [draw(rng, profile, time, f"R{place}") for place in range(1, number + 1)]
     return CheckedSpec(
         name="random",
@@ -126,7 +135,7 @@ def _ignoring(rng: Rng, profile: Profile) -> frozenset[str]:
 
 
 def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
-    captures = _captures(rng) if profile.captures and chance(rng, 12) else ()
+    captures = _captures(rng, profile) if profile.captures and chance(rng, 12) else ()
     for_each = None
     if profile.for_each and chance(rng, 12):
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
@@ -139,6 +148,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         numbers=profile.numbers,
         events=profile.events,
         captured=(*instance, *(capture.name for capture in captures)),
+        wide=profile.wide > 0,
     )
     seen = Shape(
         step=shape.step,
@@ -147,6 +157,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         numbers=profile.numbers,
         events=profile.events,
         captured=instance,
+        wide=profile.wide > 0,
     )
     trigger = _trigger(rng, seen, for_each)
     at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END
@@ -180,10 +191,11 @@ def _law(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
     )
 
 
-def _captures(rng: Rng) -> tuple[Capture, ...]:
+def _captures(rng: Rng, profile: Profile) -> tuple[Capture, ...]:
     found: list[Capture] = []
     for name in ("v", "w")[: 2 if chance(rng, 25) else 1]:
-        earlier = Shape(captured=tuple(capture.name for capture in found))
+        named = tuple(capture.name for capture in found)
+        earlier = Shape(captured=named, wide=profile.wide > 0)
         simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
         value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
         found.append(Capture(name, value))

@@ -23,6 +23,8 @@ class TraceProfile:
         span: as many ticks from the first to the last sample, about.
         long: the per cent of traces that may be three times as long, where signals come later and
             more seldom.
+        sparse: the per cent of traces that have some dozens of samples, each of few names, now and
+            then far apart.
         unknowns: whether values may be `None` or NaN and sources absent.
         advances: whether `advance` is called.
     """
@@ -30,6 +32,7 @@ class TraceProfile:
     samples: int = 12
     span: int = 40
     long: int = 0
+    sparse: int = 0
     unknowns: bool = True
     advances: bool = True
 
@@ -55,13 +58,15 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
     often = 40 if any(one.for_each for one in spec.requirements.values()) else 25
     unknown = (30 if chance(rng, often) else 5) if profile.unknowns else 0
     longer = 3 if profile.long and chance(rng, profile.long) else 1
+    sparse = bool(profile.sparse) and chance(rng, profile.sparse)
+    longer = 4 if sparse else longer
     late = {n: rng.randint(1, 5 * longer) for n in spec.signals if chance(rng, 20 * longer)}
-    values = _Values(spec, numbers, names, unknown, _several(spec), late, 35 // longer)
+    values = _Values(spec, numbers, names, unknown, _several(spec), late, 35 // longer, sparse)
     time = start = pick(rng, (0, 1, 5, -3))
     actions: list[Sample | int] = []
     for index in range(rng.randint(0 if chance(rng, 5) else 1, longer * profile.samples)):
         if index:
-            gap = _gap(rng, gaps)
+            gap = rng.randint(9, 30) if sparse and chance(rng, 8) else _gap(rng, gaps)
             if profile.advances and chance(rng, 15):
                 actions.append(time + rng.randint(0, gap))
             time += gap
@@ -126,7 +131,7 @@ class _Values:
     """How to draw the values of one sample; `unknown` per cent of them are not known.
 
     Signals that are `late` have nothing to say before so many samples, or that it is not known;
-    then they say something in `often` per cent of the samples.
+    then they say something in `often` per cent of the samples. In `sparse` traces events are rare.
     """
 
     spec: CheckedSpec
@@ -136,6 +141,7 @@ class _Values:
     several: frozenset[str]
     late: Mapping[str, int]
     often: int
+    sparse: bool
 
     def sample(self, rng: Rng, index: int) -> dict[str, Value]:
         """Random updates; most signals get a value in the first sample that may bring one."""
@@ -150,7 +156,7 @@ class _Values:
             elif chance(rng, 85 if index == first else self.often):
                 values[name] = self._scalar(rng, signal.type)
         for name, event in self.spec.events.items():
-            if self._has_source(name) and chance(rng, 30):
+            if self._has_source(name) and chance(rng, 8 if self.sparse else 30):
                 values[name] = self._occurrence(rng, name, event.fields)
         return values
 
@@ -166,9 +172,10 @@ class _Values:
             case Kind.LABEL:
                 return pick(rng, type_.labels)
             case Kind.INT:
-                return int(pick(rng, self.numbers))
+                return min(max(int(pick(rng, self.numbers)), -(2**63)), 2**63 - 1)
             case Kind.REAL:
-                return pick(rng, self.numbers)
+                value = pick(rng, self.numbers)
+                return value if abs(value) <= 2**53 else float(value)
 
     def _occurrence(self, rng: Rng, name: str, fields: Mapping[str, Type]) -> Value:
         if chance(rng, self.unknown):

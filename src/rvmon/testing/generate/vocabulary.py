@@ -19,6 +19,8 @@ FIELD = "k"
 FURTHER = "h"
 """Another event with a payload."""
 SIZE = "m"
+WIDE = (-(2**63), -(2**53) - 1, 0, 2**53, 2**53 + 1, 2**62, 2**63 - 1)
+"""Whole numbers that doubles do not tell from their neighbours, but for 0."""
 
 
 def signals(

@@ -1,0 +1,67 @@
+"""The native core as one header and one source, for who links it or compiles it in one go.
+
+The build hook runs this file alone: it imports nothing of rvmon.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+HEADER = "core.h"
+"""What an embedding program includes; the other headers are the core's own."""
+BINDING = "module.c"
+"""The one source that needs Python."""
+
+_INCLUDE = re.compile(r'^#include (?:"(?P<own>[^"]+)"|<(?P<system>[^>]+)>).*\n', re.MULTILINE)
+_PROTOTYPE = re.compile(
+    r"^(?!typedef |static |extern |return )(?=[A-Za-z_][\w ]*[ *]+\w+\([^;{}]*\);)", re.MULTILINE
+)
+
+
+def core_header(folder: str = FOLDER) -> str:
+    """The header of the core as it stands: it includes nothing of ours."""
+    return _text(folder, HEADER)
+
+
+def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> str:
+    """All sources of the core but the binding to Python, one behind the other.
+
+    What they call of each other is static here, so that nothing but `rv_…` is seen outside.
+
+    Args:
+        header: the name by which the header is included.
+        folder: where the sources stand.
+        lines: whether a compiler's messages shall name the files that the lines come from.
+    """
+    names = sorted(name for name in os.listdir(folder) if name.endswith(".c") and name != BINDING)
+    done = {HEADER}
+    system: dict[str, None] = {}
+    body = "".join(_body(folder, name, done, system, lines) for name in names)
+    taken = {found["system"] for found in _INCLUDE.finditer(core_header(folder))}
+    includes = "".join(f"#include <{name}>\n" for name in sorted(system) if name not in taken)
+    return f'#include "{header}"\n\n{includes}{body}'
+
+
+def _body(folder: str, name: str, done: set[str], system: dict[str, None], lines: bool) -> str:
+    """A file without its includes, behind the headers that it needs and that are not there yet."""
+    done.add(name)
+    text = _text(folder, name)
+    needed = ""
+    for found in _INCLUDE.finditer(text):
+        if found["system"]:
+            system[found["system"]] = None
+        elif found["own"] not in done:
+            needed += _body(folder, found["own"], done, system, lines)
+    # Lines stay where they are if the compiler is to name them.
+    text = _INCLUDE.sub("\n" if lines else "", text)
+    if name.endswith(".h"):
+        text = _PROTOTYPE.sub("static ", text)
+    start = f'#line 1 "{name}"\n' if lines else f"\n/* {f' {name} ':-^90} */\n\n"
+    return needed + start + (text if lines else re.sub(r"\n{3,}", "\n\n", text))
+
+
+def _text(folder: str, name: str) -> str:
+    with open(os.path.join(folder, name), encoding="utf-8") as file:
+        return file.read()

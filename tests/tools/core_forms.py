@@ -1,0 +1,147 @@
+"""The core in its two forms, stepped and fed rows, as the differential test drives monitors."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rvmon.errors import TimeOrderError
+from rvmon.monitor import CompiledSpec, build_monitor
+from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.monitor.core.recorded import report_of_run
+from rvmon.testing.case import Case
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.schema import Kind
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+
+_NO, _UNKNOWN, _YES, _NOTHING = 0, 1, 2, 255
+"""What a row says of a name; see `core.h`."""
+
+_LAYOUTS = {Kind.REAL: (0, "f8"), Kind.INT: (1, "i8"), Kind.LABEL: (1, "i8"), Kind.BOOL: (2, "u1")}
+"""How a column is laid out: its number in `core.h`, and the type of its values."""
+
+
+class Stepped:
+    """A monitor of the core, asked now and then what is due: that must change nothing.
+
+    Args:
+        compiled: judged by.
+        case: gives the sources.
+    """
+
+    explains = False
+    """It says nothing of what an attempt owes, and of its inputs."""
+
+    def __init__(self, compiled: CompiledSpec, case: Case) -> None:
+        self._monitor = build_monitor(compiled, engine="c", sources=case.names)
+        self._rng = random.Random(len(case.actions))
+        self._due: int | None = None
+        self._asked = False
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        """Take a sample.
+
+        Raises:
+            AssertionError: time alone decided what was not due.
+        """
+        decided = self._monitor.step_ns(t_ns, values)
+        if self._asked and (self._due is None or t_ns < self._due):
+            early = [one for one in decided if (one.decided or 0) < t_ns]
+            assert not early, f"due was {self._due}, and at {t_ns} came {early}"
+        self._asked = self._rng.random() < 0.3
+        if self._asked:
+            self._due = self.next_due
+        return decided
+
+    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
+        """Let time pass."""
+        self._asked = False
+        return self._monitor.advance_ns(t_ns)
+
+    def finish_ns(self, t_ns: int | None = None, /) -> Report:
+        """End the trace."""
+        return self._monitor.finish_ns(t_ns)
+
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """The attempts that are undecided now."""
+        return self._monitor.open
+
+    @property
+    def next_due(self) -> int | None:
+        """The next instant at which time alone can decide something."""
+        return self._monitor.next_due
+
+
+class ByRows:
+    """A run of the core that is fed columns, several rows at once; it says nothing before the end.
+
+    Columns hold no payloads: a sample with one is taken by itself.
+
+    Args:
+        compiled: judged by.
+        case: gives the sources.
+    """
+
+    def __init__(self, compiled: CompiledSpec, case: Case) -> None:
+        names = (*compiled.checked.signals, *compiled.checked.events)
+        absent = frozenset() if case.names is None else frozenset(names) - case.names
+        self._planned = planned_core(compiled, tuple(compiled.requirements.values()))
+        self._run = self._planned.monitor(absent)
+        self._waiting: list[Sample] = []
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        """Take a sample."""
+        if any(isinstance(value, Mapping | tuple) for value in values.values()):
+            self._feed()
+            if not self._run.judge(t_ns, self._planned.plain(t_ns, values), True):
+                raise TimeOrderError(f"the sample at {t_ns} was not taken")
+        else:
+            self._waiting.append(Sample(t_ns, values))
+        return ()
+
+    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
+        """Let time pass."""
+        self._feed()
+        self._run.advance(t_ns)
+        return ()
+
+    def finish_ns(self, t_ns: int | None = None, /) -> Report:
+        """End the trace."""
+        self._feed()
+        origin, _, _ = self._run.times()
+        end = self._run.finish(t_ns)
+        return report_of_run(self._planned, self._run, origin or 0, end)
+
+    def _feed(self) -> None:
+        samples, self._waiting = self._waiting, []
+        names = dict.fromkeys(name for sample in samples for name in sample.values)
+        columns = tuple(_column(self._planned, name, samples) for name in names)
+        taken = self._run.rows(np.array([sample.t for sample in samples], "i8"), columns)
+        if taken < len(samples):
+            raise TimeOrderError(f"row {taken} was not taken")
+
+
+def _column(
+    planned: PlannedCore, name: str, samples: Sequence[Sample]
+) -> tuple[int, int, NDArray[Any] | None, NDArray[np.uint8]]:
+    """What samples say of a name, as `rows` of the core takes it."""
+    number, kind = planned.numbers[name], planned.packed.signals.get(name)
+    values = [sample.values.get(name) for sample in samples]
+    states = (_YES if kind or value else _NO for value in values)
+    said = (_UNKNOWN if value is None else how for value, how in zip(values, states, strict=True))
+    known = (
+        how if name in one.values else _NOTHING for one, how in zip(samples, said, strict=True)
+    )
+    says = np.fromiter(known, np.uint8, len(samples))
+    if kind is None:
+        return number, 0, None, says
+    layout, type_ = _LAYOUTS[kind]
+    if kind is Kind.LABEL:
+        values = [planned.packed.labels.get(str(value)) for value in values]
+    return number, layout, np.array([value or 0 for value in values], type_), says
