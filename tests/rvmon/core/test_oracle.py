@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import pytest
 from tests.tools.compare import differences
-from tests.tools.differential import campaign, cases_of
+from tests.tools.differential import campaign_of, cases_of
 from tests.tools.filled import filled, judge_columns
-from tests.tools.forms import Maker
+from tests.tools.forms import Compiler, Maker
 from tests.tools.law import judge
 
 from rvmon.monitor import compile_spec
@@ -20,12 +20,14 @@ pytestmark = pytest.mark.law
 
 @pytest.mark.parametrize("time", TimeModel)
 def test_each_call_says_what_the_law_has_it_say(time):
-    """What a call returns, what the report says, and that what is wrong is refused."""
+    """What a call returns, what the report says, and that what is wrong is refused; rows, too."""
     seeds = [f"core/{time.name}/{number}" for number in range(70)]
-    profile = Profile(time=time)
-    tally = campaign(Maker("c"), seeds, profile, TraceProfile(), each=10, online_every=2)
-    assert not tally.disagreements, tally.disagreements[0]
-    assert (tally.pairs, tally.refused) == (700, 0)
+    profile, traces = Profile(time=time, crowded=5, wide=10), TraceProfile(sparse=10)
+    compiler = Compiler()
+    makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
+    found = campaign_of(makers, seeds, profile, traces, each=10, online_every=4)
+    assert not found.disagreements, found.disagreements[0]
+    assert [(one.pairs, one.refused) for one in found.tallies.values()] == [(700, 0)] * 2
 
 
 def by_columns(seeds: int) -> Iterator[tuple[Case, list[str]]]:
