@@ -89,6 +89,7 @@ class ByRows:
     """
 
     silent = True
+    """It says nothing before the end."""
 
     def __init__(self, compiled: CompiledSpec, case: Case) -> None:
         names = (*compiled.checked.signals, *compiled.checked.events)

@@ -258,14 +258,14 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     if (m->finished) {
         return RV_FINISHED;
     }
+    if (m->spoilt) {
+        return RV_NO_MEMORY;
+    }
     if (!is_in_range(t)) {
         return RV_OUT_OF_RANGE;
     }
     if (t <= m->after) {
         return RV_TOO_EARLY;
-    }
-    if (m->spoilt) {
-        return RV_NO_MEMORY;
     }
     if (m->is_alone) {
         step_alone(m, t, updates, count);
@@ -292,10 +292,13 @@ int rv_advance(rv_monitor *m, int64_t t)
     if (m->finished) {
         return RV_FINISHED;
     }
+    if (m->spoilt) {
+        return RV_NO_MEMORY;
+    }
     if (!is_in_range(t)) {
         return RV_OUT_OF_RANGE;
     }
-    if ((t > m->reached) && !m->spoilt) {
+    if (t > m->reached) {
         for (i = 0; i < m->plan.part_count; i++) {
             home_wait(&m->homes[i], t);
         }

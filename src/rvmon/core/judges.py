@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cache
 
+from rvmon.automaton.automaton import Automaton
 from rvmon.core.automata import Automata
 from rvmon.core.forms import add_form
 from rvmon.core.sections import Section, Sections
@@ -58,15 +59,15 @@ class Judges:
         self.undetermined = sum(rule.determined is not None for _, rule in plan.judges)
         for number, (owner, rule) in enumerate(plan.judges):
             place = form = diagram = -1
-            network, chain = _windows_of(rule, plan.gap)
-            if network is not None:
-                form = len(self.networked)
-                self.networked.append(number)
-                add_form(sections, network, chain, self._index)
-            else:
-                place = automata.place(rule.automaton)
-                diagram = automata.diagram(rule.automaton.class_of, rule.alphabet)
-                self.clocks = max(self.clocks, rule.automaton.clocks, 1)
+            match _machine_of(rule, plan.gap):
+                case Automaton() as automaton:
+                    place = automata.place(automaton)
+                    diagram = automata.diagram(automaton.class_of, rule.alphabet)
+                    self.clocks = max(self.clocks, automaton.clocks)
+                case network, chain:
+                    form = len(self.networked)
+                    self.networked.append(number)
+                    add_form(sections, network, chain, self._index)
             tabled = place >= 0 and diagram < 0
             self._hear(number, rule, tabled=tabled)
             self._add(number, rule, owner, numbers[owner], (place, form, diagram))
@@ -125,19 +126,20 @@ class Judges:
         )
 
 
-def _windows_of(rule: PlannedRule, gap: int | None) -> tuple[NetworkPlan | None, Chain | None]:
-    """What judges a rule instead of an automaton, if something does: a network, be it a chain.
+def _machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
+    """What judges a rule: an automaton, or a network, which may be a chain of windows.
 
     An automaton of windows within windows steps each open attempt by itself; a chain is one step
     for all of them.
     """
-    if rule.automaton is not None and (rule.in_runs or rule.trigger is None):
-        return None, None
+    automaton = rule.automaton
+    if automaton is not None and (rule.in_runs or rule.trigger is None):
+        return automaton
     network = plan_of(rule.owed, gap)
     chain = chain_of(network, gap)
-    if rule.automaton is None or (chain is not None and len(chain.windows) > 1):
+    if automaton is None or (chain is not None and len(chain.windows) > 1):
         return network, chain
-    return None, None
+    return automaton
 
 
 def _flags(rule: PlannedRule, *, hidden: bool) -> int:

@@ -262,7 +262,8 @@ static bool check_inputs(const plan *p, const part_plan *x)
         if (!is_within(number, 0, p->header->events) || (e->field != fields)
             || (e->fields != p->field_first[number + 1] - p->field_first[number])
             || !both(p, e->on_occurrence, 0, x->atoms.count)
-            || !lists(p, e->needs, 0, x->atoms.count)) {
+            || !lists(p, e->needs, 0, x->atoms.count)
+            || !is_within(e->key, -1, e->fields)) {
             return false;
         }
         fields += e->fields;
