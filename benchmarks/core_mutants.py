@@ -34,7 +34,7 @@ from rvmon.cdv.mutation.mutant import Mutant
 ROOT = Path(__file__).resolve().parent.parent
 CORE = ROOT / "src" / "rvmon" / "core"
 REPLAY = Path(__file__).with_name("core_replay.c")
-FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-w", f"-I{CORE}")
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-w")
 MOST_MEMORY = 2 << 30
 
 
@@ -53,6 +53,8 @@ class Trial:
 
     def __init__(self, folder: Path, cases: bytes) -> None:
         self._folder = folder
+        for header in CORE.glob("*.h"):
+            shutil.copy2(header, folder)
         self._cases = folder / "cases"
         self._cases.write_bytes(cases)
         self._objects = {path: folder / f"{path.stem}.o" for path in (*sources(), REPLAY)}
@@ -64,6 +66,10 @@ class Trial:
         self._seconds = time.perf_counter() - began
         if self._expected is None:
             raise SystemExit("without a change, the core crashes or hangs")
+        for path in sources():
+            whole = Mutant(path, 0, "", "", "", path.read_text(encoding="utf-8"))
+            if self.outcome(whole) != "same":
+                raise SystemExit(f"{path.name} without a change is not the same")
 
     def outcome(self, mutant: Mutant) -> str:
         """`killed`, `survived`, or why it does not count: `unbuilt`, `same`."""
@@ -79,7 +85,7 @@ class Trial:
         return "survived" if said == self._expected else "killed"
 
     def _compiled(self, source: Path, made: Path) -> bool:
-        words = ["gcc", *FLAGS, "-c", str(source), "-o", str(made)]
+        words = ["gcc", *FLAGS, f"-I{self._folder}", "-c", str(source), "-o", str(made)]
         return subprocess.run(words, capture_output=True, check=False).returncode == 0
 
     def _said(self, program: Path, objects: Sequence[Path], most: float) -> bytes | None:

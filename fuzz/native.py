@@ -121,7 +121,7 @@ def fuzz(target: str, folder: Path, seconds: int) -> Found:
         "RVMON_PLANS": str(folder / "held"),
         "ASAN_OPTIONS": "abort_on_error=1:symbolize=0:detect_leaks=0",
     }
-    words = ["afl-fuzz", "-i", folder / "in", "-o", folder / "out", "-m", "none", "-t", "2000"]
+    words = ["afl-fuzz", "-i", folder / "in", "-o", folder / "out", "-m", "none", "-t", "5000"]
     with (folder / "log.txt").open("w") as log:
         subprocess.run(
             [*map(str, words), "-V", str(seconds), "--", str(program)],
