@@ -126,9 +126,7 @@ class Judges:
         )
 
 
-def _machine_of(
-    rule: PlannedRule, gap: int | None
-) -> Automaton | tuple[NetworkPlan, Chain | None]:
+def _machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
     """What judges a rule: an automaton, or a network, which may be a chain of windows.
 
     An automaton of windows within windows steps each open attempt by itself; a chain is one step
