@@ -239,7 +239,7 @@ def _stepped(question: Question, engine: str) -> Iterator[Sequence[Attempt]]:
 def _compare_compiled(
     workload: Workload, cases: Sequence[_Case], label: str, engine: str
 ) -> Agreement:
-    """Whether a compiled monitor decides at each row what the one of generated Python does."""
+    """Whether the core decides at each row what generated Python does."""
     count: Counter[str] = Counter()
     try:
         for case in cases:

@@ -61,6 +61,7 @@ FORMS: dict[str, Callable[[int], Judge]] = {
     "generated Python": lambda each: partial(stepped, "python", each),
     "batch": lambda each: partial(batched, "auto", each),
     "core, stepped": lambda each: partial(stepped, "c", each),
+    "core, rows": lambda each: partial(stepped, "c rows", each),
     "core, columns": lambda each: partial(batched, "c", each),
 }
 

@@ -116,6 +116,7 @@ RELATED = {
     "progression": ("auto", "automaton", "network"),
     "network": ("auto",),
     "python": ("auto",),
+    "c": ("c rows",),
 }
 """By engine, others that have files in common with it, but run other parts of them."""
 

@@ -2,9 +2,9 @@
 
     python -m benchmarks.hostile_names --names 100000 --through-commands 100000
 
-Every writer gets all names, as ids, texts, columns, reasons and names of files; the commands, and
-what is compiled C, get so many of them, in specifications, models and recordings. Prints by output
-how many names came through, and those at which something else came out than of harmless names.
+Every writer gets all names, as ids, texts, columns, reasons and names of files; the commands get so
+many of them, in specifications, models and recordings. Prints by output how many names came
+through, and those at which something else came out than of harmless names.
 """
 
 from __future__ import annotations

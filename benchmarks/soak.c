@@ -1,4 +1,4 @@
-/* Feeds a generated monitor with the pattern of soak.py, again and again; see there.
+/* Feeds the core with the pattern of soak.py, again and again; see there.
  *
  *   soak PERIODS FIRST-NANOSECOND TAIL
  */
@@ -15,16 +15,7 @@
 #define BINS 400000
 #define BIN_NS 10
 
-static uint64_t counts[SOAK_RULES][3];
 uint64_t bins[BINS]; /* not static: that all its pages are touched first is not left out */
-static soak_monitor monitor;
-static soak_attempt attempts[256];
-
-static void on_record(void *user, const soak_record *record)
-{
-    (void)user;
-    counts[record->requirement][record->verdict]++;
-}
 
 static int64_t now(void)
 {
@@ -49,23 +40,28 @@ int main(int argc, char **argv)
     const uint64_t samples = (argc == 4) ? strtoull(argv[1], NULL, 10) * ROWS : 0;
     const uint64_t tail = (argc == 4) ? strtoull(argv[3], NULL, 10) : 0;
     const uint64_t tenth = (samples / 10 > 0) ? samples / 10 : 1;
-    static const soak_sample quiet;
+    const rv_memory memory = {malloc, free, NULL, 0};
+    rv_monitor *monitor = rv_new(plan, sizeof plan, memory);
     int64_t t = (argc == 4) ? strtoll(argv[2], NULL, 10) : 0;
     int64_t longest = 0, before = 0;
     uint64_t n, taken = 0;
-    int rule;
+    int32_t rule, shown = 0;
+    if (monitor == NULL) {
+        return 1;
+    }
     memset(bins, 1, sizeof bins);
     before = now();
     memset(bins, 0, sizeof bins);
-    soak_init(&monitor, attempts, sizeof attempts / sizeof attempts[0], on_record, NULL);
     printf("{\"resident\":[%ld", resident_kib());
     for (n = 0; n < samples + tail; n++, t += STEP) {
-        const soak_sample *sample = (n < samples) ? &pattern[n % ROWS] : &quiet;
+        const int32_t row = (int32_t)(n % ROWS);
+        const int32_t count = (n < samples) ? first[row + 1] - first[row] : 0;
         int64_t after;
         before = now();
-        if (!soak_step(&monitor, t, sample)) {
+        if (rv_step(monitor, t, &updates[first[row]], count) != RV_OK) {
             break;
         }
+        rv_forget_records(monitor);
         after = now() - before;
         taken++;
         longest = (after > longest) ? after : longest;
@@ -74,19 +70,20 @@ int main(int argc, char **argv)
             printf(",%ld", resident_kib());
         }
     }
-    (void)soak_finish(&monitor, INT64_MIN);
-    printf("],\"taken\":%" PRIu64 ",\"longest\":%" PRId64 ",\"overflowed\":%d,\"counts\":[", taken,
-           longest, soak_overflowed(&monitor));
-    for (rule = 0; rule < SOAK_RULES; rule++) {
-        printf("%s[%" PRIu64 ",%" PRIu64 ",%" PRIu64 "]", (rule > 0) ? "," : "", counts[rule][0],
-               counts[rule][1], counts[rule][2]);
+    (void)rv_finish(monitor, RV_NO_TIME);
+    printf("],\"taken\":%" PRIu64 ",\"longest\":%" PRId64 ",\"counts\":[", taken, longest);
+    for (rule = 0; rule < rv_sizes_of(monitor).requirements; rule++) {
+        const rv_counts c = rv_count(monitor, rule);
+        printf("%s[%" PRId64 ",%" PRId64 ",%" PRId64 "]", (rule > 0) ? "," : "", c.failed, c.passed,
+               c.inconclusive);
     }
     printf("],\"bins\":[");
-    for (n = 0, rule = 0; n < BINS; n++) {
+    for (n = 0; n < BINS; n++) {
         if (bins[n] > 0) {
-            printf("%s[%" PRIu64 ",%" PRIu64 "]", (rule++ > 0) ? "," : "", n, bins[n]);
+            printf("%s[%" PRIu64 ",%" PRIu64 "]", (shown++ > 0) ? "," : "", n, bins[n]);
         }
     }
     printf("]}\n");
+    rv_free(monitor);
     return 0;
 }

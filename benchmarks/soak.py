@@ -5,18 +5,18 @@
 
 A sample per millisecond, in a pattern of a second: attempts that overlap, keys that come again,
 NaN, a signal that becomes stale. How many attempts pass and fail in each second is known, and
-compared at the end. Python (`auto`, `python`) keeps 100 records of each verdict; `c` is generated C
-in a program of its own, with room for 256 attempts, that tells records and keeps none. It is not
-asked for R5, of which each attempt stays undecided for ever: C has such attempts open until its
-end. Prints memory after each tenth, the times of steps with the time to ask the clock, and what is
-said where time itself ends, at 2^62 ns; exits 1 if a verdict is wrong.
+compared at the end. Python (`auto`, `python`) keeps 100 records of each verdict; `c` is the core in
+a program of its own, which forgets records. It is not asked for R5, of which each attempt stays
+undecided for ever: the core has such attempts open until its end. Prints memory after each tenth,
+the times of steps with the time to ask the clock, and what is said where time itself ends, at 2^62
+ns; exits 1 if a verdict is wrong.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -30,8 +30,9 @@ import numpy as np
 from benchmarks.peers.with_faults import resident_kib
 
 import rvmon
-from rvmon.cli import main as command
+import rvmon.core as native
 from rvmon.errors import TraceError
+from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.trace.time import TIME_LIMIT
 
 SPEC = """
@@ -72,8 +73,6 @@ KNOWN = {
 
 BINS, BIN_NS = 400_000, 10
 """The times of steps are told apart to so many times so many nanoseconds."""
-
-_NUMBERED = re.compile(r"#define SOAK_(SIGNAL|EVENT|FIELD)_\d+ (\d+) /\* (\S+) \*/")
 
 
 def pattern() -> list[dict[str, Any]]:
@@ -144,53 +143,62 @@ def live_in_python(seconds: int, first: int, engine: str, only: Sequence[str]) -
 
 
 def program(folder: Path, names: Sequence[str]) -> Path:
-    """Compile what feeds generated C."""
-    (folder / "soak.rv").write_text(SPEC)
-    only = ",".join(names)
-    words = ["compile", str(folder / "soak.rv"), "--to", "c", "-o", str(folder), "--only", only]
-    if command(words):
-        raise AssertionError("no C is generated")
-    header = (folder / "soak.h").read_text()
-    places = {name: f".{kind.lower()}[{n}]" for kind, n, name in _NUMBERED.findall(header)}
-    values = {name: place.replace("signal", "value") for name, place in places.items()}
-    rows = ",\n".join(f"{{{', '.join(_initialisers(row, places, values))}}}" for row in pattern())
-    text = f'#include "soak.h"\n#define ROWS {ROWS}\n'
-    text += f"static const soak_sample pattern[ROWS] = {{\n{rows}\n}};\n"
-    (folder / "pattern.h").write_text(text)
-    sources = [path for path in folder.glob("*.c") if not path.name.endswith("_batch.c")]
-    words = ["cc", "-std=gnu99", "-O2", "-ffp-contract=off", "-I", str(folder)]
+    """Compile what feeds the core."""
+    compiled = rvmon.loads(SPEC)._compiled
+    planned = planned_core(compiled, compiled.chosen(names))
+    (folder / "pattern.h").write_text("\n".join(_header(planned)))
+    core = Path(native.__file__).parent
+    sources = [path for path in core.glob("*.c") if path.name != "module.c"]
+    words = ["cc", "-std=gnu99", "-O2", "-ffp-contract=off", "-I", str(folder), "-I", str(core)]
     words += [*map(str, sources), str(Path(__file__).with_suffix(".c"))]
     subprocess.run([*words, "-lm", "-o", str(folder / "soak")], check=True)
     return folder / "soak"
 
 
-def _initialisers(
-    row: Mapping[str, Any], places: Mapping[str, str], values: Mapping[str, str]
-) -> Iterator[str]:
-    for name, value in row.items():
-        if name not in places:  # only R5 reads it
-            continue
-        state = "soak_UNKNOWN" if value != value else "soak_YES"
-        yield f"{places[name]} = {state}"
-        if isinstance(value, dict):
-            yield f"{places[f'{name}.id']} = {value['id']}"
-        elif places[name] != values[name] and value == value:
-            yield f"{values[name]} = {float(value)}"
+def _header(planned: PlannedCore) -> Iterator[str]:
+    """The plan, and the pattern as updates: those of each row, and where they begin."""
+    plan = struct.unpack(f"={len(planned.packed.data) // 8}Q", planned.packed.data)
+    fields: list[str] = []
+    updates: list[str] = []
+    first = [0]
+    for row in pattern():
+        for name, value in row.items():
+            if name not in planned.numbers:  # only R5 reads it
+                continue
+            of = "NULL"
+            if isinstance(value, dict):
+                of = f"&fields[{len(fields)}]"
+                fields.append(_number(value["id"]))
+            says = "RV_SAYS_UNKNOWN" if value != value else "RV_SAYS_YES"
+            held = _number(0 if isinstance(value, dict) or value != value else value)
+            updates.append(f"{{{planned.numbers[name]}, {says}, {held}, {of}}}")
+        first.append(len(updates))
+    yield '#include "core.h"'
+    yield f"#define ROWS {ROWS}"
+    yield f"static const uint64_t plan[] = {{{', '.join(f'{word}u' for word in plan)}}};"
+    yield f"static const rv_number fields[] = {{{', '.join(fields)}}};"
+    yield f"static const rv_update updates[] = {{{', '.join(updates)}}};"
+    yield f"static const int32_t first[] = {{{', '.join(map(str, first))}}};"
+
+
+def _number(value: float) -> str:
+    """A number as C initialises it."""
+    if isinstance(value, int):
+        return f"{{RV_WHOLE, {{.whole = {int(value)}}}}}"
+    return f"{{RV_REAL, {{.real = {value!r}}}}}"
 
 
 def live_in_c(path: Path, seconds: int, first: int, names: Sequence[str]) -> tuple[Lived, str]:
-    """Feed generated C, which refuses a sample without a word."""
+    """Feed the core, which refuses a sample without a word."""
     words = [str(path), str(seconds), str(first), str(TAIL)]
     told = json.loads(subprocess.run(words, check=True, capture_output=True).stdout)
-    if told["overflowed"]:
-        raise AssertionError("more attempts were open than there is room for")
     counts = {
         name: (passed, failed, undecided)
         for name, (failed, passed, undecided) in zip(names, told["counts"], strict=True)
     }
     lived = Lived(told["taken"], told["resident"], counts, told["bins"], told["longest"])
     whole = told["taken"] == seconds * ROWS + TAIL
-    return lived, "" if whole else "soak_step returned false"
+    return lived, "" if whole else "rv_step returned no RV_OK"
 
 
 def expected(name: str, seconds: int) -> tuple[int, ...]:

@@ -44,4 +44,4 @@ def test_stages_of_a_mutant() -> None:
     assert "tests/rvmon/dataflow" in tests.folders
     stages = stages_of("c", [], 100)[:-1]
     ways = [stage.engines for stage in stages if isinstance(stage, Stage)]
-    assert ways == [("c",), ("c",), ("c",)]
+    assert ways == [("c",), ("c",), ("c",), ("c rows",)]

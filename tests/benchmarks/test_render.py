@@ -45,12 +45,12 @@ def test_no_ratio_without_agreement() -> None:
         assert "not measured" in line(page, STEP)
 
 
-def test_compiled_monitors_have_to_agree_with_ours_too() -> None:
-    """The ratio of a compiled monitor wants that it was compared with ours, and was the same."""
+def test_the_core_has_to_agree_with_the_others_too() -> None:
+    """The ratio of the core wants that it was compared with ours, and was the same."""
     [label] = COMPILED
     compiled = replace(RESULT, figures=(replace(OURS, label=label), REELAY))
     own = replace(ALIKE, label=label)
-    start = f"| online, one step, generated C | {label} |"
+    start = f"| online, one step, the core | {label} |"
     for agreements in ((ALIKE,), (ALIKE, replace(own, equal=299))):
         page = render(replace(FINDINGS, results=(compiled,), agreements=agreements))
         assert "not measured" in line(page, start)

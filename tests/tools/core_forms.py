@@ -88,6 +88,9 @@ class ByRows:
         case: gives the sources.
     """
 
+    silent = True
+    """It says nothing before the end."""
+
     def __init__(self, compiled: CompiledSpec, case: Case) -> None:
         names = (*compiled.checked.signals, *compiled.checked.events)
         absent = frozenset() if case.names is None else frozenset(names) - case.names

@@ -24,7 +24,13 @@ from tests.tools.health import health_differences
 from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.kinds import kinds_of
-from tests.tools.online import differences_after_end, explains, is_online, online_differences
+from tests.tools.online import (
+    differences_after_end,
+    explains,
+    is_online,
+    is_silent,
+    online_differences,
+)
 from tests.tools.shrink import shrink
 
 MakeMonitor = Callable[[Case], Monitored | None]
@@ -176,7 +182,8 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
             provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)
             found += judgement.seen.differences(actual) if not found else ()
-        again = make(case) if online and not found else None
+        asked = online and not found and not is_silent(monitor)
+        again = make(case) if asked else None
         if again is not None:
             found = online_differences(judgement, again)
     except Exception as error:  # noqa: BLE001 - whatever an engine raises is a finding

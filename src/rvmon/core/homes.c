@@ -246,6 +246,9 @@ static void come_to_end(run *r, int64_t end)
             r->at.before = last - gap;
         }
     } else {
+        if (is_apart(r->home) && (r->home->monitor->last > r->at.position)) {
+            forget_last(r); /* a sample that this part does not read is a position, too */
+        }
         r->at.position = r->home->monitor->last;
     }
 }

@@ -175,7 +175,7 @@ class Programs:
         number = exact(value)
         if number is None:
             raise RvmonError(
-                f"the whole number {value} has more digits than compiled monitors compute with: "
+                f"the whole number {value} has more digits than the core computes with: "
                 "evaluate the specification with the engine `auto`, or write another bound"
             )
         (bits,) = struct.unpack("=q", struct.pack("=d", number))

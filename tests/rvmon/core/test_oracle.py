@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import pytest
 from tests.tools.compare import differences
-from tests.tools.differential import campaign, cases_of
+from tests.tools.differential import campaign_of, cases_of
 from tests.tools.filled import filled, judge_columns
+from tests.tools.forms import Compiler, Maker
 from tests.tools.law import judge
 
-from rvmon.monitor import CompiledSpec, build_monitor, compile_spec
-from rvmon.monitor.engines.registry import engine_named
+from rvmon.monitor import compile_spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
@@ -18,32 +18,16 @@ from rvmon.testing.generate.trace import TraceProfile
 pytestmark = pytest.mark.law
 
 
-class Stepped:
-    """A monitor of the core; what others say beside verdicts is not asked of it."""
-
-    def __init__(self, compiled: CompiledSpec, case: Case) -> None:
-        monitor = build_monitor(compiled, engine="c", sources=case.names)
-        self.step_ns = monitor.step_ns
-        self.advance_ns = monitor.advance_ns
-        self.finish_ns = monitor.finish_ns
-
-
-def stepped(case: Case) -> Stepped | None:
-    """A fresh monitor for a case; `None`: the core does not judge such specifications."""
-    refuses, compiled = engine_named("c").refuses, compile_spec(case.spec)
-    if any(map(refuses, compiled.requirements.values())):
-        return None
-    return Stepped(compiled, case)
-
-
 @pytest.mark.parametrize("time", TimeModel)
 def test_each_call_says_what_the_law_has_it_say(time):
-    """What a call returns, what the report says, and that what is wrong is refused."""
-    profile = Profile(time=time, mixed=False)
-    seeds = [f"core/{time.name}/{number}" for number in range(12)]
-    tally = campaign(stepped, seeds, profile, TraceProfile(), each=4, online_every=2)
-    assert tally.pairs >= 30
-    assert not tally.disagreements, tally.disagreements[0]
+    """What a call returns, what the report says, and that what is wrong is refused; rows, too."""
+    seeds = [f"core/{time.name}/{number}" for number in range(70)]
+    profile, traces = Profile(time=time, crowded=5, wide=10), TraceProfile(sparse=10)
+    compiler = Compiler()
+    makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
+    found = campaign_of(makers, seeds, profile, traces, each=10, online_every=4)
+    assert not found.disagreements, found.disagreements[0]
+    assert [(one.pairs, one.refused) for one in found.tallies.values()] == [(700, 0)] * 2
 
 
 def by_columns(seeds: int) -> Iterator[tuple[Case, list[str]]]:
@@ -60,6 +44,6 @@ def by_columns(seeds: int) -> Iterator[tuple[Case, list[str]]]:
 
 def test_columns_are_judged_as_the_law_has_it():
     """Random specifications on random arrays: what the oracle says of the same samples."""
-    found = [text for _, text in by_columns(20)]
-    assert len(found) >= 20
+    found = [text for _, text in by_columns(40)]
+    assert len(found) >= 100
     assert not any(found), next(filter(None, found))
