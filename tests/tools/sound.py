@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
@@ -37,26 +38,49 @@ def is_spoken_of(spec: CheckedSpec) -> bool:
     return True
 
 
+@dataclass(frozen=True, slots=True)
+class Tried:
+    """What came of filling in what a case lost.
+
+    Attributes:
+        verdicts: on the case itself.
+        overturning: a filling that overturns one of them, if any was found.
+        is_split: whether fillings with and without a failure were found; then only `I` is right.
+    """
+
+    verdicts: Mapping[str, Verdict]
+    overturning: Case | None
+    is_split: bool
+
+
 def overturned(
-    rng: Rng, case: Case, fillings: int, judge: Callable[[Case], Report] = oracle
-) -> tuple[Mapping[str, Verdict], Case | None]:
-    """The verdicts on a case, and a filling of what it lost that overturns one, if any was found.
+    rng: Rng,
+    case: Case,
+    fillings: int,
+    judge: Callable[[Case], Report] = oracle,
+    *,
+    whole: bool = True,
+) -> Tried:
+    """The verdicts on a case, against those with what it lost filled in at random.
 
     Args:
         rng: draws what is filled in.
         case: of a specification that the law speaks of.
         fillings: so many are tried.
         judge: gives the verdicts.
+        whole: whether to fill in more than the outages.
 
     Source: SEMANTICS, section 7.
     """
     before = judge(case).verdicts
+    seen: dict[str, set[bool]] = {name: set() for name in before}
     for _ in range(fillings):
-        filled = refilled(rng, case)
+        filled = refilled(rng, case, whole=whole)
         after = judge(filled).verdicts
         for name, verdict in before.items():
             green = verdict in (Verdict.PASS, Verdict.NOT_TRIGGERED)
             failed = after[name] is Verdict.FAIL
+            seen[name].add(failed)
             if (green and failed) or (verdict is Verdict.FAIL and not failed):
-                return before, filled
-    return before, None
+                return Tried(before, filled, len(seen[name]) > 1)
+    return Tried(before, None, any(len(kinds) > 1 for kinds in seen.values()))
