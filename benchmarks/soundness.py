@@ -26,11 +26,11 @@ from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.testing.show import show_case
+from rvmon.testing.show import show_case, show_spec
 
 
 def try_seed(
-    seed: str, fillings: int, time: TimeModel | None, *, outages: bool, alone: bool
+    seed: str, fillings: int, time: TimeModel | None, *, outages: bool, alone: bool, about: str = ""
 ) -> tuple[Case, Tried] | None:
     """Fill in what the case of a seed lost; `None` if the law does not speak of it.
 
@@ -40,11 +40,12 @@ def try_seed(
         time: the time model; `None`: any.
         outages: whether stretches of time are lost, under the law to come.
         alone: whether nothing else is.
+        about: what the specification has to hold, as text.
     """
     profile = Profile(requirements=1, time=time, stale=not alone)
     traces = TraceProfile(unknowns=not alone, outages=100 if outages else 0)
     case = case_of(seed, profile, traces)
-    if not alone and not is_spoken_of(case.spec):
+    if about not in show_spec(case.spec) or not (alone or is_spoken_of(case.spec)):
         return None
     rng = random.Random(seed)
     asked = partial(judge, next_law=outages)

@@ -77,16 +77,25 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
     end = time + _gap(rng, gaps) * rng.randint(0, 2) if chance(rng, 45) else None
     outages: tuple[Outage, ...] = ()
     if profile.outages and chance(rng, profile.outages):
-        outages = tuple(_outage(rng, spec, start, time) for _ in range(rng.randint(1, 3)))
+        read = [action.t for action in actions if isinstance(action, Sample)] or [start]
+        outages = tuple(_outage(rng, spec, read) for _ in range(rng.randint(1, 3)))
     return Case(spec, tuple(actions), end, names, outages)
 
 
-def _outage(rng: Rng, spec: CheckedSpec, start: int, end: int) -> Outage:
-    """A stretch of some ticks, or one, of some names; it may lie before or behind the samples."""
+def _outage(rng: Rng, spec: CheckedSpec, read: Sequence[int]) -> Outage:
+    """A stretch of some ticks, or one, of some names; it may lie before or behind the samples.
+
+    Often it begins, or ends, with one.
+    """
     percent = pick(rng, (100, 50, 20))
     names = frozenset(n for n in (*spec.signals, *spec.events) if chance(rng, percent))
-    first = rng.randint(start - 3, max(end, start) + 2)
-    return Outage(names, first, first + pick(rng, (0, 1, 2, 3, 5, 8)))
+    first = rng.randint(read[0] - 3, read[-1] + 3)
+    if chance(rng, 50):
+        first = pick(rng, read)
+    last = first + pick(rng, (0, 1, 2, 3, 5, 8))
+    if chance(rng, 50):
+        last = next((t for t in read if t >= last), last)
+    return Outage(names, first, last)
 
 
 def _gap(rng: Rng, gaps: Sequence[int]) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import dropwhile, pairwise
 
@@ -68,12 +68,16 @@ def word_of(
             f"scale durations and times so that at most {MOST_TICKS} remain"
         )
     instants = _positions(spec, samples, outages, first, known_to)
+    said = {
+        name: _said_of(name, samples, outages, has_source=names is None or name in names)
+        for name in (*spec.signals, *spec.events)
+    }
     letters = []
     for index, instant in enumerate(instants):
-        before = instants[index - 1] if index else None
         if _is_sure(spec, instant, begun, outages):
-            told = _Told(spec, samples, names, outages, before, instant, next_law=next_law)
-            letters.append(_letter(told))
+            before = instants[index - 1] if index else None
+            told = {name: one.by(before, instant) for name, one in said.items()}
+            letters.append(_letter(spec, instant, told, next_law=next_law))
         else:
             letters.append(_blank(spec, instant))
     return Word(tuple(letters), known_to, reached, next_law)
@@ -152,85 +156,105 @@ _UNKNOWN_EVENT = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),))
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
-    """What was told by an instant; to it falls what came after the position `before`."""
+class _Entry:
+    """What was said of a name.
 
-    spec: CheckedSpec
-    samples: Sequence[Sample]
-    names: frozenset[str] | None
+    Attributes:
+        t: when.
+        value: what; of what was lost, `None`.
+        since: from when on it counts; before the end of an outage nobody knows what was.
+        lost: whether it stands for all that an outage swallowed.
+    """
+
+    t: int
+    value: Value
+    since: int
+    lost: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """What was told of a name by a position.
+
+    Attributes:
+        entries: what was said, in order.
+        outages: those that have begun.
+        before: the position before; what came after it falls to this one.
+        instant: of this position.
+        has_source: whether something can say what the name is.
+    """
+
+    entries: Sequence[_Entry]
     outages: Sequence[Outage]
     before: int | None
     instant: int
-    next_law: bool
+    has_source: bool
 
-    def of(self, name: str) -> Sequence[_Entry]:
-        """What was said of a name, in order; an outage is one entry, at its end."""
-        lost = [_Entry(outage.last, None, lost=True) for outage in self.lost(name)]
-        kept = [
-            _Entry(sample.t, sample.values[name])
-            for sample in self.samples
-            if sample.t <= self.instant and name in sample.values
-            if not any(outage.hides(sample.t) for outage in self.lost(name))
-        ]
-        return sorted([*lost, *kept], key=lambda entry: (entry.t, not entry.lost))
+    def by(self, before: int | None, instant: int) -> _Told:
+        """What of it was told by an earlier position."""
+        return _Told(
+            [entry for entry in self.entries if entry.since <= instant],
+            [outage for outage in self.outages if outage.first <= instant],
+            before,
+            instant,
+            self.has_source,
+        )
 
-    def lost(self, name: str) -> Sequence[Outage]:
-        """The outages of a name that have begun."""
-        return [o for o in self.outages if name in o.names and o.first <= self.instant]
+    @property
+    def is_within(self) -> bool:
+        """Whether the position lies in an outage."""
+        return any(outage.covers(self.instant) for outage in self.outages)
 
-    def is_within(self, name: str) -> bool:
-        """Whether the instant lies in an outage of a name."""
-        return any(outage.covers(self.instant) for outage in self.lost(name))
-
-    def is_touched(self, name: str) -> bool:
+    @property
+    def is_touched(self) -> bool:
         """Whether what falls to this position may have been lost."""
-        return any(outage.touches(self.before, self.instant) for outage in self.lost(name))
+        return any(outage.touches(self.before, self.instant) for outage in self.outages)
 
     def is_new(self, entry: _Entry) -> bool:
         """Whether an entry falls to this position."""
         return self.before is None or entry.t > self.before
 
-    def has_source(self, name: str) -> bool:
-        """Whether something can say what a name is.
 
-        Raises:
-            TraceError: it cannot, but did.
-        """
-        if self.names is None or name in self.names:
-            return True
-        for sample in self.samples:
-            if sample.t <= self.instant and name in sample.values:
-                raise TraceError(f"sample at {sample.t} ns holds `{name}`, which has no source")
-        return False
+def _said_of(
+    name: str, samples: Sequence[Sample], outages: Sequence[Outage], *, has_source: bool
+) -> _Told:
+    """All that is told of a name; what was lost comes before what bears the same stamp.
+
+    Raises:
+        TraceError: something is, though it has no source.
+    """
+    read = [sample for sample in samples if name in sample.values]
+    if read and not has_source:
+        raise TraceError(f"sample at {read[0].t} ns holds `{name}`, which has no source")
+    of_name = [outage for outage in outages if name in outage.names]
+    kept = [s for s in read if not any(outage.hides(s.t) for outage in of_name)]
+    entries = [
+        *(_Entry(outage.last, None, outage.first, lost=True) for outage in of_name),
+        *(_Entry(sample.t, sample.values[name], sample.t) for sample in kept),
+    ]
+    entries.sort(key=lambda entry: (entry.t, not entry.lost))
+    last = entries[-1].t if entries else 0
+    return _Told(entries, of_name, None, last, has_source)
 
 
-@dataclass(frozen=True, slots=True)
-class _Entry:
-    """What was said of a name at an instant; `lost`: that nobody knows what was, until then."""
-
-    t: int
-    value: Value
-    lost: bool = False
-
-
-def _letter(told: _Told) -> Letter:
+def _letter(
+    spec: CheckedSpec, instant: int, told: Mapping[str, _Told], *, next_law: bool
+) -> Letter:
     return Letter(
-        told.instant,
-        {name: _signal(told, signal) for name, signal in told.spec.signals.items()},
-        {name: _event(told, event) for name, event in told.spec.events.items()},
+        instant,
+        {name: _signal(told[name], one, next_law) for name, one in spec.signals.items()},
+        {name: _event(told[name], one, next_law) for name, one in spec.events.items()},
     )
 
 
-def _event(told: _Told, event: Event) -> EventState:
-    if not told.has_source(event.name) or told.is_within(event.name):
+def _event(told: _Told, event: Event, next_law: bool) -> EventState:
+    if not told.has_source or told.is_within:
         return _UNKNOWN_EVENT
-    new = [entry for entry in told.of(event.name) if told.is_new(entry)]
+    new = [entry for entry in told.entries if told.is_new(entry)]
     found = tuple(one for entry in new for one in _occurrences(entry.value))
-    if told.next_law:
+    if next_law:
         found = tuple(replace(one, payload=_at_edge(one.payload, event)) for one in found)
-    updated = any(not entry.lost for entry in new)
-    lost = Truth.UNKNOWN if told.is_touched(event.name) else Truth.FALSE
-    return EventState(disjunction([truth_of(updated), lost]), found)
+    return EventState(_updated(told), found)
 
 
 def _at_edge(payload: Payload, event: Event) -> Payload:
@@ -240,49 +264,50 @@ def _at_edge(payload: Payload, event: Event) -> Payload:
     }
 
 
-def _signal(told: _Told, signal: Signal) -> SignalState:
-    name = signal.name
-    if not told.has_source(name):
+def _signal(told: _Told, signal: Signal, next_law: bool) -> SignalState:
+    if not told.has_source:
         return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN)
-    said = told.of(name)
-    if not said:
+    if not told.entries:
         return SignalState()
-    updates = [_update(entry.t, entry.value) for entry in said]
-    if told.next_law:
+    updates = [_update(entry.t, entry.value) for entry in told.entries]
+    if next_law:
         updates = [replace(one, value=at_edge(one.value, signal.type.kind)) for one in updates]
-    last, within = updates[-1], told.is_within(name)
+    last, within = updates[-1], told.is_within
     stale = signal.stale_after is not None and told.instant > last.t + signal.stale_after
     # What was lost may have been the first value, and the update behind it.
-    may_be_born = bool(told.lost(name))
+    may_be_born = bool(told.outages)
     since_birth = list(dropwhile(lambda update: update.value is None, updates))
     return SignalState(
         value=None if stale or within else last.value,
-        updated=_updated(told, name),
-        changed=_changed(told, name, said, updates),
+        updated=_updated(told),
+        changed=_changed(told, updates),
         last=last,
         before=updates[-2] if len(updates) > 1 else None,
         born=may_be_born or bool(since_birth),
         moved=may_be_born or len(since_birth) > 1,
-        lost=not stale and (within or said[-1].lost),
+        lost=not stale and (within or told.entries[-1].lost),
     )
 
 
-def _updated(told: _Told, name: str) -> Truth:
-    """Whether an update falls to this position."""
-    if told.is_within(name):
+def _updated(told: _Told) -> Truth:
+    """Whether something said of the name falls to this position."""
+    if told.is_within:
         return Truth.UNKNOWN
-    kept = any(told.is_new(entry) and not entry.lost for entry in told.of(name))
-    lost = Truth.UNKNOWN if told.is_touched(name) else Truth.FALSE
-    return disjunction([truth_of(kept), lost])
+    kept = any(told.is_new(entry) and not entry.lost for entry in told.entries)
+    return disjunction([truth_of(kept), _if_lost(told)])
 
 
-def _changed(told: _Told, name: str, said: Sequence[_Entry], updates: Sequence[Update]) -> Truth:
+def _changed(told: _Told, updates: Sequence[Update]) -> Truth:
     """Whether an update to another value does."""
-    if told.is_within(name):
+    if told.is_within:
         return Truth.UNKNOWN
-    pairs = zip(pairwise(updates), said[1:], strict=True)
-    new = (_differ(*pair) for pair, now in pairs if told.is_new(now))
-    return disjunction([*new, Truth.UNKNOWN if told.is_touched(name) else Truth.FALSE])
+    pairs = zip(pairwise(updates), told.entries[1:], strict=True)
+    new = (_differ(*pair) for pair, entry in pairs if told.is_new(entry))
+    return disjunction([*new, _if_lost(told)])
+
+
+def _if_lost(told: _Told) -> Truth:
+    return Truth.UNKNOWN if told.is_touched else Truth.FALSE
 
 
 def _update(t: int, value: Value) -> Update:
