@@ -15,6 +15,7 @@ import random
 import sys
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 
 from tests.tools.differential import case_of
@@ -30,19 +31,25 @@ from rvmon.testing.show import show_case, show_spec
 
 
 def try_seed(
-    seed: str, fillings: int, time: TimeModel | None, *, outages: bool, alone: bool, about: str = ""
+    seed: str,
+    fillings: int,
+    profile: Profile,
+    *,
+    outages: bool,
+    alone: bool,
+    about: str = "",
 ) -> tuple[Case, Tried] | None:
     """Fill in what the case of a seed lost; `None` if the law does not speak of it.
 
     Args:
         seed: of the case and of the fillings.
         fillings: so many are tried.
-        time: the time model; `None`: any.
+        profile: of the specification.
         outages: whether stretches of time are lost, under the law to come.
         alone: whether nothing else is.
         about: what the specification has to hold, as text.
     """
-    profile = Profile(requirements=1, time=time, stale=not alone)
+    profile = replace(profile, stale=not alone)
     traces = TraceProfile(unknowns=not alone, outages=100 if outages else 0)
     case = case_of(seed, profile, traces)
     if about not in show_spec(case.spec) or not (alone or is_spoken_of(case.spec)):
@@ -57,9 +64,10 @@ def run_part(options: argparse.Namespace, seeds: Iterable[str]) -> tuple[Counter
     counts: Counter[str] = Counter()
     found: list[str] = []
     time = TimeModel(options.time) if options.time else None
+    profile = Profile(requirements=1, time=time)
     for number, seed in enumerate(seeds):
         alone = options.outages and number % 2 == 1
-        tried = try_seed(seed, options.fillings, time, outages=options.outages, alone=alone)
+        tried = try_seed(seed, options.fillings, profile, outages=options.outages, alone=alone)
         if tried is None:
             continue
         case, outcome = tried

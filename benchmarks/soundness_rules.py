@@ -20,6 +20,7 @@ from benchmarks.soundness import try_seed
 
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing import oracle
+from rvmon.testing.generate.spec import Profile
 from rvmon.testing.law import past, sample_words, truths
 from rvmon.testing.law.kleene import Truth, truth_of
 from rvmon.testing.law.outage import Outage
@@ -279,8 +280,9 @@ def runs_needed(rule: Rule, seeds: Iterator[str], fillings: int = 8) -> int | No
         stack.enter_context(mock.patch.object(rule.owner, rule.name, rule.without(law)))
         for number, seed in enumerate(seeds, start=1):
             time = rule.times[number % len(rule.times)]
+            profile = Profile(time=time, requirements=1, depth=2)
             alone = number % 2 == 1
-            tried = try_seed(seed, fillings, time, outages=True, alone=alone, about=rule.about)
+            tried = try_seed(seed, fillings, profile, outages=True, alone=alone, about=rule.about)
             if tried is not None and tried[1].overturning is not None:
                 return number
     return None

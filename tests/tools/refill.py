@@ -64,8 +64,13 @@ def _through_outages(rng: Rng, case: Case) -> Case:
 
 
 def _may_be_overwritten(case: Case, name: str, t: int) -> bool:
-    """Whether what was read of a name at an instant may have been followed by what was lost."""
-    return any(name in outage.names and outage.hides(t) for outage in case.outages)
+    """Whether what was read of a name at an instant may have been followed by what was lost.
+
+    That is everywhere in an outage, but at its end: what was read there ended it. An outage that
+    begins where it ends is read before and behind.
+    """
+    of_name = [outage for outage in case.outages if name in outage.names]
+    return any(o.first <= t < o.last or o.first == t == o.last for o in of_name)
 
 
 def _with_values(rng: Rng, case: Case, through: Case) -> Case:
