@@ -64,7 +64,7 @@ def run_part(options: argparse.Namespace, seeds: Iterable[str]) -> tuple[Counter
     counts: Counter[str] = Counter()
     found: list[str] = []
     time = TimeModel(options.time) if options.time else None
-    profile = Profile(requirements=1, time=time)
+    profile = Profile(requirements=1, time=time, depth=options.depth)
     for number, seed in enumerate(seeds):
         alone = options.outages and number % 2 == 1
         tried = try_seed(seed, options.fillings, profile, outages=options.outages, alone=alone)
@@ -89,6 +89,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--time", choices=[model.value for model in TimeModel])
     parser.add_argument("--outages", action="store_true")
+    parser.add_argument("--depth", type=int, default=4, help="of the deepest consequent")
     options = parser.parse_args(argv)
     seeds = [f"{options.seed}/{number}" for number in range(options.runs)]
     parts = [seeds[start : start + 50] for start in range(0, len(seeds), 50)]

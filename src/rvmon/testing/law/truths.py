@@ -45,7 +45,7 @@ from rvmon.testing.law.past import (
     is_within,
     since,
 )
-from rvmon.testing.law.walk import is_proposition, speaks_of_future
+from rvmon.testing.law.walk import constant_value, is_proposition, speaks_of_future
 from rvmon.testing.law.word import Letter, Word
 from rvmon.trace.sample import Scalar
 
@@ -370,27 +370,6 @@ def unless_constant(part: Formula, operand: Operand, value: Truth) -> Operand:
     So `true U φ` is `F φ` where there may be positions, too: where every formula is unknown.
     """
     return (lambda _: value) if constant_value(part) is value else operand
-
-
-def constant_value(formula: Formula) -> Truth:
-    """What a formula is whatever its propositions are, by Kleene's connectives; else UNKNOWN."""
-    match formula:
-        case Constant(value=value):
-            return truth_of(value)
-        case Unary(op=UnaryOp.NOT, operand=operand):
-            return negation(constant_value(operand))
-        case Binary(op=op, left=left, right=right):
-            one, other = constant_value(left), constant_value(right)
-            match op:
-                case BinaryOp.AND:
-                    return conjunction([one, other])
-                case BinaryOp.OR:
-                    return disjunction([one, other])
-                case BinaryOp.IMPLIES:
-                    return disjunction([negation(one), other])
-                case BinaryOp.IFF | BinaryOp.XOR if Truth.UNKNOWN not in (one, other):
-                    return truth_of((one is other) is (op is BinaryOp.IFF))
-    return Truth.UNKNOWN
 
 
 def _probe(probe: Probe, name: str, letter: Letter) -> Truth:
