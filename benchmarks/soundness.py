@@ -20,7 +20,7 @@ from functools import partial
 
 from tests.tools.differential import case_of
 from tests.tools.law import judge
-from tests.tools.sound import Tried, is_spoken_of, overturned
+from tests.tools.sound import Tried, is_spoken_of, narrowed, overturned
 
 from rvmon.execute.parallel import execute
 from rvmon.spec.checked.specification import TimeModel
@@ -51,7 +51,7 @@ def try_seed(
     """
     profile = replace(profile, stale=not alone)
     traces = TraceProfile(unknowns=not alone, outages=100 if outages else 0)
-    case = case_of(seed, profile, traces)
+    case = narrowed(case_of(seed, profile, traces))
     if about not in show_spec(case.spec) or not (alone or is_spoken_of(case.spec)):
         return None
     rng = random.Random(seed)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.generate.rng import Rng
 from rvmon.testing.law.walk import parts_of, subformulas
+from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from tests.tools.late import names_read
 from tests.tools.law import judge as oracle
 from tests.tools.refill import refilled
 
@@ -36,6 +38,27 @@ def is_spoken_of(spec: CheckedSpec) -> bool:
                 if isinstance(value, UpdateValue) and value.name in stale:
                     return False
     return True
+
+
+def narrowed(case: Case) -> Case:
+    """The case without the names that no requirement reads: the same to judge, and sooner."""
+    spec = case.spec
+    read = {name for one in spec.requirements.values() for name in names_read(one)}
+    actions = tuple(
+        replace(action, values={n: v for n, v in action.values.items() if n in read})
+        if isinstance(action, Sample)
+        else action
+        for action in case.actions
+    )
+    signals = {name: signal for name, signal in spec.signals.items() if name in read}
+    events = {name: event for name, event in spec.events.items() if name in read}
+    outages = tuple(replace(outage, names=outage.names & read) for outage in case.outages)
+    return replace(
+        case,
+        spec=replace(spec, signals=signals, events=events),
+        actions=actions,
+        outages=outages,
+    )
 
 
 @dataclass(frozen=True, slots=True)

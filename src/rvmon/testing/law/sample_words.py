@@ -123,10 +123,12 @@ def _positions(
 
 
 def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterable[Outage]) -> bool:
-    """Whether there is a position, and every formula is not unknown there for want of one.
+    """Whether there is a position; where nobody knows, every formula is unknown.
 
-    Where every tick is one, or every so many-th, the trace may have begun in an outage, at any
-    tick from there to the first sample that was read.
+    In an outage of sampled time nobody does, at any of its ticks, though a sample was read there:
+    what `next` and the like speak of is unknown all the same. In the other time models the trace
+    may have begun in an outage, and every position from there to the first sample that was read
+    may lie before it.
 
     Args:
         spec: gives the time model.
