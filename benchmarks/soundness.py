@@ -67,7 +67,14 @@ def run_part(options: argparse.Namespace, seeds: Iterable[str]) -> tuple[Counter
     profile = Profile(requirements=1, time=time, depth=options.depth)
     for number, seed in enumerate(seeds):
         alone = options.outages and number % 2 == 1
-        tried = try_seed(seed, options.fillings, profile, outages=options.outages, alone=alone)
+        tried = try_seed(
+            seed,
+            options.fillings,
+            profile,
+            outages=options.outages,
+            alone=alone,
+            about=options.about,
+        )
         if tried is None:
             continue
         case, outcome = tried
@@ -90,6 +97,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--time", choices=[model.value for model in TimeModel])
     parser.add_argument("--outages", action="store_true")
     parser.add_argument("--depth", type=int, default=4, help="of the deepest consequent")
+    parser.add_argument("--about", default="", help="only specifications that hold this text")
     options = parser.parse_args(argv)
     seeds = [f"{options.seed}/{number}" for number in range(options.runs)]
     parts = [seeds[start : start + 50] for start in range(0, len(seeds), 50)]
@@ -101,7 +109,7 @@ def main(argv: list[str]) -> int:
         found += overturning
     split = counts.pop("split", 0)
     shown = ", ".join(f"{name} {n}" for name, n in sorted(counts.items()))
-    print(f"runs {counts.total()} (of {options.runs}; the others ask what is known), {shown}")
+    print(f"runs {counts.total()} (of {options.runs}; the others are not spoken of), {shown}")
     print(f"{options.fillings} fillings each, with and without a failure in {split} runs")
     print(f"overturned {len(found)}")
     for text in found[:3]:
