@@ -26,6 +26,17 @@ from rvmon.testing.law.kleene import Truth, truth_of
 from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.word import Letter, SignalState
 
+_SMALL = Profile(requirements=1, depth=2)
+_PAST = Profile(
+    depth=1,
+    requirements=1,
+    numbers=False,
+    future=False,
+    captures=False,
+    for_each=False,
+    policies=False,
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Rule:
@@ -38,6 +49,7 @@ class Rule:
         without: what it is then, made of what it is.
         times: the time models in which it matters.
         about: a word of the specifications for which it does.
+        profile: of the specifications.
     """
 
     says: str
@@ -46,6 +58,7 @@ class Rule:
     without: Callable[[Any], Any]
     times: Sequence[TimeModel] = tuple(TimeModel)
     about: str = ""
+    profile: Profile = _SMALL
 
 
 def _signals(change: Callable[[Any, SignalState], SignalState]) -> Callable[[Any], Any]:
@@ -265,7 +278,13 @@ RULES = (
     Rule("a position may lie at any tick", words, "_positions", _only_samples, _SAMPLED),
     Rule("or at none", words, "_is_sure", lambda _: lambda *__: True, _SAMPLED),
     Rule("there every formula is unknown", truths.Truths, "truth", _regardless("truth"), _SAMPLED),
-    Rule("of the past, too", truths.Truths, "state", _regardless("state"), _SAMPLED),
+    Rule(
+        "of the past, too",
+        *(truths.Truths, "state"),
+        _regardless("state"),
+        _SAMPLED,
+        profile=_PAST,
+    ),
     Rule("`start` may have been there", truths.Truths, "_is_first", _first_read, about="start"),
     Rule("`held` may be long enough", past, "_lasted", _since_read, about="held("),
     Rule("`held` may not be long enough", past, "_lasted", _since_lost, about="held("),
@@ -280,7 +299,7 @@ def runs_needed(rule: Rule, seeds: Iterator[str], fillings: int = 8) -> int | No
         stack.enter_context(mock.patch.object(rule.owner, rule.name, rule.without(law)))
         for number, seed in enumerate(seeds, start=1):
             time = rule.times[number % len(rule.times)]
-            profile = Profile(time=time, requirements=1, depth=2)
+            profile = replace(rule.profile, time=time)
             alone = number % 2 == 1
             tried = try_seed(seed, fillings, profile, outages=True, alone=alone, about=rule.about)
             if tried is not None and tried[1].overturning is not None:
