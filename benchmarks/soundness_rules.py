@@ -287,7 +287,7 @@ RULES = (
     ),
     Rule("`start` may have been there", truths.Truths, "_is_first", _first_read, about="start"),
     Rule("`held` may be long enough", past, "_lasted", _since_read, about="held("),
-    Rule("`held` may not be long enough", past, "_lasted", _since_lost, _SAMPLED, "held("),
+    Rule("`held` may not be long enough", past, "_lasted", _since_lost, _SAMPLED, "held(", _PAST),
     Rule("the trace reaches to the end of an outage", oracle, "word_of", _ends_when_read),
 )
 

@@ -121,6 +121,9 @@ def test_how_long_a_trace_has_lasted(judge: Any) -> None:
     held_4 = requirement(held(p, 4), upon=e)
     assert judge(held_4, **told) == ["3 F 3", "4 P 4"]
     assert judge(held_4, **{**told, "lost": [("q", -1, -1)]}) == ["4 P 4", "3 I", "-1 I"]
+    told = {"p": "1.1", "e": "..1", **SAMPLED}
+    assert judge(requirement(held(p, 4), upon=e), **told) == ["2 F 2"]
+    assert judge(requirement(held(p, 4), upon=e), **told, lost=[("q", -8, -8)]) == ["2 I", "-8 I"]
 
 
 def test_a_trace_without_samples(judge: Any) -> None:
