@@ -15,7 +15,7 @@ enum { FAILED = 0, PASSED = 1, WAITING = 2 };
 
 /* ---- memory.c: blocks of a few sizes, all given back at once */
 
-#define SIZE_CLASSES 256
+#define SIZE_CLASSES (32 * sizeof(size_t)) /* four for each of its bits */
 
 typedef struct chunk {
     struct chunk *next;
