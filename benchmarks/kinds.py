@@ -68,6 +68,7 @@ def measured(
     engine: str,
     rows: Sequence[dict[str, Value]],
     seconds: float,
+    only: Sequence[str] | None = None,
 ) -> tuple[float, list[object]]:
     """Nanoseconds per sample, and what was decided when.
 
@@ -77,7 +78,7 @@ def measured(
     best = float("inf")
     decided: list[object] = []
     for _ in range(3):
-        monitor = spec.monitor(engine=engine)
+        monitor = spec.monitor(engine=engine, only=only)
         step = monitor.step_ns
         made = []
         began = time.process_time_ns()

@@ -4,7 +4,7 @@
 
 Bytes of a plan get a hash that fits, so that what is fuzzed is what is behind it. A plan that is
 accepted judges some samples; each run is repeated after a reset and has to say the same, then with
-memory that ends somewhere, and must not be green. Prints what AFL++ counted, and the inputs at which
+memory that ends somewhere, and must not be green. Prints what AFL++ counted and the inputs at which
 the core crashed, hung, or was found out by AddressSanitizer or UBSan; exits 1 if there are any.
 Needs the Debian packages afl++ and libclang-rt-14-dev.
 """
@@ -121,7 +121,7 @@ def fuzz(target: str, folder: Path, seconds: int) -> Found:
         "RVMON_PLANS": str(folder / "held"),
         "ASAN_OPTIONS": "abort_on_error=1:symbolize=0:detect_leaks=0",
     }
-    words = ["afl-fuzz", "-i", folder / "in", "-o", folder / "out", "-m", "none", "-t", "2000"]
+    words = ["afl-fuzz", "-i", folder / "in", "-o", folder / "out", "-m", "none", "-t", "5000"]
     with (folder / "log.txt").open("w") as log:
         subprocess.run(
             [*map(str, words), "-V", str(seconds), "--", str(program)],

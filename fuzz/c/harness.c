@@ -193,7 +193,7 @@ static uint64_t one_run(rv_monitor *m, script s)
     }
     sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
     sum = noted_records(m, sum, true);
-    for (i = 0; i < sizes.requirements; i++) {
+    for (i = 0; (i < sizes.requirements) && (i < NAMES_MOST); i++) {
         const int verdict = rv_verdict(m, i);
         sum = mixed(mixed(sum, verdict), rv_count(m, i).failed);
         if (rv_spoilt(m) && ((verdict == RV_PASS) || (verdict == RV_NOT_TRIGGERED))) {

@@ -261,6 +261,7 @@ static bool check_inputs(const plan *p, const part_plan *x)
         const int32_t number = e->name - p->header->signals;
         if (!is_within(number, 0, p->header->events) || (e->field != fields)
             || (e->fields != p->field_first[number + 1] - p->field_first[number])
+            || (((e->flags & EVENT_KEY) != 0) && ((x->each == 0) || (i != x->each_event)))
             || !both(p, e->on_occurrence, 0, x->atoms.count)
             || !lists(p, e->needs, 0, x->atoms.count)
             || !is_within(e->key, -1, e->fields)) {
