@@ -14,8 +14,14 @@ _SWAPS = (
     ("operator", r"(?<= )(\+|-)(?= (?!1\b))", ("+", "-")),
     ("constant", r"\b(true|false)\b", ("true", "false")),
     ("constant", r"\b(IS_TRUE|IS_FALSE)\b", ("IS_TRUE", "IS_FALSE")),
+    ("constant", r"(?<=[ (])([01])(?=[;,) ])", ("0", "1")),
+    ("operator", r"(?<= )(&|\|)(?= )", ("&", "|")),
+    ("operator", r"(?<= )(\*|/)(?= )", ("*", "/")),
 )
 """Kind, what is looked for, and the words of which each is replaced by its neighbour in a pair."""
+
+_NEGATED = re.compile(r"^\s+(?:\} else )?if (\(.+\)) \{$")
+"""A condition that stands on one line."""
 
 _DROPS = (
     ("off by one", r" [+-] 1\b(?!\])"),
@@ -48,6 +54,8 @@ def _changes(line: str) -> Iterator[tuple[str, int, int, str]]:
         for found in re.finditer(pattern, line):
             index = words.index(found[1])
             yield kind, found.start(1), found.end(1), words[index ^ 1]
+    if found := _NEGATED.match(line):
+        yield "negated condition", found.start(1), found.end(1), f"(!{found[1]})"
     for kind, pattern in _DROPS:
         for found in re.finditer(pattern, line):
             text = ";" if kind == "dropped statement" else ""

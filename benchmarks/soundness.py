@@ -1,9 +1,11 @@
 r"""Green never hides a failure: what was lost is filled in, and no verdict may turn.
 
     python -m benchmarks.soundness --runs 20000 --fillings 8 --seed 1 --workers 2
+    python -m benchmarks.soundness --runs 20000 --outages --time sampled
 
 A run's P or NT that becomes F, or its F that becomes anything else, is printed; exits 1 if there is
-one.
+one. With outages it is the law to come that is tried, and every other run lost nothing else: those
+may ask what is known, too.
 """
 
 from __future__ import annotations
@@ -13,32 +15,76 @@ import random
 import sys
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 
 from tests.tools.differential import case_of
-from tests.tools.sound import is_spoken_of, overturned
+from tests.tools.law import judge
+from tests.tools.sound import Tried, is_spoken_of, narrowed, overturned
 
 from rvmon.execute.parallel import execute
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.testing.show import show_case
+from rvmon.testing.show import show_case, show_spec
+
+
+def try_seed(
+    seed: str,
+    fillings: int,
+    profile: Profile,
+    *,
+    outages: bool,
+    alone: bool,
+    about: str = "",
+) -> tuple[Case, Tried] | None:
+    """Fill in what the case of a seed lost; `None` if the law does not speak of it.
+
+    Args:
+        seed: of the case and of the fillings.
+        fillings: so many are tried.
+        profile: of the specification.
+        outages: whether stretches of time are lost, under the law to come.
+        alone: whether nothing else is.
+        about: what the specification has to hold, as text.
+    """
+    profile = replace(profile, stale=not alone)
+    traces = TraceProfile(unknowns=not alone, outages=100 if outages else 0)
+    case = narrowed(case_of(seed, profile, traces))
+    if about not in show_spec(case.spec) or not (alone or is_spoken_of(case.spec)):
+        return None
+    rng = random.Random(seed)
+    asked = partial(judge, next_law=outages)
+    return case, overturned(rng, case, fillings, asked, whole=not alone)
 
 
 def run_part(options: argparse.Namespace, seeds: Iterable[str]) -> tuple[Counter[str], list[str]]:
     """Try the cases of some seeds; runs in a worker."""
-    verdicts: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     found: list[str] = []
-    for seed in seeds:
-        case = case_of(seed, Profile(requirements=1), TraceProfile())
-        if not is_spoken_of(case.spec):
+    time = TimeModel(options.time) if options.time else None
+    profile = Profile(requirements=1, time=time, depth=options.depth)
+    for number, seed in enumerate(seeds):
+        alone = options.outages and number % 2 == 1
+        tried = try_seed(
+            seed,
+            options.fillings,
+            profile,
+            outages=options.outages,
+            alone=alone,
+            about=options.about,
+        )
+        if tried is None:
             continue
-        rng = random.Random(seed)
-        before, overturning = overturned(rng, case, options.fillings)
-        verdicts.update(verdict.value for verdict in before.values())
-        if overturning is not None:
-            lines = [f"seed {seed}", show_case(case), "filled in:", show_case(overturning)]
-            found.append("\n".join(lines))
-    return verdicts, found
+        case, outcome = tried
+        counts.update(verdict.value for verdict in outcome.verdicts.values())
+        counts["split"] += outcome.is_split
+        if outcome.overturning is not None:
+            before = ", ".join(verdict.value for verdict in outcome.verdicts.values())
+            lines = [f"seed {seed}: {before}", show_case(case)]
+            found.append("\n".join([*lines, "filled in:", show_case(outcome.overturning)]))
+    return counts, found
 
 
 def main(argv: list[str]) -> int:
@@ -48,19 +94,24 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--fillings", type=int, default=8)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--time", choices=[model.value for model in TimeModel])
+    parser.add_argument("--outages", action="store_true")
+    parser.add_argument("--depth", type=int, default=4, help="of the deepest consequent")
+    parser.add_argument("--about", default="", help="only specifications that hold this text")
     options = parser.parse_args(argv)
     seeds = [f"{options.seed}/{number}" for number in range(options.runs)]
     parts = [seeds[start : start + 50] for start in range(0, len(seeds), 50)]
-    verdicts: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     found: list[str] = []
     begin = partial(partial, run_part, options)
     for counted, overturning in execute(parts, begin, jobs=options.workers, what="part"):
-        verdicts += counted
+        counts += counted
         found += overturning
-    shown = ", ".join(f"{name} {n}" for name, n in sorted(verdicts.items()))
-    total = verdicts.total()
-    print(f"runs {total} (of {options.runs}; the others ask what is known), {shown}")
-    print(f"{options.fillings} fillings each, overturned {len(found)}")
+    split = counts.pop("split", 0)
+    shown = ", ".join(f"{name} {n}" for name, n in sorted(counts.items()))
+    print(f"runs {counts.total()} (of {options.runs}; the others are not spoken of), {shown}")
+    print(f"{options.fillings} fillings each, with and without a failure in {split} runs")
+    print(f"overturned {len(found)}")
     for text in found[:3]:
         print("\n" + "=" * 72 + "\n" + text)
     return 1 if found else 0

@@ -19,6 +19,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 _MARK_OF_FIXTURE = {
     "chromium": "browser",
+    "cortex_m": "compiler",
     "directed_results": "campaign",
     "gcc": "compiler",
     "subject": "law",
@@ -62,6 +63,13 @@ def chromium() -> str:
 def graphviz() -> str:
     """Path of the program that lays out graphs."""
     return _program("dot")
+
+
+@pytest.fixture
+def cortex_m() -> None:
+    """C can be compiled for a Cortex-M, and run there."""
+    _program("arm-none-eabi-gcc")
+    _program("qemu-system-arm")
 
 
 @pytest.fixture

@@ -1,15 +1,13 @@
-/* The monitor of base.rv on a Cortex-M4, without an operating system, a heap, or printf.
+/* A monitor on a Cortex-M4, without an operating system, a heap, or printf.
  *
- * Rows of a recording stand for what the sensors of a robot say; what is decided goes to the
+ * Samples of a recording stand for what the sensors of a robot say; what is decided goes to the
  * debugger (semihosting), as it would to a serial line.
  */
-#include "base.h"
-#include "rows.h" /* const struct { int64_t t; base_sample sample; } rows[]; const char *names[] */
+#include "rows.h" /* by run.py: the plan, rows[] of samples, ATTEMPTS, MEMORY */
 
 #define SYSTICK ((volatile uint32_t *)0xE000E010) /* control, reload, value */
 
-static base_monitor monitor;
-static base_attempt attempts[16];
+static uint64_t block[(MEMORY + 7) / 8];
 
 static void host(uint32_t operation, const void *argument)
 {
@@ -33,43 +31,56 @@ static void say_number(int64_t number)
         *--first = '-';
     }
     say(first);
+    say(" ");
 }
 
-static void on_record(void *user, const base_record *record)
+static void tell(rv_monitor *m)
 {
-    static const char *const verdicts[] = {"F", "P", "I", "NT"};
-    (void)user;
-    say(names[record->requirement]);
-    say(record->in_doubt ? "?" : "#");
-    say_number(record->number);
-    say(" ");
-    say(verdicts[record->verdict]);
-    say(" ");
-    say_number(record->triggered);
-    say(" ");
-    say_number(record->decided);
-    say("\n");
+    static const char *const verdicts[] = {"F ", "P ", "I ", "NT "};
+    const rv_record *records;
+    const int64_t count = rv_records(m, &records);
+    for (int64_t i = 0; i < count; i++) {
+        say(REQUIREMENTS[records[i].requirement]);
+        say(records[i].in_doubt ? "?" : "#");
+        say_number(records[i].number);
+        say(verdicts[records[i].verdict]);
+        say_number(records[i].triggered);
+        say_number(records[i].decided);
+        say("\n");
+    }
+    rv_forget_records(m);
 }
 
 void reset(void)
 {
-    const int32_t count = sizeof rows / sizeof *rows;
+    const rv_memory memory = {.block = block, .size = sizeof block};
+    rv_monitor *m = rv_new(PLAN, sizeof PLAN, memory);
+    const size_t begun = m == NULL ? 0 : rv_memory_used(m);
+    const rv_update *updates = all_updates;
     uint32_t ticks = 0, most = 0;
+    int code = m == NULL ? RV_NO_MEMORY : rv_reserve(m, ATTEMPTS);
+    const size_t reserved = m == NULL ? 0 : rv_memory_used(m);
     SYSTICK[1] = 0xFFFFFF;
-    base_init(&monitor, attempts, sizeof attempts / sizeof *attempts, on_record, NULL);
-    for (int32_t row = 0; row < count; row++) {
+    for (size_t row = 0; code == RV_OK && row < sizeof rows / sizeof *rows; row++) {
         SYSTICK[2] = 0; /* any value begins again */
         SYSTICK[0] = 5; /* the clock of the processor, no interrupt */
-        base_step(&monitor, rows[row].t, &rows[row].sample);
+        code = rv_step(m, rows[row].t, updates, rows[row].count);
         const uint32_t took = 0xFFFFFF - SYSTICK[2];
         ticks += took;
         most = took > most ? took : most;
+        updates += rows[row].count;
+        tell(m);
     }
-    base_finish(&monitor, INT64_MIN);
-    say(base_overflowed(&monitor) ? "overflowed\n" : "");
+    if (code == RV_OK) {
+        code = rv_finish(m, RV_NO_TIME);
+        tell(m);
+    }
+    say_number(code);
     say_number(ticks);
-    say(" ");
     say_number(most);
+    say_number((int64_t)begun);
+    say_number((int64_t)reserved);
+    say_number(m == NULL ? 0 : (int64_t)rv_memory_used(m));
     say("\n");
     host(0x18 /* SYS_EXIT */, (const void *)0x20026 /* the application has ended */);
 }

@@ -29,8 +29,11 @@ def test_the_node_says_what_rvmon_says(gcc, tmp_path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text('#include "rclcpp_stub.hpp"\n')
     flags = ["-Wall", "-Wextra", "-Werror", f"-I{tmp_path}", f"-I{Path(__file__).parent}"]
-    _run(gcc, "-c", tmp_path / "base.c", "-o", tmp_path / "base.o")
-    _run("g++", "-std=c++17", *flags, node, tmp_path / "base.o", "-o", tmp_path / "node")
+    objects = []
+    for name in ("rvmon_core", "base_plan"):
+        objects.append(tmp_path / f"{name}.o")
+        _run(gcc, "-c", tmp_path / f"{name}.c", "-o", objects[-1])
+    _run("g++", "-std=c++17", *flags, node, *objects, "-o", tmp_path / "node")
     lines = []
     with (EXAMPLES / "base.csv").open(newline="") as file:
         for row in csv.DictReader(file):

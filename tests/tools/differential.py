@@ -182,7 +182,8 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
             provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)
             found += judgement.seen.differences(actual) if not found else ()
-        again = make(case) if online and not found and not is_silent(monitor) else None
+        asked = online and not found and not is_silent(monitor)
+        again = make(case) if asked else None
         if again is not None:
             found = online_differences(judgement, again)
     except Exception as error:  # noqa: BLE001 - whatever an engine raises is a finding

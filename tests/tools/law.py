@@ -9,11 +9,27 @@ from rvmon.testing.oracle import evaluate
 from rvmon.verdict.report import Report
 
 
-def judge(case: Case) -> Report:
+def judge(case: Case, *, next_law: bool = False) -> Report:
     """The oracle's report on a case."""
-    return evaluate(case.spec, case.samples, end=case.end, advances=case.advances, names=case.names)
+    return evaluate(
+        case.spec,
+        case.samples,
+        end=case.end,
+        advances=case.advances,
+        names=case.names,
+        outages=case.outages,
+        next_law=next_law,
+    )
 
 
-def word(case: Case) -> Word:
+def word(case: Case, *, next_law: bool = False) -> Word:
     """The trace of a case, position by position."""
-    return word_of(case.spec, case.samples, end=case.end, advances=case.advances, names=case.names)
+    return word_of(
+        case.spec,
+        case.samples,
+        end=case.end,
+        advances=case.advances,
+        names=case.names,
+        outages=case.outages,
+        next_law=next_law,
+    )

@@ -10,35 +10,93 @@ from rvmon.testing.case import Case
 from rvmon.testing.generate.rng import Rng, chance, pick
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
+from tests.tools.law import word
 
 _NUMBERS = (-2, -1, 0, 1, 2, 3)
 
 
-def refilled(rng: Rng, case: Case) -> Case:
-    """The case with a random value wherever one was lost.
+def refilled(rng: Rng, case: Case, *, whole: bool = True) -> Case:
+    """The case with a random value wherever one was lost, and whatever may have come in an outage.
 
-    Signals keep their births: before its first known value nothing of a signal was lost. Where a
-    signal became stale, updates may be put in, if nothing in the specification counts updates;
-    events without a source may occur. NaN of a signal that ignores it is no update: nothing is lost
-    there.
+    Signals keep their births: before its first known value nothing of a signal was lost, but in an
+    outage. Where a signal became stale, updates may be put in, if nothing in the specification
+    counts updates; events without a source may occur. NaN of a signal that ignores it is no update:
+    nothing is lost there.
 
     Args:
         rng: draws the values.
         case: what is known.
+        whole: whether to fill in more than the outages.
+    """
+    through = _through_outages(rng, case)
+    return _with_values(rng, case, through) if whole else through
+
+
+def _through_outages(rng: Rng, case: Case) -> Case:
+    """The case with samples and values wherever an outage may have swallowed some.
+
+    That the trace reached to the end of each was known, and stays so.
+    """
+    if not case.outages:
+        return case
+    lost = _Lost(rng, case.spec)
+    told: dict[int, dict[str, Value]] = {s.t: dict(s.values) for s in case.samples}
+    # Of two values with one stamp the last counts; those that end an outage came behind it.
+    for outage in sorted(case.outages, key=lambda outage: outage.first):
+        names = outage.names if case.names is None else outage.names & case.names
+        often = pick(rng, (10, 40, 80))
+        for t in range(outage.first, outage.last + 1):
+            if not chance(rng, often):
+                continue
+            values = told.setdefault(t, {})
+            for name in sorted(names):
+                if chance(rng, 60):
+                    lost.put(values, name, over=_may_be_overwritten(case, name, t))
+    advances = [(t, index) for index, t in enumerate(case.actions) if isinstance(t, int)]
+    samples = [Sample(t, values) for t, values in sorted(told.items())]
+    actions: list[Sample | int] = []
+    for sample in samples:
+        while advances and advances[0][0] <= sample.t:
+            actions.append(advances.pop(0)[0])
+        actions.append(sample)
+    actions += [t for t, _ in advances]
+    return replace(case, actions=tuple(actions), end=word(case).end, outages=())
+
+
+def _may_be_overwritten(case: Case, name: str, t: int) -> bool:
+    """Whether what was read of a name at an instant may have been followed by what was lost.
+
+    That is everywhere in an outage, but at its end: what was read there ended it. An outage that
+    begins where it ends is read before and behind.
+    """
+    of_name = [outage for outage in case.outages if name in outage.names]
+    return any(o.first <= t < o.last or o.first == t == o.last for o in of_name)
+
+
+def _with_values(rng: Rng, case: Case, through: Case) -> Case:
+    """A case with a value wherever it says that it is unknown, or says nothing for want of one.
+
+    Args:
+        rng: draws the values.
+        case: what was known.
+        through: the same with its outages filled in, whose values stay, unknown or not.
     """
     lost = _Lost(rng, case.spec)
+    read = {sample.t: sample.values for sample in case.samples}
     actions: list[Sample | int] = []
     born: set[str] = set()
     updated: dict[str, int] = {}
-    for action in case.actions:
+    for action in through.actions:
         if isinstance(action, int):
             actions.append(action)
             continue
+        born |= {name for o in case.outages if o.first <= action.t for name in o.names}
         values: dict[str, Value] = {}
         for name, value in action.values.items():
             if name in case.spec.ignoring and not _is_known(value):
                 continue
-            values[name] = lost.filled(name, value, born=name in born)
+            known = name not in read.get(action.t, {})
+            values[name] = value if known else lost.filled(name, value, born=name in born)
             if name in case.spec.signals:
                 updated[name] = action.t
                 if _is_known(value):
@@ -52,7 +110,7 @@ def refilled(rng: Rng, case: Case) -> Case:
                 values[name] = lost.scalar(signal.type)
         actions.append(Sample(action.t, values))
     names = None if case.names is None else case.names | case.spec.events.keys()
-    return replace(case, actions=tuple(actions), names=names)
+    return replace(through, actions=tuple(actions), names=names)
 
 
 def _is_known(value: Value) -> bool:
@@ -65,6 +123,35 @@ class _Lost:
 
     rng: Rng
     spec: CheckedSpec
+
+    def put(self, values: dict[str, Value], name: str, *, over: bool) -> None:
+        """Add what may have come of a name in an outage to what a sample says.
+
+        Args:
+            values: what it says.
+            name: of a signal or event.
+            over: whether it may have come behind that.
+        """
+        read = values.get(name)
+        if name in self.spec.signals:
+            if name not in values or over:
+                unknown = chance(self.rng, 10)
+                values[name] = None if unknown else self.scalar(self.spec.signals[name].type)
+            return
+        event = self.spec.events[name]
+        if not read:
+            values[name] = None if chance(self.rng, 5) else self.occurrence(event)
+        elif event.fields and self._distinguishes(event):
+            one = read if isinstance(read, Mapping) else {}
+            values[name] = (
+                *(read if isinstance(read, tuple) else (one,)),
+                self._payload(event, {}),
+            )
+
+    def _distinguishes(self, event: Event) -> bool:
+        """Whether two payloads of an event at one instant are no error."""
+        found = [requirement.for_each for requirement in self.spec.requirements.values()]
+        return all(one is not None and one.value.event == event.name for one in found)
 
     def filled(self, name: str, value: Value, *, born: bool) -> Value:
         if name in self.spec.signals:

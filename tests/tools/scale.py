@@ -104,6 +104,8 @@ def _instants(case: Case) -> Iterator[int]:
         yield action.t if isinstance(action, Sample) else action
     if case.end is not None:
         yield case.end
+    for outage in case.outages:
+        yield from (outage.first, outage.last)
 
 
 def _timed(case: Case, longer: Callable[[int], int], later: Callable[[int], int]) -> Case:
@@ -115,6 +117,7 @@ def _timed(case: Case, longer: Callable[[int], int], later: Callable[[int], int]
         ),
         None if case.end is None else later(case.end),
         case.names,
+        tuple(replace(o, first=later(o.first), last=later(o.last)) for o in case.outages),
     )
 
 

@@ -62,6 +62,7 @@ def _smaller(case: Case) -> Iterator[Case]:
         yield replace(case, end=None)
     if case.names is not None:
         yield replace(case, names=None)
+    yield from _less_lost(case)
     for name, requirement in requirements.items():
         for smaller in _smaller_requirement(requirement):
             spec = replace(case.spec, requirements={**requirements, name: smaller})
@@ -75,6 +76,17 @@ def _smaller(case: Case) -> Iterator[Case]:
             yield replace(case, spec=replace(case.spec, signals=signals))
     yield from _fewer_values(case)
     yield from _less_time(case)
+
+
+def _less_lost(case: Case) -> Iterator[Case]:
+    for place, outage in enumerate(case.outages):
+        rest = (*case.outages[:place], *case.outages[place + 1 :])
+        yield replace(case, outages=rest)
+        smaller = [replace(outage, names=outage.names - {name}) for name in sorted(outage.names)]
+        if outage.first < outage.last:
+            smaller.append(replace(outage, last=outage.last - 1))
+        for one in smaller:
+            yield replace(case, outages=(*rest, one))
 
 
 def _fewer_values(case: Case) -> Iterator[Case]:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.generate.rng import Rng
 from rvmon.testing.law.walk import parts_of, subformulas
+from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+from tests.tools.late import names_read
 from tests.tools.law import judge as oracle
 from tests.tools.refill import refilled
 
@@ -37,26 +40,70 @@ def is_spoken_of(spec: CheckedSpec) -> bool:
     return True
 
 
+def narrowed(case: Case) -> Case:
+    """The case without the names that no requirement reads: the same to judge, and sooner."""
+    spec = case.spec
+    read = {name for one in spec.requirements.values() for name in names_read(one)}
+    actions = tuple(
+        replace(action, values={n: v for n, v in action.values.items() if n in read})
+        if isinstance(action, Sample)
+        else action
+        for action in case.actions
+    )
+    signals = {name: signal for name, signal in spec.signals.items() if name in read}
+    events = {name: event for name, event in spec.events.items() if name in read}
+    outages = tuple(replace(outage, names=outage.names & read) for outage in case.outages)
+    return replace(
+        case,
+        spec=replace(spec, signals=signals, events=events),
+        actions=actions,
+        outages=outages,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Tried:
+    """What came of filling in what a case lost.
+
+    Attributes:
+        verdicts: on the case itself.
+        overturning: a filling that overturns one of them, if any was found.
+        is_split: whether fillings with and without a failure were found; then only `I` is right.
+    """
+
+    verdicts: Mapping[str, Verdict]
+    overturning: Case | None
+    is_split: bool
+
+
 def overturned(
-    rng: Rng, case: Case, fillings: int, judge: Callable[[Case], Report] = oracle
-) -> tuple[Mapping[str, Verdict], Case | None]:
-    """The verdicts on a case, and a filling of what it lost that overturns one, if any was found.
+    rng: Rng,
+    case: Case,
+    fillings: int,
+    judge: Callable[[Case], Report] = oracle,
+    *,
+    whole: bool = True,
+) -> Tried:
+    """The verdicts on a case, against those with what it lost filled in at random.
 
     Args:
         rng: draws what is filled in.
         case: of a specification that the law speaks of.
         fillings: so many are tried.
         judge: gives the verdicts.
+        whole: whether to fill in more than the outages.
 
     Source: SEMANTICS, section 7.
     """
     before = judge(case).verdicts
+    seen: dict[str, set[bool]] = {name: set() for name in before}
     for _ in range(fillings):
-        filled = refilled(rng, case)
+        filled = refilled(rng, case, whole=whole)
         after = judge(filled).verdicts
         for name, verdict in before.items():
             green = verdict in (Verdict.PASS, Verdict.NOT_TRIGGERED)
             failed = after[name] is Verdict.FAIL
+            seen[name].add(failed)
             if (green and failed) or (verdict is Verdict.FAIL and not failed):
-                return before, filled
-    return before, None
+                return Tried(before, filled, len(seen[name]) > 1)
+    return Tried(before, None, any(len(kinds) > 1 for kinds in seen.values()))

@@ -27,8 +27,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="a specification as C that runs alone, or as automata",
         description="Write a monitor that needs nothing of rvmon: C99 (the core that judges, the "
         "plan that it judges by, a header for C++) that runs in one block of memory. Or the "
-        "automata: dot for Graphviz, json, hoa (the least LTL3 monitors of requirements without windows of time). Or costs: a line per "
-        "requirement with its monitor and what open attempts cost.",
+        "automata: dot for Graphviz, json, hoa (the least LTL3 monitors of requirements without "
+        "windows of time). Or costs: a line per requirement with its monitor and what open "
+        "attempts cost.",
         epilog="examples: rvmon compile examples/base.rv --to c -o monitor/; rvmon compile "
         "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg",
     )

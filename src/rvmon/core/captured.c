@@ -183,9 +183,35 @@ static void keep_watch(run *r, int64_t t)
     r->watched = r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE));
 }
 
+/* Take a run among those of attempts that were triggered in another. */
+static void adopt(run *parent, run *child)
+{
+    child->parent = parent;
+    child->previous_sibling = NULL;
+    child->sibling = parent->first_child;
+    if (parent->first_child != NULL) {
+        parent->first_child->previous_sibling = child;
+    }
+    parent->first_child = child;
+}
+
+/* Let go of the run of an attempt that is over. */
+void let_go(run *r)
+{
+    if (r->previous_sibling != NULL) {
+        r->previous_sibling->sibling = r->sibling;
+    } else {
+        r->parent->first_child = r->sibling;
+    }
+    if (r->sibling != NULL) {
+        r->sibling->previous_sibling = r->previous_sibling;
+    }
+    touch_run(r->parent); /* it may be over now, too */
+    delist(r, true);
+}
+
 void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
 {
-    home *h = r->home;
     const bool watched = r->part->judges[index].blurs >= 0;
     run *made = forked(r);
     if (made == NULL) {
@@ -207,13 +233,8 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     } else {
         vary(made, t, false);
     }
-    r->children++;
-    if (h->captured == NULL) {
-        h->captured = made;
-    } else {
-        h->last_captured->next = made;
-    }
-    h->last_captured = made;
+    adopt(r, made);
+    enlist(made, true);
     begin_here(made, index, t, triggered);
     set_alarm(made, next_position(made));
     if (watched) {
@@ -227,8 +248,9 @@ void look_after(run *r, int64_t t)
     run *one;
     bool some = false;
     int32_t i;
-    for (one = (r->children > 0) ? r->home->captured : NULL; one != NULL; one = one->next) {
-        if ((one->parent == r) && one->watched) {
+    for (one = r->first_child; one != NULL; one = one->sibling) {
+        if (one->watched) {
+            touch_run(one);
             keep_watch(one, t);
             some = some || one->watched;
         }
@@ -243,7 +265,7 @@ void look_after(run *r, int64_t t)
 /* What occurred at the last position is over. */
 void forget_last(run *r)
 {
-    r->touched_now = true;
+    touch_run(r);
     if (r->over) {
         r->over = false;
         forget(r);

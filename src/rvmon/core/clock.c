@@ -243,10 +243,10 @@ void visit(run *r, int64_t t)
     if (t >= r->cut) {
         soil_lapsed(r);
     }
+    ring(r, t); /* before what fades: an atom that it reads anew may speak of this position only */
     if (r->at.fading_count + r->at.fresh_count > 0) {
         recheck_fading(r);
     }
-    ring(r, t);
     if (r->opening && (t >= r->opens_at)) {
         r->opening = false;
         touch_all(r, TOUCHED_TRIGGER);

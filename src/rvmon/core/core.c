@@ -258,6 +258,9 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     if (m->finished) {
         return RV_FINISHED;
     }
+    if (m->spoilt) {
+        return RV_NO_MEMORY;
+    }
     if (!is_in_range(t)) {
         return RV_OUT_OF_RANGE;
     }
@@ -288,6 +291,9 @@ int rv_advance(rv_monitor *m, int64_t t)
     int32_t i;
     if (m->finished) {
         return RV_FINISHED;
+    }
+    if (m->spoilt) {
+        return RV_NO_MEMORY;
     }
     if (!is_in_range(t)) {
         return RV_OUT_OF_RANGE;
@@ -328,7 +334,7 @@ int rv_finish(rv_monitor *m, int64_t t)
         return RV_OUT_OF_RANGE;
     }
     m->finished = true;
-    if (end != RV_NO_TIME) {
+    if ((end != RV_NO_TIME) && !m->spoilt) {
         const int64_t reached = (m->reached > end) ? m->reached : end;
         for (i = 0; i < m->plan.part_count; i++) {
             home_close(&m->homes[i], end, reached);
@@ -342,7 +348,7 @@ int64_t rv_next_due(rv_monitor *m)
 {
     int64_t found = NEVER;
     int32_t i;
-    for (i = 0; !m->finished && (i < m->plan.part_count); i++) {
+    for (i = 0; !m->finished && !m->spoilt && (i < m->plan.part_count); i++) {
         found = least(found, home_due(&m->homes[i]));
     }
     return found;

@@ -106,7 +106,7 @@ int rv_reset(rv_monitor *m);
 void rv_set_absent(rv_monitor *m, int32_t name);
 
 /* Judge one sample, whole. What is refused leaves the monitor as it was, except RV_NO_MEMORY: then
- * the run is spoilt, and no verdict of it is green. */
+ * the run is spoilt: it takes nothing more, and no verdict of it is green. */
 int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count);
 
 /* No sample before `t` will come. */

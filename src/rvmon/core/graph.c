@@ -116,6 +116,18 @@ static void store(run *r, int32_t place, uint8_t value)
     }
 }
 
+/* Store another truth of a node; what depends on it is to be worked out. */
+static void change(run *r, int32_t place, uint8_t value)
+{
+    const list parents = r->part->nodes[place].parents[r->at.phase];
+    const int32_t *parent = LIST(PLAN(r), parents);
+    int32_t i;
+    store(r, place, value);
+    for (i = 0; i < parents.count; i++) {
+        soil(r, parent[i]);
+    }
+}
+
 bool is_soiled(const run *r)
 {
     const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
@@ -141,13 +153,7 @@ void work_out(run *r, int64_t t)
                 r->dirty[word] &= r->dirty[word] - 1;
                 value = evaluated(r, place, t);
                 if (value != r->truth[place]) {
-                    const list parents = r->part->nodes[place].parents[r->at.phase];
-                    const int32_t *parent = LIST(PLAN(r), parents);
-                    int32_t i;
-                    store(r, place, value);
-                    for (i = 0; i < parents.count; i++) {
-                        soil(r, parent[i]);
-                    }
+                    change(r, place, value);
                 }
             }
             r->dirty_words[upper] &= ~(UINT64_C(1) << (word & 63));
@@ -168,7 +174,7 @@ void vary(run *r, int64_t t, bool pending)
     for (i = 0; i < p->varying_nodes.count; i++) {
         const uint8_t value = evaluated(r, nodes[i], t);
         if (value != r->truth[nodes[i]]) {
-            store(r, nodes[i], value);
+            change(r, nodes[i], value); /* what remembers it looks at the next position */
         }
     }
 }

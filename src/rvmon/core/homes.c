@@ -3,101 +3,91 @@
 
 #include <string.h>
 
-/* The run behind another: those that attempts start in, then those of attempts. */
-run *following(const home *h, const run *r)
-{
-    return ((r == h->last_root) && (r->next == NULL)) ? h->captured : r->next;
-}
-
-/* Let go of attempts and instances that are over. */
-static void sweep(home *h)
-{
-    run *before = NULL;
-    run *one = h->captured;
-    while (one != NULL) {
-        run *next = one->next;
-        if (is_idle(one)) {
-            one->parent->children--;
-            if (before == NULL) {
-                h->captured = next;
-            } else {
-                before->next = next;
-            }
-            set_aside(h, one);
-        } else {
-            before = one;
-        }
-        one = next;
-    }
-    h->last_captured = before;
-    if ((h->part->plan->flags & PART_FORGETS) != 0) {
-        close_instances(h);
-    }
-}
-
-/* An instant before which nothing happens in a run, no sample being taken. */
-static int64_t alarm_of(const run *r)
-{
-    return r->at.started ? r->at.alarm : ((GAP(r) > 1) ? r->at.awaited : NEVER);
-}
-
 static bool is_apart(const home *h)
 {
     return h->part->plan->captured > 0;
 }
 
+static void come_through(run *r, int64_t t)
+{
+    through(r, t, false);
+}
+
 /* Let time pass up to `limit`, in all as one. */
 static void pass_all(home *h, int64_t limit)
 {
-    const int64_t gap = h->monitor->plan.header->gap;
-    run *one;
-    int64_t t = (gap > 0) ? h->alarm : limit;
-    while (t <= limit) {
-        for (one = h->root; one != NULL; one = following(h, one)) {
-            if ((gap == 0) || (alarm_of(one) <= t)) {
-                through(one, t, false);
-            }
-        }
-        t = NEVER;
-        for (one = h->root; (gap > 0) && (one != NULL); one = following(h, one)) {
-            t = least(t, alarm_of(one));
+    while (timers_next(&h->alarms) <= limit) {
+        const int64_t t = (h->monitor->plan.header->gap > 0) ? timers_next(&h->alarms) : limit;
+        for_called(h, call_due(h, t), t, come_through);
+        set_alarms(h);
+        if (h->monitor->plan.header->gap == 0) {
+            break; /* there is no position before the next sample */
         }
     }
 }
 
-/* End a call. */
+/* Forget of those that were touched the ones that are gone. */
+static void drop_gone(home *h)
+{
+    int32_t kept = 0;
+    int32_t i;
+    for (i = 0; i < h->touched_count; i++) {
+        if (h->touched[i] != NULL) {
+            h->touched[kept] = h->touched[i];
+            kept++;
+        }
+    }
+    h->touched_count = kept;
+}
+
+static void untouch_all(home *h)
+{
+    int32_t i;
+    for (i = 0; i < h->touched_count; i++) {
+        h->touched[i]->touched_now = false;
+    }
+    h->touched_count = 0;
+}
+
+/* End a call: let go of attempts and instances that are over, and set the alarms of what was touched. */
 static void rest_all(home *h)
 {
-    run *one;
+    int32_t i;
     flush_turns(h);
-    sweep(h);
-    h->alarm = NEVER;
-    for (one = h->root; one != NULL; one = following(h, one)) {
-        h->alarm = least(h->alarm, alarm_of(one));
-        one->touched_now = false;
+    for (i = 0; i < h->touched_count; i++) {
+        if ((h->touched[i]->parent != NULL) && is_idle(h->touched[i])) {
+            h->touched[i]->touched_now = false;
+            let_go(h->touched[i]);
+            h->touched[i] = NULL;
+        }
     }
+    for (i = 0; i < h->touched_count; i++) {
+        run *r = h->touched[i];
+        if ((r != NULL) && (r->parent == NULL) && (r != h->root)
+            && ((h->part->plan->flags & PART_FORGETS) != 0) && is_over(r)) {
+            r->touched_now = false;
+            close_instance(r);
+            h->touched[i] = NULL;
+        }
+    }
+    drop_gone(h);
+    set_alarms(h);
+    untouch_all(h);
 }
 
 /* Put all runs aside but the root, which is as before the first sample. */
 static void clear_home(home *h)
 {
     const part_plan *p = h->part->plan;
-    run *one = h->root->next;
+    run *one;
     int32_t i;
-    while (one != NULL) {
-        run *next = one->next;
-        set_aside(h, one);
-        one = next;
+    while (h->captured != NULL) {
+        delist(h->captured, true);
     }
-    one = h->captured;
-    while (one != NULL) {
-        run *next = one->next;
-        set_aside(h, one);
-        one = next;
+    while (h->last_root != h->root) {
+        delist(h->last_root, false);
     }
-    h->captured = NULL;
-    h->last_captured = NULL;
-    h->last_root = h->root;
+    untouch_all(h);
     h->used = 0;
     h->free_slot = -1;
     h->sure[0] = h->sure[1] = -1;
@@ -115,14 +105,14 @@ static void clear_home(home *h)
     h->alarm = NEVER;
     h->previous = 0;
     one = h->root;
-    one->next = NULL;
+    one->parent = NULL;
+    one->first_child = NULL;
     one->opens_at = (p->each != 0) ? NEVER : -LIMIT;
     one->cut = NEVER;
     one->occurred = 0;
     one->rank = 0;
     one->key = -1;
     one->judged = 0;
-    one->children = 0;
     one->starters = p->root_starters;
     one->judging = (p->captures.count > 0) ? 0 : p->root_starters;
     one->opening = false;
@@ -147,6 +137,7 @@ bool home_begin(home *h)
         if (h->root == NULL) {
             return false;
         }
+        h->last_root = h->root;
         h->room = arena_take(&h->monitor->memory, (size_t)(p->captured + 1) * sizeof *h->room);
         if (h->room == NULL) {
             return false;
@@ -185,10 +176,16 @@ void home_lack(home *h, bool event, int32_t local)
     }
 }
 
+static void give_inbox(run *r, int64_t t)
+{
+    give(r, t, r->home->inbox, r->home->inbox_count);
+}
+
 /* Judge what the inbox has. */
 void home_sample(home *h, int64_t t)
 {
     const part_plan *p = h->part->plan;
+    int32_t count;
     run *one;
     if (!is_apart(h)) {
         give(h->root, t, h->inbox, h->inbox_count);
@@ -201,17 +198,28 @@ void home_sample(home *h, int64_t t)
         if ((p->flags & PART_KEEPS_PAST) != 0) {
             keep_updates(h, t);
         }
-        for (one = h->root; one != NULL; one = following(h, one)) {
-            give(one, t, h->inbox, h->inbox_count);
+        count = call_concerned(h, t);
+        if (count >= 0) {
+            for_called(h, count, t, give_inbox);
+        } else {
+            for (one = h->root; one != NULL; one = following(h, one)) {
+                touch_run(one);
+                give_inbox(one, t);
+            }
         }
         rest_all(h);
     }
     h->inbox_count = 0;
 }
 
+static void come_to_instant(run *r, int64_t t)
+{
+    reach(r, t);
+    set_alarm(r, next_position(r));
+}
+
 void home_wait(home *h, int64_t t)
 {
-    run *one;
     if (!is_apart(h)) {
         through(h->root, t - 1, true);
         reach(h->root, t);
@@ -220,10 +228,7 @@ void home_wait(home *h, int64_t t)
         return;
     }
     pass_all(h, t - 1);
-    for (one = h->root; one != NULL; one = following(h, one)) {
-        reach(one, t);
-        set_alarm(one, next_position(one));
-    }
+    for_called(h, call_due(h, t), t, come_to_instant);
     rest_all(h);
 }
 
@@ -241,6 +246,9 @@ static void come_to_end(run *r, int64_t end)
             r->at.before = last - gap;
         }
     } else {
+        if (is_apart(r->home) && (r->home->monitor->last > r->at.position)) {
+            forget_last(r); /* a sample that this part does not read is a position, too */
+        }
         r->at.position = r->home->monitor->last;
     }
 }

@@ -123,6 +123,7 @@ static void take_from_over(home *h, int32_t at)
 void open_at(run *r, int64_t t)
 {
     int32_t i;
+    touch_run(r);
     r->opens_at = t;
     r->opening = true;
     r->at.alarm = least(r->at.alarm, t);
@@ -169,8 +170,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         through(made, t - 1, false);
     }
     open_at(made, t);
-    h->last_root->next = made;
-    h->last_root = made;
+    enlist(made, false);
 }
 
 /* Have the instances that the sample at hand asks for; an occurrence of unknown value may be of any. */
@@ -249,7 +249,7 @@ static bool stretches_agree(const stretches *a, const stretches *b)
 static bool is_quiet(const run *r)
 {
     int32_t i;
-    if (r->opening || (r->children > 0) || (r->repeating_count > 0)
+    if (r->opening || (r->first_child != NULL) || (r->repeating_count > 0)
         || ((GAP(r) > 1) && (r->at.awaited < NEVER))) {
         return false;
     }
@@ -262,7 +262,7 @@ static bool is_quiet(const run *r)
 }
 
 /* Whether an instance stands as one would that is made anew when its value occurs next. */
-static bool is_over(const run *r)
+bool is_over(const run *r)
 {
     const part_plan *p = r->part->plan;
     const run *root = r->home->root;
@@ -313,32 +313,30 @@ static void forget_oldest(home *h)
     h->free_key = at;
 }
 
-/* Let go of the instances that are over; their values are remembered for a while. */
-void close_instances(home *h)
+/* Let go of an instance that is over; its value is remembered for a while. */
+void close_instance(run *r)
 {
-    run *before = h->root;
-    while (before->next != NULL) {
-        run *one = before->next;
-        if (one->touched_now && is_over(one)) {
-            key *k = &h->keys[one->key];
-            k->open = NULL;
-            k->older = h->newest;
-            k->newer = -1;
-            if (h->newest < 0) {
-                h->oldest = one->key;
-            } else {
-                h->keys[h->newest].newer = one->key;
-            }
-            h->newest = one->key;
-            h->over_count++;
-            before->next = one->next;
-            set_aside(h, one);
-        } else {
-            before = one;
-        }
+    home *h = r->home;
+    key *k = &h->keys[r->key];
+    k->open = NULL;
+    k->older = h->newest;
+    k->newer = -1;
+    if (h->newest < 0) {
+        h->oldest = r->key;
+    } else {
+        h->keys[h->newest].newer = r->key;
     }
-    h->last_root = before;
+    h->newest = r->key;
+    h->over_count++;
+    delist(r, false);
     while (h->over_count > MOST_OVER) {
         forget_oldest(h);
     }
+}
+
+/* The instance of a value; NULL: it has none. */
+run *instance_of(const home *h, const rv_number *value)
+{
+    const int32_t at = find_key(h, value);
+    return (at >= 0) ? h->keys[at].open : NULL;
 }

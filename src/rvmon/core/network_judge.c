@@ -88,6 +88,18 @@ static int32_t readings(const judging *g)
     return g->net->parted ? 2 : 1;
 }
 
+/* Whether nothing more is asked of a judge: memory was short, what its networks hold may be torn, or
+ * there are none. */
+static bool is_given_up(judging *g)
+{
+    if ((g->net == NULL) || is_spoilt(g)) {
+        g->j->lag = 0;
+        set_rule_due(g->r, g->index, NEVER);
+        return true;
+    }
+    return false;
+}
+
 static attempt *attempt_of(const judging *g, int32_t at)
 {
     return attempt_at(g->r->home, at);
@@ -370,7 +382,7 @@ static void foresee(judging *g, int64_t until)
 void network_foresee(run *r, int32_t index, int64_t until)
 {
     judging g = judging_of(r, index);
-    if ((g.j->first >= 0) && (due_of(&g) <= until)) {
+    if ((g.j->first >= 0) && (due_of(&g) <= until) && !is_given_up(&g)) {
         foresee(&g, until);
     }
 }
@@ -411,7 +423,9 @@ static void pass(judging *g, int64_t now, int64_t last)
 void network_pass(run *r, int32_t index, int64_t now, bool is_position)
 {
     judging g = judging_of(r, index);
-    pass(&g, now, last_at(&g, is_position ? now : now - 1));
+    if (!is_given_up(&g)) {
+        pass(&g, now, last_at(&g, is_position ? now : now - 1));
+    }
 }
 
 /* Leave what is decided by `until` to the visit that follows: it finds when that was. It does not where
@@ -432,7 +446,7 @@ void network_put_off(run *r, int32_t index, int64_t until)
 void network_approach(run *r, int32_t index, int64_t until)
 {
     judging g = judging_of(r, index);
-    if ((g.j->first >= 0) && (due_of(&g) <= until)) {
+    if ((g.j->first >= 0) && (due_of(&g) <= until) && !is_given_up(&g)) {
         const int64_t decided = go(&g, until, last_at(&g, until));
         if (decided < NEVER) {
             unlearn_all(&g);
@@ -531,7 +545,7 @@ void network_come_to(run *r, int32_t index, int64_t t)
         g.net = made_networks(&g.f);
         g.j->net = g.net;
     }
-    if (g.net != NULL) {
+    if (!is_given_up(&g)) {
         come_to(&g, t);
     }
 }
@@ -540,8 +554,8 @@ void network_come_to(run *r, int32_t index, int64_t t)
 bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
 {
     judging g = judging_of(r, index);
-    if (g.net == NULL) {
-        return true; /* the run is spoilt */
+    if (is_given_up(&g)) {
+        return true;
     }
     g.net->calls = 0;
     attempt_of(&g, at)->due = t + 1;
@@ -553,7 +567,7 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
 void network_close(run *r, int32_t index, int64_t end)
 {
     judging g = judging_of(r, index);
-    if ((g.j->first >= 0) && (g.net != NULL)) {
+    if ((g.j->first >= 0) && !is_given_up(&g)) {
         g.net->readings[0].closed = end;
         learn(&g.f, g.net, 0, g.net->readings[0].now, g.net->readings[0].last);
     }

@@ -11,6 +11,7 @@ from rvmon.core.nodes import Nodes
 from rvmon.core.programs import Names, Numbering, Programs
 from rvmon.core.sections import Listed, Section, Sections
 from rvmon.core.unit import SHARED, Unit
+from rvmon.plan.instances import reach_of
 from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.plan.plan import Plan, Uses
 from rvmon.spec.checked.formula import Compare, Numeric
@@ -194,6 +195,7 @@ class Part:
         sides = [side for leaf in compared for side in (leaf.left, leaf.right)]
         with_fields = events_of(*sides, *self._captured)
         key = self.names.key
+        keyed = self._keyed()
         first = 0
         for name, number in self.names.events.items():
             flags = _EVENT_MARKS if plan.uses.get(name, _UNUSED).marked else 0
@@ -206,8 +208,24 @@ class Part:
                 flags,
                 first,
                 fields,
+                keyed.get(name, -1),
                 *self._phased(readers[number], self._alive(readers[number])),
                 *sections.listed(readers[number]),
+                0,
             )
             first += fields
         return first
+
+    def _keyed(self) -> dict[str, int]:
+        """By event, the field whose value says which instance it concerns; the others concern all."""
+        each = next((rule.requirement.for_each for rule in self._plan.rules), None)
+        if each is None:
+            return {}
+        fields = dict(reach_of(self._plan.graph, each, None, looks_back=False).fields)
+        for event in events_of(*self._captured):
+            if event != each.value.event:
+                fields.pop(event, None)
+        return {
+            event: list(self._plan.spec.events[event].fields).index(one.field)
+            for event, one in fields.items()
+        }

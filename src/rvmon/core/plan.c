@@ -261,8 +261,10 @@ static bool check_inputs(const plan *p, const part_plan *x)
         const int32_t number = e->name - p->header->signals;
         if (!is_within(number, 0, p->header->events) || (e->field != fields)
             || (e->fields != p->field_first[number + 1] - p->field_first[number])
+            || (((e->flags & EVENT_KEY) != 0) && ((x->each == 0) || (i != x->each_event)))
             || !both(p, e->on_occurrence, 0, x->atoms.count)
-            || !lists(p, e->needs, 0, x->atoms.count)) {
+            || !lists(p, e->needs, 0, x->atoms.count)
+            || !is_within(e->key, -1, e->fields)) {
             return false;
         }
         fields += e->fields;
@@ -405,6 +407,21 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
     return n->timer == *timed_nodes - 1;
 }
 
+/* What a node adds to the letter of a judge, if that has a table of letters; else nothing. So no sum
+ * of them leaves 32 bits; see `check_letters`. */
+static bool check_weights(const plan *p, const part_plan *x, const link_plan *l)
+{
+    const judge_plan *j = &p->judges[x->judges.first + l->judge];
+    const int64_t behind = ((j->automaton >= 0) && (j->diagram < 0)) ? MOST : 1;
+    int32_t v;
+    for (v = 0; v < 3; v++) {
+        if (!is_within(l->worse[v], 0, behind) || !is_within(l->better[v], 0, behind)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool check_links(const plan *p, const part_plan *x, list links)
 {
     int32_t i;
@@ -412,7 +429,8 @@ static bool check_links(const plan *p, const part_plan *x, list links)
         return false;
     }
     for (i = links.first; i < links.first + links.count; i++) {
-        if (!is_within(p->links[i].judge, 0, x->judges.count)) {
+        if (!is_within(p->links[i].judge, 0, x->judges.count)
+            || !check_weights(p, x, &p->links[i])) {
             return false;
         }
     }

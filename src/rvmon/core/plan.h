@@ -127,8 +127,11 @@ typedef struct {
     int32_t flags;
     int32_t field;             /* its first field, in the part */
     int32_t fields;
+    int32_t key;               /* the field, within the event, whose value says which instance it
+                                * concerns; -1: all */
     phased on_occurrence;      /* atoms */
     list needs;
+    int32_t spare;
 } event_plan;
 
 /* What is read off the input at a position. */

@@ -87,7 +87,7 @@ run *new_run(home *h)
     made->part = h->part;
     (void)cut_block(&c, made);
     c.block = arena_take(&m->memory, c.used);
-    if (c.block == NULL) {
+    if ((c.block == NULL) || !register_run(h, made)) {
         m->spoilt = true;
         return NULL;
     }
@@ -255,12 +255,6 @@ void clear_judges(run *r)
     }
 }
 
-void set_aside(home *h, run *r)
-{
-    r->next = h->spare;
-    h->spare = r;
-}
-
 /* A run that goes on as another one does, without its attempts; NULL: memory is short. */
 run *forked(const run *r)
 {
@@ -282,7 +276,6 @@ run *forked(const run *r)
         return NULL;
     }
     clear_judges(made);
-    made->next = NULL;
     made->parent = r->parent;
     made->opens_at = r->opens_at;
     made->occurred = r->occurred;
@@ -293,12 +286,12 @@ run *forked(const run *r)
     made->judging = r->judging;
     made->doubted = r->doubted;
     made->blurs = r->blurs;
-    made->children = 0;
+    made->first_child = NULL;
     made->opening = false;
     made->over = r->over || r->at.gathered;
     made->at.gathered = false;
     made->watched = false;
-    made->touched_now = r->touched_now;
+    touch_run(made);
     made->stays_busy = r->stays_busy;
     made->cut = NEVER;
     return made;

@@ -15,7 +15,7 @@ enum { FAILED = 0, PASSED = 1, WAITING = 2 };
 
 /* ---- memory.c: blocks of a few sizes, all given back at once */
 
-#define SIZE_CLASSES 256
+#define SIZE_CLASSES (32 * sizeof(size_t)) /* four for each of its bits */
 
 typedef struct chunk {
     struct chunk *next;
@@ -302,7 +302,13 @@ struct run {
     home *home;
     const part *part;
     run *next;                 /* of the same list */
+    run *previous;
     run *parent;               /* in which its attempt was triggered */
+    run *first_child;          /* of the attempts that were triggered in it */
+    run *sibling;              /* of those of its parent */
+    run *previous_sibling;
+    uint64_t call;             /* the last one that concerned it */
+    int32_t id;                /* its number among the runs of its home */
     judge *judges;
     timers rules;              /* by number of the judge */
     int32_t *touched;
@@ -321,7 +327,6 @@ struct run {
     uint32_t rank;             /* of its instance; 0: none, or of unknown value */
     int32_t key;               /* the place of that value */
     int32_t judged;            /* the judge of its attempt, if values are captured */
-    int32_t children;          /* runs of attempts that were triggered in it */
     int32_t starters;          /* the judges of which attempts start here, as bits */
     int32_t judging;           /* those of which attempts are judged here */
     bool opening;              /* whether attempts start from the next position on */
@@ -419,6 +424,14 @@ struct home {
     run *captured;             /* the first of an attempt */
     run *last_captured;
     run *spare;
+    run **runs;                /* by number, those put aside among them */
+    run **touched;             /* those that came to something in this call */
+    int32_t *called;           /* numbers of those that a call concerns */
+    timers alarms;             /* by number */
+    uint64_t call;
+    int32_t run_count;
+    int32_t run_room;
+    int32_t touched_count;
     char *pool;                /* attempts */
     turn *turns;
     size_t stride;
@@ -700,13 +713,26 @@ void look_after(run *r, int64_t t);
 void soil_lapsed(run *r);
 void forget_last(run *r);
 bool is_idle(const run *r);
+void let_go(run *r);
 
 /* ---- keys.c: instances of a `for each` */
 bool begin_keys(home *h);
 void open_instances(home *h, int64_t t);
-void close_instances(home *h);
+void close_instance(run *r);
+bool is_over(const run *r);
+run *instance_of(const home *h, const rv_number *value);
 void open_at(run *r, int64_t t);
 int32_t concerning(const run *r, const rv_update *u);
+
+/* ---- crowd.c: which runs a part has, and which of them a call concerns */
+bool register_run(home *h, run *r);
+void touch_run(run *r);
+void enlist(run *r, bool captured);
+void delist(run *r, bool captured);
+void set_alarms(home *h);
+int32_t call_due(home *h, int64_t t);
+int32_t call_concerned(home *h, int64_t t);
+void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t));
 
 /* ---- homes.c: all runs of a part */
 bool home_begin(home *h);

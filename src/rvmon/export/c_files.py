@@ -19,7 +19,7 @@ from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.schema import Kind
 
 CORE = "rvmon_core"
-"""The name of the core's files, which are the same for each specification."""
+"""The name of the core's files."""
 ALIGNMENT = 16
 """The most that is lost where a block begins."""
 FEWEST, MOST = 4, 64
@@ -35,14 +35,25 @@ def c_files(plan: Plan) -> dict[str, str]:
     Raises:
         RvmonError: there is no requirement, or an expression is beyond the core.
     """
-    packed = pack(plan)
-    prefix = prefix_of(plan.spec.name)
+    return {**core_files(), **plan_files(plan)}
+
+
+def core_files() -> dict[str, str]:
+    """The texts of the core's files, which are the same for each specification."""
     head = f"/* The monitor core of rvmon {__version__}. SPDX-License-Identifier: Apache-2.0 */\n"
     face = Path(amalgamate.FOLDER, "core.hpp").read_text(encoding="utf-8")
     return {
         f"{CORE}.h": head + amalgamate.core_header(),
         f"{CORE}.c": head + amalgamate.core_source(f"{CORE}.h"),
         f"{CORE}.hpp": head + face.replace(f'"{amalgamate.HEADER}"', f'"{CORE}.h"'),
+    }
+
+
+def plan_files(plan: Plan) -> dict[str, str]:
+    """The texts of what stands beside the core; see `c_files`."""
+    packed = pack(plan)
+    prefix = prefix_of(plan.spec.name)
+    return {
         f"{prefix}_plan.h": "\n".join(_header(plan.spec, packed, prefix)) + "\n",
         f"{prefix}_plan.c": "\n".join(_source(packed, prefix)) + "\n",
     }
@@ -73,10 +84,10 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
     yield f"#define {upper}_PLAN_SIZE {len(packed.data)} /* bytes */"
     yield ""
     yield _remark(
-        f"Bytes of a block in which a run begins, and `rv_reserve` finds room for so many open "
-        f"attempts, {MOST} at most: of all requirements without `let` and `for each` together, and of "
-        "each of the others. Measured where pointers have 8 bytes; where they have 4, it is less. What "
-        "is remembered of the past and of windows comes to that as the run needs it: "
+        "Bytes of a block in which a run begins, and `rv_reserve` finds room for so many open "
+        f"attempts, {MOST} at most: of all requirements without `let` and `for each` together, and "
+        "of each of the others. Measured where pointers have 8 bytes; where they have 4, it is "
+        "less. What is remembered of the past and of windows comes to that as the run needs it: "
         "`rv_memory_used` says what it took."
     )
     yield f"#define {upper}_MEMORY(attempts) \\"

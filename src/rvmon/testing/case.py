@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.testing.law.outage import Outage
 from rvmon.trace.sample import Sample
 
 
@@ -17,12 +18,14 @@ class Case:
         actions: what a monitor is given, in order: a sample, or the instant of an `advance`.
         end: what it is given by `finish`, ticks.
         names: the names that have a source; `None`: all.
+        outages: what was lost, in any order; no monitor can be told yet.
     """
 
     spec: CheckedSpec
     actions: tuple[Sample | int, ...]
     end: int | None = None
     names: frozenset[str] | None = None
+    outages: tuple[Outage, ...] = ()
 
     @property
     def samples(self) -> tuple[Sample, ...]:

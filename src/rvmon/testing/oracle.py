@@ -15,6 +15,7 @@ from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement
 from rvmon.testing.law.attempts import Start, is_upon_end, obligation
 from rvmon.testing.law.follow import Followed, Followings, follow
 from rvmon.testing.law.kleene import Truth
+from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Rest
 from rvmon.testing.law.word import Word
@@ -39,6 +40,8 @@ def evaluate(
     end: int | None = None,
     advances: Sequence[int] = (),
     names: frozenset[str] | None = None,
+    outages: Iterable[Outage] = (),
+    next_law: bool = False,
 ) -> Report:
     """Judge a trace by the definitions.
 
@@ -48,6 +51,9 @@ def evaluate(
         end: the instant given to `finish`, ticks; default the trace's own, if it has one.
         advances: the instants given to `advance`, ticks, in whatever order fits the samples.
         names: the names that have a source; default the trace's own, else all.
+        outages: what was lost, in any order.
+        next_law: whether `finish(t)` is `advance(t + 1 tick)` and then the end, whole numbers are
+            int64 throughout and reals binary64, as no engine has it yet.
 
     Returns:
         The report, without reasons.
@@ -60,14 +66,22 @@ def evaluate(
 
     Cost: without bound on purpose; some milliseconds for a dozen samples within forty ticks.
 
-    Source: SEMANTICS, sections 1 to 3; decision records 1 and 4.
+    Source: SEMANTICS, sections 1 to 3 and 5; decision records 1 and 4.
     """
     checked = spec if isinstance(spec, CheckedSpec) else spec.checked
     if isinstance(samples, Trace):
         end = samples.end if end is None else end
         names = samples.names if names is None else names
     listed = [entry if isinstance(entry, Sample) else Sample(*entry) for entry in samples]
-    word = word_of(checked, listed, end=end, advances=advances, names=names)
+    word = word_of(
+        checked,
+        listed,
+        end=end,
+        advances=advances,
+        names=names,
+        outages=tuple(outages),
+        next_law=next_law,
+    )
     followings = judge_views(checked, word, listed)
     return report_on(checked, followings, origin=listed[0].t if listed else 0, end=word.end)
 

@@ -16,6 +16,9 @@ def show_case(case: Case) -> str:
     lines = [show_spec(case.spec), ""]
     if case.names is not None:
         lines.append(f"sources: {', '.join(sorted(case.names)) or 'none'}")
+    for outage in case.outages:
+        names = ", ".join(sorted(outage.names)) or "nothing"
+        lines.append(f"outage  {outage.first:>4} to {outage.last}  of {names}")
     for action in case.actions:
         if isinstance(action, Sample):
             lines.append(f"sample  {action.t:>4}  {dict(action.values)}")

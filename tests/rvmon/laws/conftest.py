@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
@@ -15,18 +16,22 @@ from tests.tools.law import judge as oracle
 
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.verdict.report import Report
+
+PLAIN = TraceProfile()
 
 Law = Callable[[st.DataObject], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What a law is tested on: how it judges a case, which specs it takes, on how many examples."""
+    """What a law is tested on: how it judges a case, what it takes, on how many examples."""
 
     judge: Callable[[Case], Report]
     profile: Profile
     examples: int
+    traces: TraceProfile = PLAIN
 
     @property
     def one(self) -> Profile:
@@ -57,6 +62,7 @@ BARE = replace(AHEAD, captures=False, for_each=False, requirements=1, depth=3)
 
 SUBJECTS = {
     "oracle": Subject(oracle, ALL, 15),
+    "law to come": Subject(partial(oracle, next_law=True), ALL, 15, TraceProfile(outages=70)),
     "auto": Subject(Form("auto"), ALL, 8),
     "automaton": Subject(Form("automaton"), AHEAD, 6),
     "progression": Subject(Form("progression"), AHEAD, 6),
@@ -67,7 +73,7 @@ SUBJECTS = {
 
 @pytest.fixture(scope="session", params=SUBJECTS)
 def subject(request: pytest.FixtureRequest) -> Subject:
-    """The oracle, then every form."""
+    """The oracle, of today and to come, then every form."""
     return SUBJECTS[request.param]
 
 

@@ -16,8 +16,7 @@ def test_filling_in_what_was_lost(subject: Any, holds: Any) -> None:
 
     @holds
     def _(data: st.DataObject) -> None:
-        case = data.draw(cases(subject.profile))
+        case = data.draw(cases(subject.profile, subject.traces))
         assume(is_spoken_of(case.spec))
         rng = data.draw(st.randoms(use_true_random=False))
-        _, overturning = overturned(rng, case, 4, subject.judge)
-        assert overturning is None
+        assert overturned(rng, case, 4, subject.judge).overturning is None

@@ -9,6 +9,7 @@ from tests.tools.build import requirement, spec_of, timeline
 
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.specification import Requirement, TimeModel
+from rvmon.testing.law.outage import Outage
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Decision
@@ -39,12 +40,25 @@ def judge(
     end: int | None = None,
     advances: Sequence[int] = (),
     names: frozenset[str] | None = None,
+    lost: Sequence[tuple[str, int, int]] = (),
+    next_law: bool = False,
     **rows: str,
 ) -> list[str]:
-    """All attempts in the order of the report; a formula stands for `upon start then` it."""
+    """All attempts in the order of the report; a formula stands for `upon start then` it.
+
+    What was `lost` are names in one word, first and last instant.
+    """
     judged = what if isinstance(what, Requirement) else requirement(what)
     spec = spec_of(judged, time=time, period=period, stale=stale)
-    report = evaluate(spec, samples or timeline(**rows), end=end, advances=advances, names=names)
+    report = evaluate(
+        spec,
+        samples or timeline(**rows),
+        end=end,
+        advances=advances,
+        names=names,
+        outages=[Outage(frozenset(names.split()), *stretch) for names, *stretch in lost],
+        next_law=next_law,
+    )
     return [brief(attempt) for attempt in report.attempts]
 
 

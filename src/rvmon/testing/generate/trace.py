@@ -9,6 +9,7 @@ from rvmon.spec.checked.formula import Interval, Literal
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.testing.case import Case
 from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.walk import intervals, numerics
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
@@ -27,6 +28,7 @@ class TraceProfile:
             then far apart.
         unknowns: whether values may be `None` or NaN and sources absent.
         advances: whether `advance` is called.
+        outages: the per cent of traces in which something was lost over stretches of time.
     """
 
     samples: int = 12
@@ -35,6 +37,7 @@ class TraceProfile:
     sparse: int = 0
     unknowns: bool = True
     advances: bool = True
+    outages: int = 0
 
 
 def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
@@ -77,7 +80,27 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
         time += _gap(rng, gaps)
         actions.append(time)
     end = time + _gap(rng, gaps) * rng.randint(0, 2) if chance(rng, 45) else None
-    return Case(spec, tuple(actions), end, names)
+    outages: tuple[Outage, ...] = ()
+    if profile.outages and chance(rng, profile.outages):
+        read = [action.t for action in actions if isinstance(action, Sample)] or [start]
+        outages = tuple(_outage(rng, spec, read) for _ in range(rng.randint(1, 3)))
+    return Case(spec, tuple(actions), end, names, outages)
+
+
+def _outage(rng: Rng, spec: CheckedSpec, read: Sequence[int]) -> Outage:
+    """A stretch of some ticks, or one, of some names; it may lie before or behind the samples.
+
+    Often it begins, or ends, with one.
+    """
+    percent = pick(rng, (100, 50, 20))
+    names = frozenset(n for n in (*spec.signals, *spec.events) if chance(rng, percent))
+    first = rng.randint(read[0] - 3, read[-1] + 3)
+    if chance(rng, 50):
+        first = pick(rng, read)
+    last = first + pick(rng, (0, 1, 2, 3, 5, 8))
+    if chance(rng, 50):
+        last = next((t for t in read if t >= last), last)
+    return Outage(names, first, last)
 
 
 def _gap(rng: Rng, gaps: Sequence[int]) -> int:

@@ -46,7 +46,10 @@ def disjunction(values: Iterable[Truth]) -> Truth:
 
 def _first(values: Iterable[Truth], order: Iterable[Truth], default: Truth) -> Truth:
     seen = set(values)
-    return next((value for value in order if value in seen), default)
+    for value in order:
+        if value in seen:
+            return value
+    return default
 
 
 def truth_of(value: bool) -> Truth:

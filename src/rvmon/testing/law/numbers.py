@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 from typing import assert_never
 
@@ -24,10 +24,17 @@ from rvmon.testing.law.kleene import Truth, conjunction, disjunction, truth_of
 from rvmon.testing.law.walk import parts_of
 from rvmon.testing.law.word import Letter
 from rvmon.trace.sample import Payload, Scalar
+from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
 
-def compare(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar]) -> Truth:
+def compare(
+    comparison: Compare,
+    letter: Letter,
+    captured: Mapping[str, Scalar],
+    *,
+    next_law: bool = False,
+) -> Truth:
     """The truth of a comparison; over fields of an event `e` it means `e and comparison`.
 
     Of several occurrences (or pairs of occurrences of two events) one has to satisfy it.
@@ -41,8 +48,8 @@ def compare(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar])
     def holds(payloads: Mapping[str, Payload]) -> Truth:
         if not born:
             return Truth.UNBORN
-        left = number(comparison.left, letter, payloads, captured)
-        right = number(comparison.right, letter, payloads, captured)
+        left = number(comparison.left, letter, payloads, captured, next_law=next_law)
+        right = number(comparison.right, letter, payloads, captured, next_law=next_law)
         if left is None or right is None:
             return Truth.UNKNOWN
         return truth_of(_related(comparison.op, left, right))
@@ -92,11 +99,14 @@ def number(
     letter: Letter,
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
+    *,
+    next_law: bool = False,
 ) -> Scalar:
     """The value of an expression at a position; `None` if it is unknown.
 
-    Source: SEMANTICS, section 2; decision record 1 (Updates, Arithmetic).
+    Source: SEMANTICS, sections 2 and 5; decision record 1 (Updates, Arithmetic).
     """
+    calculate = _calculate if next_law else _arithmetic
     match expression:
         case Literal(value=value):
             return value
@@ -107,25 +117,77 @@ def number(
         case Captured(name=name):
             return captured[name]
         case UpdateValue(function=function, name=name):
-            return _of_updates(function, name, letter)
+            return _of_updates(function, name, letter, calculate)
         case Arithmetic(op=op, args=args):
-            return _arithmetic(op, [number(arg, letter, payloads, captured) for arg in args])
+            values = (number(arg, letter, payloads, captured, next_law=next_law) for arg in args)
+            return calculate(op, list(values))
         case _:
             assert_never(expression)
 
 
-def _of_updates(function: UpdateFunction, name: str, letter: Letter) -> Scalar:
+Calculate = Callable[[NumericOp, list[Scalar]], Scalar]
+
+
+def _of_updates(
+    function: UpdateFunction, name: str, letter: Letter, calculate: Calculate
+) -> Scalar:
     state = letter.signals[name]
     last, before = state.last, state.before
     if state.value is None or last is None or before is None or before.value is None:
         return None
     if function is UpdateFunction.PREV:
         return before.value
-    delta = _arithmetic(NumericOp.SUB, [last.value, before.value])
+    delta = calculate(NumericOp.SUB, [last.value, before.value])
     if function is UpdateFunction.DELTA:
         return delta
-    scaled = _arithmetic(NumericOp.MUL, [delta, TICKS_PER_SECOND])
-    return _arithmetic(NumericOp.DIV, [scaled, last.t - before.t])
+    per_second = TICKS_PER_SECOND if calculate is _arithmetic else float(TICKS_PER_SECOND)
+    scaled = calculate(NumericOp.MUL, [delta, per_second])
+    return calculate(NumericOp.DIV, [scaled, last.t - before.t])
+
+
+_OF_REALS = (NumericOp.DIV, NumericOp.SQRT, NumericOp.HYPOT)
+
+
+def _calculate(op: NumericOp, args: list[Scalar]) -> Scalar:
+    """The value of an operation; of whole numbers it is one of int64, else of binary64.
+
+    Division, roots and lengths are of reals; where a real stands beside a whole number, that is
+    rounded first. So is the difference in a `rate`, which is per second.
+
+    Source: SEMANTICS, section 5.
+    """
+    known = [arg for arg in args if arg is not None and not isinstance(arg, str)]
+    if len(known) < len(args):
+        return None
+    whole = op not in _OF_REALS and all(isinstance(arg, int) for arg in known)
+    try:
+        result = _result(op, known if whole else [float(arg) for arg in known])
+    except (ArithmeticError, ValueError):
+        return None
+    if isinstance(result, int):
+        return at_edge(result, Kind.INT)
+    return result if math.isfinite(result) else None
+
+
+_WHOLE = range(-(2**63), 2**63)
+
+
+def at_edge(value: Scalar, kind: Kind) -> Scalar:
+    """A value as a signal or field of a kind holds it; unknown if it cannot.
+
+    Source: SEMANTICS, section 5.
+
+    >>> at_edge(2**53 + 1, Kind.REAL), at_edge(2**63, Kind.INT)
+    (9007199254740992.0, None)
+    """
+    if kind is Kind.INT and isinstance(value, int):
+        return value if value in _WHOLE else None
+    if kind is Kind.REAL and isinstance(value, int):
+        try:
+            return float(value)
+        except OverflowError:
+            return None
+    return value
 
 
 def _arithmetic(op: NumericOp, args: list[Scalar]) -> Scalar:

@@ -12,7 +12,6 @@ from rvmon.testing.law.kleene import (
     conjunction,
     disjunction,
     negation,
-    truth_of,
 )
 from rvmon.testing.law.word import Letter
 
@@ -73,10 +72,18 @@ def held(
 
     What is unknown may not be born either: it shows nothing of where the birth was.
     """
-    start, now = letters[0].instant, letters[i].instant
+    now = letters[i].instant
     window = [k for k in range(i + 1) if is_within(now - letters[k].instant, interval)]
     values = [operand(k) for k in window]
     if mortal and not {Truth.TRUE, Truth.FALSE}.intersection(values):
         return disjunction(values)
-    long_enough = interval.high is not None and now - start >= interval.high
-    return conjunction([truth_of(long_enough), *(born_or_false(value) for value in values)])
+    long_enough = _lasted(letters, i, interval.high or 0)
+    return conjunction([long_enough, *(born_or_false(value) for value in values)])
+
+
+def _lasted(letters: Sequence[Letter], i: int, duration: int) -> Truth:
+    """Whether the trace began so long before a position; it may have at any that may be there."""
+    starts = [k for k in range(i + 1) if letters[i].instant - letters[k].instant >= duration]
+    if any(letters[k].sure for k in starts):
+        return Truth.TRUE
+    return Truth.UNKNOWN if starts else Truth.FALSE

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import dropwhile, pairwise
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.spec.checked.specification import CheckedSpec, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, Event, Signal, TimeModel
 from rvmon.testing.law.kleene import Truth, disjunction, truth_of
-from rvmon.testing.law.numbers import known_scalar
+from rvmon.testing.law.numbers import at_edge, known_scalar
+from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.word import EventState, Letter, Occurrence, SignalState, Update, Word
-from rvmon.trace.sample import Sample, Value
+from rvmon.trace.sample import Payload, Sample, Value
 
 MOST_TICKS = 1_000_000
 """Longer traces are refused: every tick is a position here, so tests count in nanoseconds."""
@@ -23,6 +25,8 @@ def word_of(
     end: int | None = None,
     advances: Sequence[int] = (),
     names: frozenset[str] | None = None,
+    outages: Sequence[Outage] = (),
+    next_law: bool = False,
 ) -> Word:
     """Lay a trace out position by position.
 
@@ -32,36 +36,51 @@ def word_of(
         end: what `finish` was given, ticks.
         advances: what `advance` was given, ticks; the samples are taken to fit.
         names: the names that have a source; `None`: all.
+        outages: what was lost, in any order.
+        next_law: whether `finish(t)` is `advance(t + 1 tick)` and then the end, and numbers are
+            rounded at the edge.
 
     Raises:
         TimeOrderError: the times do not increase.
         TraceError: the trace is too long to be laid out tick by tick, or a sample holds a name
             without a source.
 
-    Source: SEMANTICS, sections 1 and 3 (The end); decision record 1.
+    Source: SEMANTICS, sections 1, 3 (The end) and 5; decision record 1.
     """
     for earlier, later in pairwise(samples):
         if later.t <= earlier.t:
             raise TimeOrderError(f"sample at {later.t} ns after one at {earlier.t} ns")
-    reached = max([*advances, *(sample.t for sample in samples), *_given(end)], default=0)
-    if not samples:
+    heard_of = [*(sample.t for sample in samples), *(outage.last for outage in outages)]
+    reached = max([*advances, *heard_of, *_given(end)], default=0)
+    if not heard_of:
         return Word((), None, reached)
     samples = heard(spec, samples)
-    first, last = samples[0].t, samples[-1].t
+    begun = samples[0].t if samples else None
+    first = min([*(outage.first for outage in outages), *_given(begun)])
     # In sampled time `advance` says only what will not come; else it settles all ticks before.
     settled = [] if spec.time is TimeModel.SAMPLED else [t - 1 for t in advances]
-    known_to = max([last, *settled, *_given(end)])
+    known_to = max([*heard_of, *settled, *_given(end)])
+    if next_law:
+        reached = max(reached, known_to + 1)
     if reached - first > MOST_TICKS:
         raise TraceError(
             f"the trace spans {reached - first} ns, and the oracle walks every one of them: "
             f"scale durations and times so that at most {MOST_TICKS} remain"
         )
-    instants = _positions(spec, samples, known_to)
+    instants = _positions(spec, samples, outages, first, known_to)
+    said = {
+        name: _said_of(name, samples, outages, has_source=names is None or name in names)
+        for name in (*spec.signals, *spec.events)
+    }
     letters = []
     for index, instant in enumerate(instants):
-        before = instants[index - 1] if index else None
-        letters.append(_letter(spec, samples, before, instant, names))
-    return Word(tuple(letters), known_to, reached)
+        if _is_sure(spec, instant, begun, outages):
+            before = instants[index - 1] if index else None
+            told = {name: one.by(before, instant) for name, one in said.items()}
+            letters.append(_letter(spec, instant, told, next_law=next_law))
+        else:
+            letters.append(_blank(spec, instant))
+    return Word(tuple(letters), known_to, reached, next_law)
 
 
 def heard(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
@@ -80,81 +99,217 @@ def heard(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
     ]
 
 
-def _given(end: int | None) -> Iterable[int]:
-    return () if end is None else (end,)
+def _given(instant: int | None) -> Iterable[int]:
+    return () if instant is None else (instant,)
 
 
-def _positions(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequence[int]:
-    first = samples[0].t
+def _positions(
+    spec: CheckedSpec,
+    samples: Sequence[Sample],
+    outages: Iterable[Outage],
+    first: int,
+    end: int,
+) -> Sequence[int]:
+    """Where there is a position, or may be one."""
     match spec.time:
         case TimeModel.HELD:
             return range(first, end + 1)
         case TimeModel.SAMPLED:
-            return [sample.t for sample in samples]
+            lost = (t for outage in outages for t in range(outage.first, outage.last + 1))
+            return sorted({*(sample.t for sample in samples), *lost})
         case TimeModel.CLOCKED:
             period = spec.period or 1
             return range(-(-first // period) * period, end + 1, period)
 
 
+def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterable[Outage]) -> bool:
+    """Whether there is a position; where nobody knows, every formula is unknown.
+
+    In an outage of sampled time nobody does, at any of its ticks, though a sample was read there:
+    what `next` and the like speak of is unknown all the same. In the other time models the trace
+    may have begun in an outage, and every position from there to the first sample that was read
+    may lie before it.
+
+    Args:
+        spec: gives the time model.
+        instant: of the position.
+        begun: the instant of the first sample that was read.
+        outages: what was lost.
+    """
+    if spec.time is TimeModel.SAMPLED:
+        return not any(outage.covers(instant) for outage in outages)
+    return begun is not None and begun <= instant
+
+
+def _blank(spec: CheckedSpec, instant: int) -> Letter:
+    """What is known where there may be no position."""
+    unknown = SignalState(
+        updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True, lost=True
+    )
+    return Letter(
+        instant,
+        dict.fromkeys(spec.signals, unknown),
+        dict.fromkeys(spec.events, _UNKNOWN_EVENT),
+        sure=False,
+    )
+
+
+_UNKNOWN_EVENT = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),))
+
+
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """What was said of a name.
+
+    Attributes:
+        t: when.
+        value: what; of what was lost, `None`.
+        since: from when on it counts; before the end of an outage nobody knows what was.
+        lost: whether it stands for all that an outage swallowed.
+    """
+
+    t: int
+    value: Value
+    since: int
+    lost: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """What was told of a name by a position.
+
+    Attributes:
+        entries: what was said, in order.
+        outages: those that have begun.
+        before: the position before; what came after it falls to this one.
+        instant: of this position.
+        has_source: whether something can say what the name is.
+    """
+
+    entries: Sequence[_Entry]
+    outages: Sequence[Outage]
+    before: int | None
+    instant: int
+    has_source: bool
+
+    def by(self, before: int | None, instant: int) -> _Told:
+        """What of it was told by an earlier position."""
+        return _Told(
+            [entry for entry in self.entries if entry.since <= instant],
+            [outage for outage in self.outages if outage.first <= instant],
+            before,
+            instant,
+            self.has_source,
+        )
+
+    @property
+    def is_within(self) -> bool:
+        """Whether the position lies in an outage."""
+        return any(outage.covers(self.instant) for outage in self.outages)
+
+    @property
+    def is_touched(self) -> bool:
+        """Whether what falls to this position may have been lost."""
+        return any(outage.touches(self.before, self.instant) for outage in self.outages)
+
+    def is_new(self, entry: _Entry) -> bool:
+        """Whether an entry falls to this position."""
+        return self.before is None or entry.t > self.before
+
+
+def _said_of(
+    name: str, samples: Sequence[Sample], outages: Sequence[Outage], *, has_source: bool
+) -> _Told:
+    """All that is told of a name; what was lost comes before what bears the same stamp.
+
+    Raises:
+        TraceError: something is, though it has no source.
+    """
+    read = [sample for sample in samples if name in sample.values]
+    if read and not has_source:
+        raise TraceError(f"sample at {read[0].t} ns holds `{name}`, which has no source")
+    of_name = [outage for outage in outages if name in outage.names]
+    kept = [s for s in read if not any(outage.hides(s.t) for outage in of_name)]
+    entries = [
+        *(_Entry(outage.last, None, outage.first, lost=True) for outage in of_name),
+        *(_Entry(sample.t, sample.values[name], sample.t) for sample in kept),
+    ]
+    entries.sort(key=lambda entry: (entry.t, not entry.lost))
+    last = entries[-1].t if entries else 0
+    return _Told(entries, of_name, None, last, has_source)
+
+
 def _letter(
-    spec: CheckedSpec,
-    samples: Sequence[Sample],
-    before: int | None,
-    instant: int,
-    names: frozenset[str] | None,
+    spec: CheckedSpec, instant: int, told: Mapping[str, _Told], *, next_law: bool
 ) -> Letter:
-    """What is known at `instant`; to it falls what came after the position `before`."""
-    past = [sample for sample in samples if sample.t <= instant]
-    new = [sample for sample in past if before is None or sample.t > before]
-    signals = {}
-    for name, signal in spec.signals.items():
-        if names is not None and name not in names:
-            _refuse(name, past)
-            signals[name] = SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN)
-        else:
-            signals[name] = _signal(name, past, new, instant, signal.stale_after)
-    events = {}
-    for name in spec.events:
-        if names is not None and name not in names:
-            _refuse(name, past)
-            events[name] = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),))
-        else:
-            entries = [sample.values[name] for sample in new if name in sample.values]
-            found = tuple(occurrence for entry in entries for occurrence in _occurrences(entry))
-            events[name] = EventState(truth_of(bool(entries)), found)
-    return Letter(instant, signals, events)
+    return Letter(
+        instant,
+        {name: _signal(told[name], one, next_law) for name, one in spec.signals.items()},
+        {name: _event(told[name], one, next_law) for name, one in spec.events.items()},
+    )
 
 
-def _refuse(name: str, samples: Sequence[Sample]) -> None:
-    for sample in samples:
-        if name in sample.values:
-            raise TraceError(f"sample at {sample.t} ns holds `{name}`, which has no source")
+def _event(told: _Told, event: Event, next_law: bool) -> EventState:
+    if not told.has_source or told.is_within:
+        return _UNKNOWN_EVENT
+    new = [entry for entry in told.entries if told.is_new(entry)]
+    found = tuple(one for entry in new for one in _occurrences(entry.value))
+    if next_law:
+        found = tuple(replace(one, payload=_at_edge(one.payload, event)) for one in found)
+    return EventState(_updated(told), found)
 
 
-def _signal(
-    name: str,
-    past: Sequence[Sample],
-    new: Sequence[Sample],
-    instant: int,
-    stale_after: int | None,
-) -> SignalState:
-    updates = [_update(s.t, s.values[name]) for s in past if name in s.values]
-    if not updates:
+def _at_edge(payload: Payload, event: Event) -> Payload:
+    return {
+        name: at_edge(value, event.fields[name].kind) if name in event.fields else value
+        for name, value in payload.items()
+    }
+
+
+def _signal(told: _Told, signal: Signal, next_law: bool) -> SignalState:
+    if not told.has_source:
+        return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN)
+    if not told.entries:
         return SignalState()
-    count = sum(name in sample.values for sample in new)
-    pairs = list(pairwise(updates))
-    last = updates[-1]
-    stale = stale_after is not None and instant > last.t + stale_after
+    updates = [_update(entry.t, entry.value) for entry in told.entries]
+    if next_law:
+        updates = [replace(one, value=at_edge(one.value, signal.type.kind)) for one in updates]
+    last, within = updates[-1], told.is_within
+    stale = signal.stale_after is not None and told.instant > last.t + signal.stale_after
+    # What was lost may have been the first value, and the update behind it.
+    may_be_born = bool(told.outages)
     since_birth = list(dropwhile(lambda update: update.value is None, updates))
     return SignalState(
-        value=None if stale else last.value,
-        updated=truth_of(count > 0),
-        changed=disjunction(_differ(a, b) for a, b in pairs[max(len(updates) - 1 - count, 0) :]),
+        value=None if stale or within else last.value,
+        updated=_updated(told),
+        changed=_changed(told, updates),
         last=last,
         before=updates[-2] if len(updates) > 1 else None,
-        born=bool(since_birth),
-        moved=len(since_birth) > 1,
+        born=may_be_born or bool(since_birth),
+        moved=may_be_born or len(since_birth) > 1,
+        lost=not stale and (within or told.entries[-1].lost),
     )
+
+
+def _updated(told: _Told) -> Truth:
+    """Whether something said of the name falls to this position."""
+    if told.is_within:
+        return Truth.UNKNOWN
+    kept = any(told.is_new(entry) and not entry.lost for entry in told.entries)
+    return disjunction([truth_of(kept), _if_lost(told)])
+
+
+def _changed(told: _Told, updates: Sequence[Update]) -> Truth:
+    """Whether an update to another value does."""
+    if told.is_within:
+        return Truth.UNKNOWN
+    pairs = zip(pairwise(updates), told.entries[1:], strict=True)
+    new = (_differ(*pair) for pair, entry in pairs if told.is_new(entry))
+    return disjunction([*new, _if_lost(told)])
+
+
+def _if_lost(told: _Told) -> Truth:
+    return Truth.UNKNOWN if told.is_touched else Truth.FALSE
 
 
 def _update(t: int, value: Value) -> Update:

@@ -45,7 +45,7 @@ from rvmon.testing.law.past import (
     is_within,
     since,
 )
-from rvmon.testing.law.walk import is_proposition, speaks_of_future
+from rvmon.testing.law.walk import constant_value, is_proposition, speaks_of_future
 from rvmon.testing.law.word import Letter, Word
 from rvmon.trace.sample import Scalar
 
@@ -92,6 +92,7 @@ class Truths:
         favour: bool = False,
     ) -> None:
         self._letters = word.letters
+        self._next_law = word.next_law
         self._end = word.end
         self._captured = captured
         self._rest = rest
@@ -126,6 +127,8 @@ class Truths:
             positive: whether an even number of negations stands above the formula; it matters for
                 the rest of its operators, and for what counts in favour.
         """
+        if not self._letters[i].sure:
+            return Truth.UNKNOWN
         key = (id(formula), i, positive)
         value = self._settled.get(key)
         if value is None:
@@ -148,7 +151,12 @@ class Truths:
         return self._composed(formula, i, positive, sub)
 
     def state(self, formula: Formula, i: int) -> Truth:
-        """The truth of a formula of the present and past at a position; it may be UNBORN."""
+        """The truth of a formula of the present and past at a position; it may be UNBORN.
+
+        Where there may be no position it is UNKNOWN, of a constant too.
+        """
+        if not self._letters[i].sure:
+            return Truth.UNKNOWN
         key = (id(formula), i)
         value = self._states.get(key)
         if value is None:
@@ -168,17 +176,22 @@ class Truths:
             case EventAtom(name=name):
                 return disjunction(o.truth for o in letter.events[name].occurrences)
             case Compare():
-                return compare(formula, letter, self._captured)
+                return compare(formula, letter, self._captured, next_law=self._next_law)
             case ProbeAtom(probe=probe, name=name):
                 return _probe(probe, name, letter)
             case BoundAtom(bound=bound):
                 if bound is Bound.END:
                     raise ValueError("`end` stands alone as a trigger, never inside a formula")
-                return truth_of(i == 0)
+                return self._is_first(i)
             case Unary() | Binary():
                 return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
             case _:
                 assert_never(formula)
+
+    def _is_first(self, i: int) -> Truth:
+        """Whether no position is before this one."""
+        before = {letter.sure for letter in self._letters[:i]}
+        return Truth.FALSE if True in before else Truth.UNKNOWN if before else Truth.TRUE
 
     def release_rest(self, opened: bool) -> Truth:
         """What the rest of an unbounded `R` counts as; `opened`: whether its window has."""
@@ -271,19 +284,24 @@ class Truths:
                 one = conjunction([left(i), not_right(i)])
                 return disjunction([one, conjunction([not_left(i), right(i)])])
             case BinaryOp.UNTIL:
-                return self._until(left, right, i, interval, positive)
+                lasting = unless_constant(formula.left, left, Truth.TRUE)
+                return self._until(lasting, right, i, interval, positive)
             case BinaryOp.RELEASE:
-                return self._release(left, right, i, interval, positive)
+                lasting = unless_constant(formula.left, left, Truth.FALSE)
+                return self._release(lasting, right, i, interval, positive)
             case BinaryOp.WEAK_UNTIL:  # ψ R (φ | ψ)
+                lasting = unless_constant(formula.right, right, Truth.FALSE)
                 return self._release(
-                    right, lambda k: disjunction([left(k), right(k)]), i, interval, positive
+                    lasting, lambda k: disjunction([left(k), right(k)]), i, interval, positive
                 )
             case BinaryOp.STRONG_RELEASE:  # ψ U (φ & ψ)
+                lasting = unless_constant(formula.right, right, Truth.TRUE)
                 return self._until(
-                    right, lambda k: conjunction([left(k), right(k)]), i, interval, positive
+                    lasting, lambda k: conjunction([left(k), right(k)]), i, interval, positive
                 )
             case BinaryOp.SINCE:
-                return since(self._letters, left, right, i, interval)
+                lasting = unless_constant(formula.left, left, Truth.TRUE)
+                return since(self._letters, lasting, right, i, interval)
             case _:
                 assert_never(formula.op)
 
@@ -346,6 +364,14 @@ def _false(_: int) -> Truth:
     return Truth.FALSE
 
 
+def unless_constant(part: Formula, operand: Operand, value: Truth) -> Operand:
+    """What has to last up to some position; if it is sure anyway, it asks for no position.
+
+    So `true U φ` is `F φ` where there may be positions, too: where every formula is unknown.
+    """
+    return (lambda _: value) if constant_value(part) is value else operand
+
+
 def _probe(probe: Probe, name: str, letter: Letter) -> Truth:
     if name in letter.events:
         event = letter.events[name]
@@ -357,6 +383,6 @@ def _probe(probe: Probe, name: str, letter: Letter) -> Truth:
         case Probe.UPDATED:
             return signal.updated
         case Probe.KNOWN:
-            return truth_of(signal.value is not None)
+            return Truth.UNKNOWN if signal.lost else truth_of(signal.value is not None)
         case Probe.CHANGED:
             return signal.changed

@@ -9,12 +9,14 @@ from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
     Compare,
+    Constant,
     Formula,
     Interval,
     Numeric,
     Unary,
     UnaryOp,
 )
+from rvmon.testing.law.kleene import Truth, conjunction, disjunction, negation, truth_of
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:
@@ -85,3 +87,24 @@ def parts_of(expression: Numeric) -> Iterator[Numeric]:
     if isinstance(expression, Arithmetic):
         for arg in expression.args:
             yield from parts_of(arg)
+
+
+def constant_value(formula: Formula) -> Truth:
+    """What a formula is whatever its propositions are, by Kleene's connectives; else UNKNOWN."""
+    match formula:
+        case Constant(value=value):
+            return truth_of(value)
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return negation(constant_value(operand))
+        case Binary(op=op, left=left, right=right):
+            one, other = constant_value(left), constant_value(right)
+            match op:
+                case BinaryOp.AND:
+                    return conjunction([one, other])
+                case BinaryOp.OR:
+                    return disjunction([one, other])
+                case BinaryOp.IMPLIES:
+                    return disjunction([negation(one), other])
+                case BinaryOp.IFF | BinaryOp.XOR if Truth.UNKNOWN not in (one, other):
+                    return truth_of((one is other) is (op is BinaryOp.IFF))
+    return Truth.UNKNOWN

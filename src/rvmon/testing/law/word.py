@@ -27,8 +27,9 @@ class SignalState:
         changed: whether an update to another value does.
         last: the last update so far.
         before: the one before that.
-        born: whether an update has brought a known value so far.
-        moved: whether one came after the first that did.
+        born: whether an update has brought a known value so far, or may have in an outage.
+        moved: whether one came after the first that did, or may have.
+        lost: whether an outage hides what the value is.
     """
 
     value: Scalar = None
@@ -38,6 +39,7 @@ class SignalState:
     before: Update | None = None
     born: bool = False
     moved: bool = False
+    lost: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +60,20 @@ class EventState:
 
 @dataclass(frozen=True, slots=True)
 class Letter:
-    """One position: its instant and the state of every declared name there."""
+    """One position: its instant and the state of every declared name there.
+
+    Attributes:
+        instant: ticks.
+        signals: the state of each.
+        events: the state of each.
+        sure: whether there is such a position; in an outage of sampled time, and before the first
+            sample that was read, there may be none.
+    """
 
     instant: int
     signals: Mapping[str, SignalState]
     events: Mapping[str, EventState]
+    sure: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +84,10 @@ class Word:
         letters: one per position; instants increase strictly.
         end: the last instant whose letter is known; `None` before the first sample.
         reached: an instant that time is known to have come to.
+        next_law: whether numbers are those of the law to come.
     """
 
     letters: tuple[Letter, ...]
     end: int | None
     reached: int
+    next_law: bool = False

@@ -1,0 +1,433 @@
+/* Has the core judge what benchmarks/core_recording.py has written, and says in one line of each case
+ * what came of it. So mutants of the core are compared with it, and builds for other machines.
+ *
+ * A case is judged step by step, asked now and then what is open and due; the same after a reset,
+ * without asking; by rows, where it can be; and in blocks of memory, most of them too small. The line
+ * is a sum of all records in the order in which they came, one of what was open, then letters for
+ * what should never be: a, o, m: asked or reset, by rows, in a block it says something else; d: time
+ * alone decided what was not due; f, t: a sample was taken after the end, or twice; g: it was short of
+ * memory, and green; r, s: rows, or a step, were refused. */
+#include "core.h"
+#include "plan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define UPDATES_MOST 64
+#define FIELDS_MOST 8
+#define ROWS_MOST 128
+#define NAMES_MOST 32
+
+/* A sample as it is written. */
+typedef struct {
+    int64_t t;
+    int32_t count;
+    bool in_rows;              /* no name comes twice */
+    rv_update updates[UPDATES_MOST];
+    rv_number fields[UPDATES_MOST][FIELDS_MOST];
+} sample;
+
+enum { A_SAMPLE, AN_ADVANCE };
+
+typedef struct {
+    int64_t kind;
+    sample s;
+} action;
+
+typedef struct {
+    const void *plan;
+    size_t size;
+    const int64_t *absent;
+    int64_t absent_count;
+    int64_t end;
+    int64_t count;
+    action actions[ROWS_MOST];
+} story;
+
+/* What was found that should never be, as letters. */
+typedef struct {
+    uint64_t sum;
+    uint64_t open;             /* of what was open in between */
+    char wrong[8];
+} told;
+
+static void blame(told *x, char letter)
+{
+    const size_t length = strlen(x->wrong);
+    if ((length + 1 < sizeof x->wrong) && (strchr(x->wrong, letter) == NULL)) {
+        x->wrong[length] = letter;
+        x->wrong[length + 1] = '\0';
+    }
+}
+
+static void add(told *x, int64_t what)
+{
+    x->sum = (x->sum ^ (uint64_t)what) * UINT64_C(0x100000001b3);
+}
+
+static rv_number number_at(const int64_t *words)
+{
+    rv_number made;
+    made.kind = (int32_t)words[0];
+    (void)memcpy(&made.as, &words[1], sizeof made.as);
+    return made;
+}
+
+/* Read a sample; returns what is behind it. */
+static const int64_t *read_sample(const int64_t *at, sample *s)
+{
+    int32_t i;
+    s->t = *at++;
+    s->count = (int32_t)*at++;
+    s->in_rows = true;
+    if (s->count > UPDATES_MOST) {
+        abort();
+    }
+    for (i = 0; i < s->count; i++) {
+        rv_update *u = &s->updates[i];
+        int64_t fields;
+        int64_t k;
+        (void)memset(u, 0, sizeof *u);
+        u->name = (int32_t)at[0];
+        u->says = (int32_t)at[1];
+        u->value = number_at(&at[2]);
+        fields = at[4];
+        at += 5;
+        if (fields > FIELDS_MOST) {
+            abort();
+        }
+        for (k = 0; k < fields; k++) {
+            s->fields[i][k] = number_at(at);
+            at += 2;
+        }
+        u->fields = (fields > 0) ? s->fields[i] : NULL;
+        for (k = 0; k < i; k++) {
+            s->in_rows = s->in_rows && (s->updates[k].name != u->name);
+        }
+        s->in_rows = s->in_rows && (u->name < NAMES_MOST);
+    }
+    return at;
+}
+
+/* Read a case; returns what is behind it. */
+static const int64_t *read_story(const int64_t *at, story *x)
+{
+    int64_t i;
+    const int64_t size = *at++;
+    if (size > 0) { /* else the plan of the case before */
+        x->plan = at;
+        x->size = (size_t)size;
+        at += size / 8;
+    }
+    x->absent_count = *at++;
+    x->absent = at;
+    at += x->absent_count;
+    x->end = *at++;
+    x->count = *at++;
+    if (x->count > ROWS_MOST) {
+        abort();
+    }
+    for (i = 0; i < x->count; i++) {
+        action *a = &x->actions[i];
+        a->kind = *at++;
+        if (a->kind == A_SAMPLE) {
+            at = read_sample(at, &a->s);
+        } else {
+            a->s.t = *at++;
+        }
+    }
+    return at;
+}
+
+static void note_number(told *x, const rv_number *n)
+{
+    int64_t bits = 0;
+    if (n->kind != RV_UNKNOWN) {
+        (void)memcpy(&bits, &n->as, sizeof bits);
+    }
+    add(x, n->kind);
+    add(x, bits);
+}
+
+/* How many values the attempts of a requirement have. */
+static int32_t captured_of(const void *bytes, int32_t requirement)
+{
+    const plan_header *h = bytes;
+    const section *parts = (const section *)(const void *)(h + 1) + SEC_PARTS;
+    const part_plan *one = (const part_plan *)(const void *)((const char *)bytes + parts->offset);
+    int64_t i;
+    for (i = 0; i < parts->count; i++) {
+        if ((one[i].captured > 0) && (one[i].requirement == requirement)) {
+            return one[i].captured;
+        }
+    }
+    return 0;
+}
+
+/* Take the records of a call. `due`: before, time alone decides nothing. */
+static void note_records(told *x, rv_monitor *m, const void *bytes, int64_t due, int64_t t)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(m, &records);
+    int64_t i;
+    for (i = 0; i < count; i++) {
+        const rv_record *one = &records[i];
+        const rv_number *captured = rv_captured(m, one);
+        const int32_t most = captured_of(bytes, one->requirement);
+        int32_t k;
+        add(x, one->triggered);
+        add(x, (one->decision == RV_OPEN) ? 0 : one->decided);
+        add(x, one->requirement + 1000 * (int64_t)one->number);
+        add(x, one->verdict + 8 * one->decision + 64 * one->in_doubt);
+        for (k = 0; (captured != NULL) && (k < most); k++) {
+            note_number(x, &captured[k]);
+        }
+        if ((t < due) && (one->decision == RV_BY_PREFIX) && (one->decided < t)) {
+            blame(x, 'd');
+        }
+    }
+    rv_forget_records(m);
+}
+
+static bool note_open(void *user, const rv_record *record, const rv_number *captured)
+{
+    uint64_t *sum = user; /* in any order */
+    *sum += (uint64_t)record->triggered * 31 + (uint64_t)record->requirement * 7 + record->number
+            + 1000 * (uint64_t)record->in_doubt + ((captured != NULL) ? 1 : 0);
+    return true; /* go on */
+}
+
+/* A call that has to succeed, if memory is there. */
+static void demand(told *x, const rv_monitor *m, int code)
+{
+    if (code != (rv_spoilt(m) ? RV_NO_MEMORY : RV_OK)) {
+        blame(x, 's');
+    }
+}
+
+static void note_end(told *x, rv_monitor *m, const story *s)
+{
+    const int32_t requirements = rv_sizes_of(m).requirements;
+    int32_t i;
+    demand(x, m, rv_finish(m, s->end));
+    note_records(x, m, s->plan, RV_NO_TIME, 0);
+    for (i = 0; i < requirements; i++) {
+        const rv_counts counts = rv_count(m, i);
+        add(x, rv_verdict(m, i));
+        add(x, counts.failed + 1000 * counts.passed + 1000000 * counts.inconclusive);
+        add(x, counts.heard ? 1 : 0);
+        if (rv_spoilt(m) && (rv_verdict(m, i) != RV_FAIL) && (rv_verdict(m, i) != RV_INCONCLUSIVE)) {
+            blame(x, 'g');
+        }
+    }
+    if ((rv_step(m, s->end + 1000, NULL, 0) != RV_FINISHED) && (s->end != RV_NO_TIME)) {
+        blame(x, 'f');
+    }
+}
+
+/* Step by step. `asks`: of all that is open and due, in between. */
+static told by_steps(rv_monitor *m, const story *s, bool asks)
+{
+    told x = {1, 0, ""};
+    int64_t due = RV_NO_TIME;
+    int64_t i;
+    for (i = 0; i < s->count; i++) {
+        const action *a = &s->actions[i];
+        if (a->kind == A_SAMPLE) {
+            demand(&x, m, rv_step(m, a->s.t, a->s.updates, a->s.count));
+            if (rv_step(m, a->s.t, a->s.updates, a->s.count) == RV_OK) {
+                blame(&x, 't');
+            }
+        } else {
+            demand(&x, m, rv_advance(m, a->s.t));
+        }
+        note_records(&x, m, s->plan, due, a->s.t);
+        due = (asks && (i % 3 != 0)) ? rv_next_due(m) : RV_NO_TIME;
+        if (asks && (i % 2 == 0)) {
+            x.open *= 31;
+            rv_each_open(m, note_open, &x.open);
+        }
+    }
+    note_end(&x, m, s);
+    return x;
+}
+
+/* Columns of some samples. */
+typedef struct {
+    int64_t times[ROWS_MOST];
+    int64_t rows;
+    uint8_t says[NAMES_MOST][ROWS_MOST];
+    double reals[NAMES_MOST][ROWS_MOST];
+    int64_t whole[NAMES_MOST][ROWS_MOST];
+    rv_number fields[NAMES_MOST][FIELDS_MOST][ROWS_MOST];
+    bool is_real[NAMES_MOST];
+} table;
+
+static void lay(table *made, const rv_monitor *m, const sample *s)
+{
+    const int32_t signals = rv_sizes_of(m).signals;
+    const int64_t row = made->rows++;
+    int32_t i;
+    made->times[row] = s->t;
+    for (i = 0; i < NAMES_MOST; i++) {
+        made->says[i][row] = 255;
+    }
+    for (i = 0; i < s->count; i++) {
+        const rv_update *u = &s->updates[i];
+        made->says[u->name][row] = (uint8_t)u->says;
+        if (u->name < signals) {
+            made->is_real[u->name] = made->is_real[u->name] || (u->value.kind == RV_REAL);
+            made->reals[u->name][row] = u->value.as.real;
+            made->whole[u->name][row] = u->value.as.whole;
+        } else {
+            int32_t first;
+            const int32_t own = rv_fields_of(m, u->name - signals, &first);
+            int32_t k;
+            for (k = 0; k < own; k++) {
+                (void)memset(&made->fields[u->name][k][row], 0, sizeof(rv_number));
+                if (u->fields != NULL) {
+                    made->fields[u->name][k][row] = u->fields[k];
+                }
+            }
+        }
+    }
+}
+
+static void judge_table(told *x, rv_monitor *m, table *made)
+{
+    static rv_column columns[NAMES_MOST];
+    static const rv_number *fields[NAMES_MOST][FIELDS_MOST];
+    const rv_sizes sizes = rv_sizes_of(m);
+    int64_t done = 0;
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < sizes.signals + sizes.events; i++) {
+        rv_column *c = &columns[i];
+        const bool event = i >= sizes.signals;
+        c->name = i;
+        c->kind = made->is_real[i] ? RV_COLUMN_REAL : RV_COLUMN_WHOLE;
+        c->values = event ? NULL : (made->is_real[i] ? (void *)made->reals[i] : (void *)made->whole[i]);
+        c->says = made->says[i];
+        for (k = 0; k < FIELDS_MOST; k++) {
+            fields[i][k] = made->fields[i][k];
+        }
+        c->fields = event ? fields[i] : NULL;
+    }
+    if ((rv_rows(m, made->times, made->rows, columns, sizes.signals + sizes.events, &done) != RV_OK)
+        || (done != made->rows)) {
+        blame(x, 'r');
+    }
+    (void)memset(made, 0, sizeof *made);
+}
+
+/* By rows: as many samples at once as no name comes twice in. */
+static told by_rows(rv_monitor *m, const story *s)
+{
+    static table made;
+    told x = {1, 0, ""};
+    int64_t i;
+    (void)memset(&made, 0, sizeof made);
+    for (i = 0; i < s->count; i++) {
+        const action *a = &s->actions[i];
+        if ((a->kind == A_SAMPLE) && a->s.in_rows) {
+            lay(&made, m, &a->s);
+            continue;
+        }
+        judge_table(&x, m, &made);
+        if (a->kind == A_SAMPLE) {
+            demand(&x, m, rv_step(m, a->s.t, a->s.updates, a->s.count));
+        } else {
+            demand(&x, m, rv_advance(m, a->s.t));
+        }
+    }
+    judge_table(&x, m, &made);
+    note_end(&x, m, s);
+    return x;
+}
+
+static void lack(rv_monitor *m, const story *s)
+{
+    int64_t i;
+    for (i = 0; i < s->absent_count; i++) {
+        rv_set_absent(m, (int32_t)s->absent[i]);
+    }
+}
+
+/* What another way found wrong, and that it says something else. */
+static void blame_other(told *x, const told *other, char letter)
+{
+    size_t i;
+    for (i = 0; other->wrong[i] != '\0'; i++) {
+        blame(x, other->wrong[i]);
+    }
+    if (other->sum != x->sum) {
+        blame(x, letter);
+    }
+}
+
+static void judge(const story *s)
+{
+    static const rv_memory heap = {malloc, free, NULL, 0};
+    static char block[1 << 20];
+    rv_monitor *m = rv_new(s->plan, s->size, heap);
+    told whole;
+    told other;
+    size_t used;
+    size_t size;
+    if (m == NULL) {
+        exit(3); /* the plan is of another version */
+    }
+    lack(m, s);
+    whole = by_steps(m, s, true);
+    (void)rv_reset(m);
+    other = by_steps(m, s, false);
+    blame_other(&whole, &other, 'a');
+    (void)rv_reset(m);
+    other = by_rows(m, s);
+    blame_other(&whole, &other, 'o');
+    used = rv_memory_used(m);
+    rv_free(m);
+    for (size = used / 4; (size <= 2 * used) && (size < sizeof block); size += used / 4 + 64) {
+        rv_memory own = {NULL, NULL, NULL, 0};
+        own.block = block;
+        own.size = size;
+        m = rv_new(s->plan, s->size, own);
+        if (m != NULL) {
+            lack(m, s);
+            other = by_steps(m, s, true);
+            other.sum = rv_spoilt(m) ? whole.sum : other.sum;
+            blame_other(&whole, &other, 'm');
+            rv_free(m);
+        }
+    }
+    (void)printf("%016llx %016llx %s\n", (unsigned long long)whole.sum,
+                 (unsigned long long)whole.open, whole.wrong);
+}
+
+int main(int argc, char **argv)
+{
+    static story s;
+    FILE *file = (argc == 2) ? fopen(argv[1], "rb") : NULL;
+    int64_t *words;
+    const int64_t *at;
+    int64_t cases;
+    long size;
+    if ((file == NULL) || (fseek(file, 0, SEEK_END) != 0)) {
+        return 2;
+    }
+    size = ftell(file);
+    rewind(file);
+    words = malloc((size_t)size + 8);
+    if ((words == NULL) || (fread(words, 1, (size_t)size, file) != (size_t)size)) {
+        return 2;
+    }
+    (void)fclose(file);
+    at = words;
+    for (cases = *at++; cases > 0; cases--) {
+        at = read_story(at, &s);
+        judge(&s);
+    }
+    free(words);
+    return 0;
+}

@@ -1,0 +1,330 @@
+/* What a fuzzer calls with its bytes (libFuzzer, or AFL++ by `-fsanitize=fuzzer`).
+ *
+ * Compiled with -DPLANS: the bytes are a plan, whose hash is put right; if it is accepted, some
+ * samples are judged by it. Else the first byte names one of the plans in the file `$RVMON_PLANS`, and
+ * the others say what it is told. Each run is repeated after a reset, and has to say the same; then
+ * with memory that ends somewhere, and must not be green. */
+#include "core.h"
+#include "plan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NAMES_MOST 64
+#define FIELDS_MOST 64
+#define UPDATES_MOST 12
+#define STEPS_MOST 200
+
+extern long guarded_left;
+
+int LLVMFuzzerInitialize(int *argc, char ***argv);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* Bytes that say what to do; behind their end come those of a generator, `seed`, so many more. */
+typedef struct {
+    const uint8_t *data;
+    size_t size;
+    size_t at;
+    size_t more;
+    uint64_t seed;
+} script;
+
+static bool is_over(const script *s)
+{
+    return s->at >= s->size + s->more;
+}
+
+static uint8_t byte_of(script *s)
+{
+    const size_t at = s->at++;
+    if (at < s->size) {
+        return s->data[at];
+    }
+    s->seed = s->seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (uint8_t)(s->seed >> 56);
+}
+
+static rv_number number_of(script *s)
+{
+    static const int64_t whole[] = {0, 1, -1, 2, INT64_MAX, INT64_MIN, INT64_C(1) << 53,
+                                    (INT64_C(1) << 53) + 1, INT64_MIN + 1};
+    static const double real[] = {0.0, -0.0, 0.5, 1.0, -1.0, 9007199254740992.0,
+                                  9223372036854775808.0, 1e300, -1e300, 4.9e-324};
+    const uint8_t code = byte_of(s);
+    rv_number made;
+    (void)memset(&made, 0, sizeof made);
+    if (code < 128) {
+        made.kind = RV_WHOLE;
+        made.as.whole = whole[code % (sizeof whole / sizeof *whole)];
+    } else if (code < 250) {
+        made.kind = RV_REAL;
+        made.as.real = real[code % (sizeof real / sizeof *real)];
+    } else {
+        made.kind = RV_UNKNOWN;
+    }
+    return made;
+}
+
+/* Ticks to the next instant: few, or some thousands; what fails anew at each tick is told so often. */
+static int64_t step_of(script *s)
+{
+    const uint8_t code = byte_of(s);
+    if (code < 200) {
+        return 1 + code % 8;
+    }
+    return (code < 240) ? 8 + (int64_t)byte_of(s) : (int64_t)1 << (code % 13);
+}
+
+/* FNV of all that is told. */
+static uint64_t mixed(uint64_t sum, int64_t what)
+{
+    return (sum ^ (uint64_t)what) * UINT64_C(0x100000001b3);
+}
+
+static bool note_open(void *user, const rv_record *record, const rv_number *captured)
+{
+    uint64_t *sum = user;
+    *sum = mixed(mixed(*sum, record->triggered), record->number);
+    *sum = mixed(*sum, (captured != NULL) ? captured->kind : -1);
+    return true;
+}
+
+static uint64_t noted_records(rv_monitor *m, uint64_t sum, bool finished)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(m, &records);
+    int64_t i;
+    for (i = 0; i < count; i++) {
+        const rv_record *one = &records[i];
+        const rv_number *captured = rv_captured(m, one);
+        if (finished || (one->decision != RV_OPEN)) {
+            sum = mixed(mixed(mixed(sum, one->triggered), one->decided), one->number);
+        }
+        sum = mixed(mixed(mixed(sum, one->requirement), one->verdict), one->in_doubt);
+        sum = mixed(sum, (captured != NULL) ? captured->kind : -1);
+    }
+    rv_forget_records(m);
+    return sum;
+}
+
+static int one_step(rv_monitor *m, script *s, int64_t t, bool in_rows)
+{
+    const rv_sizes sizes = rv_sizes_of(m);
+    rv_update updates[UPDATES_MOST];
+    rv_number fields[UPDATES_MOST][FIELDS_MOST];
+    const int32_t names = sizes.signals + sizes.events;
+    const int32_t count = (names > 0) ? byte_of(s) % UPDATES_MOST : 0;
+    int32_t i;
+    (void)memset(updates, 0, sizeof updates);
+    (void)memset(fields, 0, sizeof fields);
+    for (i = 0; i < count; i++) {
+        rv_update *u = &updates[i];
+        u->name = byte_of(s) % ((names < 256) ? names : 256);
+        u->says = RV_SAYS_YES;
+        if (byte_of(s) >= 230) {
+            u->says = (u->name < sizes.signals) ? RV_SAYS_UNKNOWN : byte_of(s) % 2;
+        }
+        if (u->name < sizes.signals) {
+            u->value = number_of(s);
+        } else {
+            int32_t first;
+            const int32_t own = rv_fields_of(m, u->name - sizes.signals, &first);
+            int32_t k;
+            for (k = 0; (k < own) && (own <= FIELDS_MOST); k++) {
+                fields[i][k] = number_of(s);
+            }
+            u->fields = ((own > 0) && (own <= FIELDS_MOST)) ? fields[i] : NULL;
+        }
+    }
+    if (in_rows && (count == 1) && (updates[0].name < sizes.signals)) {
+        rv_column column;
+        int64_t done;
+        const uint8_t says = (uint8_t)updates[0].says;
+        const uint8_t value = (uint8_t)(updates[0].value.as.whole & 1);
+        (void)memset(&column, 0, sizeof column);
+        column.values = &value;
+        column.says = &says;
+        column.kind = RV_COLUMN_BYTE;
+        column.name = updates[0].name;
+        return rv_rows(m, &t, 1, &column, 1, &done);
+    }
+    return rv_step(m, t, updates, count);
+}
+
+/* A run by a script, from its begin; returns the sum of all that it says. */
+static uint64_t one_run(rv_monitor *m, script s)
+{
+    const rv_sizes sizes = rv_sizes_of(m);
+    const int32_t names = sizes.signals + sizes.events;
+    uint64_t sum = 1;
+    static const int64_t begins[] = {0, 0, 0, INT64_C(1) << 53, (INT64_C(1) << 62) - 300,
+                                     -(INT64_C(1) << 62) - 100};
+    int64_t t = begins[byte_of(&s) % (sizeof begins / sizeof *begins)] + byte_of(&s);
+    int32_t steps = 0;
+    int32_t i;
+    if ((names > 0) && (byte_of(&s) >= 200)) {
+        rv_set_absent(m, byte_of(&s) % ((names < 256) ? names : 256));
+    }
+    while (!is_over(&s) && (steps < STEPS_MOST)) {
+        const uint8_t what = byte_of(&s);
+        int code = RV_OK;
+        if (what < 190) {
+            code = one_step(m, &s, t, what % 4 == 3);
+        } else if (what < 215) {
+            code = rv_advance(m, t);
+        } else if (what < 225) {
+            sum = mixed(sum, rv_next_due(m));
+        } else if (what < 235) {
+            rv_each_open(m, note_open, &sum);
+        } else if (what < 245) {
+            sum = noted_records(m, sum, false);
+        } else if (what < 250) {
+            code = rv_step(m, t - 5, NULL, 0);
+        } else {
+            sum = mixed(sum, rv_end(m, t));
+        }
+        sum = mixed(sum, code);
+        steps++;
+        if (what % 8 != 0) {
+            const int64_t step = step_of(&s);
+            t += (t < (INT64_C(1) << 62)) ? step : 0;
+        }
+    }
+    sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
+    sum = noted_records(m, sum, true);
+    for (i = 0; (i < sizes.requirements) && (i < NAMES_MOST); i++) {
+        const int verdict = rv_verdict(m, i);
+        sum = mixed(mixed(sum, verdict), rv_count(m, i).failed);
+        if (rv_spoilt(m) && ((verdict == RV_PASS) || (verdict == RV_NOT_TRIGGERED))) {
+            (void)fprintf(stderr, "spoilt, and green\n");
+            abort();
+        }
+    }
+    return sum;
+}
+
+static void judge(const void *bytes, size_t size, script s)
+{
+    const rv_memory memory = {malloc, free, NULL, 0};
+    rv_monitor *m = rv_new(bytes, size, memory);
+    if (m != NULL) {
+        const uint64_t first = one_run(m, s);
+        if ((rv_sizes_of(m).signals + rv_sizes_of(m).events <= NAMES_MOST) && !rv_spoilt(m)) {
+            uint64_t again;
+            /* A name is still absent then: so what a script says of that is said of two runs. */
+            (void)rv_reset(m);
+            again = one_run(m, s);
+            (void)rv_reset(m);
+            if (!rv_spoilt(m) && (one_run(m, s) != again)) {
+                (void)fprintf(stderr, "%llx at first: another run says something else\n",
+                              (unsigned long long)first);
+                abort();
+            }
+        }
+        rv_free(m);
+    }
+    guarded_left = byte_of(&s) % 64;
+    m = rv_new(bytes, size, memory);
+    if (m != NULL) {
+        (void)one_run(m, s);
+        guarded_left = -1;
+        (void)rv_reset(m);
+        (void)one_run(m, s);
+        rv_free(m);
+    }
+    guarded_left = -1;
+}
+
+#ifdef PLANS
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+    (void)argc;
+    (void)argv;
+    return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const size_t whole = size / 8 * 8;
+    plan_header head;
+    uint64_t *words;
+    script s;
+    size_t i;
+    if (whole < sizeof head) {
+        return 0;
+    }
+    words = malloc(whole); /* as long as it is, so that a step beyond its end is seen */
+    if (words == NULL) {
+        return 0;
+    }
+    (void)memcpy(words, data, whole);
+    (void)memcpy(&head, words, sizeof head);
+    (void)memcpy(head.magic, PLAN_MAGIC, sizeof head.magic);
+    head.order = PLAN_ORDER;
+    head.sections = SECTIONS;
+    head.size = (int64_t)whole;
+    head.hash = UINT64_C(0xcbf29ce484222325);
+    for (i = sizeof head / 8; i < whole / 8; i++) {
+        head.hash = (head.hash ^ words[i]) * UINT64_C(0x100000001b3);
+    }
+    (void)memcpy(words, &head, sizeof head);
+    if (rv_plan_check(words, whole) < 0) {
+        (void)memset(&s, 0, sizeof s);
+        s.seed = head.hash;
+        s.more = 400;
+        judge(words, whole, s);
+    }
+    free(words);
+    return 0;
+}
+
+#else
+
+#define PLANS_MOST 256
+
+static void *plans[PLANS_MOST];
+static size_t plan_sizes[PLANS_MOST];
+static size_t plan_count;
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+    const char *path = getenv("RVMON_PLANS");
+    FILE *file = (path != NULL) ? fopen(path, "rb") : NULL;
+    int64_t size;
+    (void)argc;
+    (void)argv;
+    while ((file != NULL) && (plan_count < PLANS_MOST) && (fread(&size, sizeof size, 1, file) == 1)) {
+        void *one = malloc((size_t)size);
+        if ((one == NULL) || (fread(one, (size_t)size, 1, file) != 1)) {
+            abort();
+        }
+        plans[plan_count] = one;
+        plan_sizes[plan_count] = (size_t)size;
+        plan_count++;
+    }
+    if (plan_count == 0) {
+        (void)fprintf(stderr, "no plans in $RVMON_PLANS\n");
+        exit(2);
+    }
+    (void)fclose(file);
+    return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    script s;
+    size_t which;
+    if (size < 4) {
+        return 0;
+    }
+    which = data[0] % plan_count;
+    (void)memset(&s, 0, sizeof s);
+    s.data = data + 1;
+    s.size = size - 1;
+    judge(plans[which], plan_sizes[which], s);
+    return 0;
+}
+
+#endif

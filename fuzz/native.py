@@ -1,0 +1,165 @@
+"""The core under AFL++, each block of its memory watched: plans of any bytes, and any samples.
+
+    python -m fuzz.native --seconds 3600 --out out/fuzz-native
+
+Bytes of a plan get a hash that fits, so that what is fuzzed is what is behind it. A plan that is
+accepted judges some samples; each run is repeated after a reset and has to say the same, then with
+memory that ends somewhere, and must not be green. Prints what AFL++ counted and the inputs at which
+the core crashed, hung, or was found out by AddressSanitizer or UBSan; exits 1 if there are any.
+Needs the Debian packages afl++ and libclang-rt-14-dev.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import shutil
+import struct
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from rvmon.core.plan import pack
+from rvmon.errors import RvmonError
+from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.testing.generate.spec import Profile, random_spec
+
+HERE = Path(__file__).with_name("c")
+CORE = HERE.parents[1] / "src" / "rvmon" / "core"
+COMPILER = "afl-clang-fast"
+FLAGS = (
+    *("-std=c99", "-g", "-O1", "-fno-omit-frame-pointer", "-ffp-contract=off", f"-I{CORE}"),
+    *("-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"),
+)
+WEAK = ("-include", str(CORE / "state.h"), "-include", str(HERE / "weak.h"))
+
+TARGETS = {"plans": ("-DPLANS",), "samples": ()}
+"""What is fuzzed, and how the harness is compiled for it."""
+
+SMALL = 6_000
+"""Bytes of a plan with which AFL++ begins, at most: it gets further with small ones."""
+
+PLANS = 200
+"""Of the samples."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What came of a target.
+
+    Attributes:
+        counted: as AFL++ says it: runs, seconds, inputs that reached something new.
+        bad: inputs at which something was wrong.
+    """
+
+    counted: dict[str, str]
+    bad: tuple[Path, ...]
+
+
+def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[bytes]:
+    """So many packed plans of random specifications, of at most so many bytes."""
+    rng = random.Random(str(seed))
+    made = 0
+    while made < most:
+        profile = Profile(requirements=1 if limit else 3, depth=rng.randint(1, 3), wide=10)
+        try:
+            data = pack(plan_alone(compile_spec(random_spec(rng, profile)))).data
+        except RvmonError:
+            continue
+        if limit is None or len(data) <= limit:
+            made += 1
+            yield data
+
+
+def compiled(folder: Path, target: str, *, compiler: str = COMPILER) -> Path:
+    """The program of a target, compiled into a folder.
+
+    Raises:
+        CalledProcessError: the compiler failed.
+    """
+    memory, program = folder / "memory.o", folder / target
+    sources = [path for path in CORE.glob("*.c") if path.name not in ("memory.c", "module.c")]
+    sources += [HERE / "guarded.c", HERE / "harness.c", memory]
+    words = [compiler, *FLAGS, *WEAK, "-c", str(CORE / "memory.c"), "-o", str(memory)]
+    subprocess.run(words, check=True, capture_output=True)
+    words = [compiler, *FLAGS, *TARGETS[target], *map(str, sources), "-lm", "-o", str(program)]
+    subprocess.run(words, check=True, capture_output=True)
+    return program
+
+
+def begun_with(folder: Path, target: str) -> None:
+    """Write the inputs that AFL++ begins with, and the plans that samples are judged by."""
+    (folder / "in").mkdir()
+    if target == "plans":
+        for number, data in enumerate(plans("plans", most=60, limit=SMALL)):
+            (folder / "in" / str(number)).write_bytes(data)
+        return
+    held = [*plans("samples", most=PLANS)]
+    sized = b"".join(struct.pack("<q", len(data)) + data for data in held)
+    (folder / "held").write_bytes(sized)
+    rng = random.Random("samples")
+    for number in range(PLANS):
+        (folder / "in" / str(number)).write_bytes(bytes([number]) + rng.randbytes(120))
+
+
+def fuzz(target: str, folder: Path, seconds: int) -> Found:
+    """Fuzz one target for so long; what is found stays in its folder, and is gone on from."""
+    folder.mkdir(parents=True, exist_ok=True)
+    program = compiled(folder, target)
+    if not (folder / "in").exists():
+        begun_with(folder, target)
+    environment = {
+        **os.environ,
+        **dict.fromkeys(
+            ("AFL_NO_UI", "AFL_SKIP_CPUFREQ", "AFL_NO_AFFINITY", "AFL_AUTORESUME"), "1"
+        ),
+        "AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES": "1",
+        "RVMON_PLANS": str(folder / "held"),
+        "ASAN_OPTIONS": "abort_on_error=1:symbolize=0:detect_leaks=0",
+    }
+    words = ["afl-fuzz", "-i", folder / "in", "-o", folder / "out", "-m", "none", "-t", "5000"]
+    with (folder / "log.txt").open("w") as log:
+        subprocess.run(
+            [*map(str, words), "-V", str(seconds), "--", str(program)],
+            env=environment,
+            stdout=log,
+            stderr=log,
+            check=False,
+        )
+    out = folder / "out" / "default"
+    lines = (out / "fuzzer_stats").read_text().splitlines()
+    counted = dict(map(str.strip, line.split(":", 1)) for line in lines)  # type: ignore[misc]
+    bad = [*out.glob("crashes/id*"), *out.glob("hangs/id*")]
+    return Found(counted, tuple(sorted(bad)))
+
+
+def main(words: list[str]) -> int:
+    """Fuzz, print, and return 1 if anything stumbled."""
+    parser = argparse.ArgumentParser(prog="python -m fuzz.native", description=__doc__)
+    parser.add_argument("--seconds", type=int, default=600, help="in all")
+    parser.add_argument("--only", nargs="+", choices=TARGETS, default=[*TARGETS])
+    parser.add_argument("--out", type=Path, default=Path("out/fuzz-native"))
+    options = parser.parse_args(words)
+    if shutil.which(COMPILER) is None:
+        print(f"nothing is fuzzed: {COMPILER} is not installed (Debian's package afl++)")
+        return 1
+    bad = 0
+    for target in options.only:
+        seconds = options.seconds // len(options.only)
+        found = fuzz(target, options.out.resolve() / target, seconds)
+        said = (f"{name} {found.counted.get(name)}" for name in _TOLD)
+        print(f"{target:8} {', '.join(said)}", flush=True)
+        for path in found.bad:
+            print(f"  stumbled over {path}")
+        bad += len(found.bad)
+    return 1 if bad else 0
+
+
+_TOLD = ("run_time", "execs_done", "execs_per_sec", "corpus_count", "bitmap_cvg", "stability")
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

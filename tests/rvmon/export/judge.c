@@ -1,0 +1,149 @@
+/* Judges what stands on the standard input, by the exported core and plans; see tests/tools/exported.py.
+ *
+ * What a call is given lies in memory of its own, so that a core that keeps a pointer to it is seen. */
+#include "plans.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST 256
+
+static void *copied(const void *from, size_t size)
+{
+    void *made = malloc(size + 1);
+    (void)memcpy(made, from, size);
+    return made;
+}
+
+static rv_number read_number(void)
+{
+    rv_number made = {RV_UNKNOWN, {0}};
+    if (scanf("%" SCNd32 " %" SCNx64, &made.kind, (uint64_t *)&made.as.whole) != 2) {
+        exit(2);
+    }
+    return made;
+}
+
+static void tell(const rv_monitor *m)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(m, &records);
+    int64_t i;
+    int32_t k;
+    for (i = 0; i < count; i++) {
+        const rv_record *one = &records[i];
+        const rv_number *captured = rv_captured(m, one);
+        printf("r %" PRId64 " %" PRId64 " %" PRId32 " %" PRIu32 " %d %d %d", one->triggered,
+               one->decided, one->requirement, one->number, one->verdict, one->decision, one->in_doubt);
+        for (k = 0; (captured != NULL) && (k < rv_sizes_of(m).captured); k++) {
+            if (captured[k].kind != RV_UNKNOWN) {
+                printf(" %d:%" PRIx64, (int)captured[k].kind, (uint64_t)captured[k].as.whole);
+            }
+        }
+        printf("\n");
+    }
+}
+
+int main(void)
+{
+    static rv_update updates[MOST];
+    static rv_number fields[MOST];
+    rv_monitor *m = NULL;
+    void *block = NULL;
+    int32_t count = 0;
+    int32_t fields_count = 0;
+    int64_t t;
+    char what;
+    while (scanf(" %c %" SCNd64, &what, &t) == 2) {
+        int code = RV_OK;
+        if (what == 'c') { /* a plan, and the size of a block; -1: a heap */
+            rv_memory memory = {malloc, free, NULL, 0};
+            int64_t size;
+            if (scanf("%" SCNd64, &size) != 1) {
+                return 2;
+            }
+            if (size >= 0) {
+                memory.allocate = NULL;
+                memory.release = NULL;
+                memory.block = block = malloc((size_t)size + 1);
+                memory.size = (size_t)size;
+            }
+            m = rv_new(plans[t].bytes, plans[t].size, memory);
+            printf("%s\n", (m == NULL) ? "none" : "begun");
+        } else if (m == NULL) {
+            /* It has not begun: the rest of the case is read over. */
+            int32_t says;
+            if (((what == 'u') && (scanf("%" SCNd32, &says) == 1)) || (what == 'f')) {
+                (void)read_number();
+            }
+        } else if (what == 'a') {
+            rv_set_absent(m, (int32_t)t);
+        } else if (what == 'r') {
+            code = rv_reset(m);
+        } else if (what == 'm') {
+            code = rv_reserve(m, (int32_t)t);
+        } else if (what == 'u') {
+            rv_update *one = &updates[count++];
+            one->name = (int32_t)t;
+            one->fields = NULL;
+            if (scanf("%" SCNd32, &one->says) != 1) {
+                return 2;
+            }
+            one->value = read_number();
+        } else if (what == 'f') { /* a field of that update: its place, its value */
+            fields[fields_count] = read_number();
+            if (t == 0) {
+                updates[count - 1].fields = &fields[fields_count];
+            }
+            fields_count++;
+        } else if (what == 's') {
+            rv_number *own_fields = copied(fields, (size_t)fields_count * sizeof *fields);
+            rv_update *own = copied(updates, (size_t)count * sizeof *updates);
+            int32_t i;
+            for (i = 0; i < count; i++) {
+                if (own[i].fields != NULL) {
+                    own[i].fields = own_fields + (updates[i].fields - fields);
+                }
+            }
+            code = rv_step(m, t, own, count);
+            free(own);
+            free(own_fields);
+            count = 0;
+            fields_count = 0;
+        } else if (what == 'w') {
+            code = rv_advance(m, t);
+        } else if (what == 'd') {
+            (void)rv_next_due(m);
+        } else if (what == 'e') {
+            code = rv_finish(m, t);
+        } else if (what == 'z') {
+            rv_free(m);
+            m = NULL;
+        } else {
+            return 2;
+        }
+        if ((m != NULL) && (what != 'c')) {
+            if (code != RV_OK) {
+                printf("x %d\n", code);
+            }
+            tell(m);
+            rv_forget_records(m);
+        }
+        if ((m != NULL) && (what == 'e')) { /* whether memory was short, verdicts, bytes */
+            int32_t i;
+            printf("e %d", rv_spoilt(m) ? 1 : 0);
+            for (i = 0; i < rv_sizes_of(m).requirements; i++) {
+                printf(" %d", rv_verdict(m, i));
+            }
+            printf(" %zu\n", rv_memory_used(m));
+        }
+        if (what == 'z') {
+            free(block);
+            block = NULL;
+            printf(".\n");
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,128 @@
+"""What comes too late: no green on letters that it would have changed, no alarm taken back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from tests.tools.build import always, p, probe, q, requirement, spec_of, timeline, true
+from tests.tools.late import after_late, is_touched, stretch_of
+from tests.tools.law import judge, word
+
+from rvmon.spec.checked.specification import Mode, TimeModel
+from rvmon.testing.case import Case
+from rvmon.testing.compare import Outcome, outcomes
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.strategies import cases
+from rvmon.trace.sample import Sample
+from rvmon.verdict.verdict import Verdict
+
+FEW = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+
+
+@st.composite
+def late_cases(draw: st.DrawFn, profile: Profile) -> tuple[Case, Case, Sample]:
+    """A case as it was, and as it was judged without one of its samples; not the last."""
+    whole = draw(cases(profile, TraceProfile(advances=False)))
+    assume(len(whole.samples) > 1)
+    late = whole.samples[draw(st.integers(0, len(whole.samples) - 2))]
+    judged = tuple(sample for sample in whole.samples if sample is not late)
+    return whole, replace(whole, actions=judged), late
+
+
+@FEW
+@given(late_cases(Profile()))
+def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
+    """What is P or NT is so with the late sample in its place too; what is F stays."""
+    whole, judged, late = cases_
+    verdicts = judge(judged, next_law=True).verdicts
+    with_late = judge(whole, next_law=True).verdicts
+    found = after_late(judged.spec, verdicts, judged.samples, [late])
+    for name, verdict in found.items():
+        if verdict in (Verdict.PASS, Verdict.NOT_TRIGGERED):
+            assert with_late[name] is verdict
+        assert (verdict is Verdict.FAIL) is (verdicts[name] is Verdict.FAIL)
+
+
+@FEW
+@given(late_cases(Profile()))
+def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None:
+    """A requirement that is not touched has the same attempts without the late sample."""
+    whole, judged, late = cases_
+    spec = judged.spec
+    touched = {
+        name: is_touched(spec, one, judged.samples, late) for name, one in spec.requirements.items()
+    }
+    with_late, without = (outcomes(judge(one, next_law=True)) for one in (whole, judged))
+    kept = [{k: v for k, v in one.items() if not touched[k[0]]} for one in (with_late, without)]
+    assert kept[0] == kept[1]
+
+
+@FEW
+@given(late_cases(Profile(requirements=1)))
+def test_letters_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
+    """Outside of the stretch what is known of a name is what would have been known."""
+    whole, judged, late = cases_
+    assume(late.t >= judged.samples[0].t)
+    pairs = [
+        (one, other)
+        for one in word(whole).letters
+        for other in word(judged).letters
+        if one.instant == other.instant
+    ]
+    for name in (*judged.spec.signals, *judged.spec.events):
+        first, last = (None, None)
+        if name in late.values:
+            first, last = stretch_of(judged.spec, name, judged.samples, late)
+        for one, other in pairs:
+            inside = first is not None and first <= one.instant
+            if inside and (last is None or one.instant <= last):
+                continue
+            states = [{**letter.signals, **letter.events}[name] for letter in (one, other)]
+            assert states[0] == states[1]
+
+
+@FEW
+@given(late_cases(Profile(requirements=1, past=False, for_each=False)))
+def test_attempts_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
+    """An attempt that begins behind it, and looks back at nothing, is judged as ever."""
+    whole, judged, late = cases_
+    spec = judged.spec
+    [owed] = spec.requirements.values()
+    assume(late.t >= judged.samples[0].t and owed.mode is Mode.UPON)
+    ends = [stretch_of(spec, name, judged.samples, late)[1] for name in late.values]
+    assume(None not in ends)
+    last = max([late.t, *(end for end in ends if end is not None)]) + (spec.period or 1)
+
+    def behind(case: Case) -> list[Outcome]:
+        found = outcomes(judge(case, next_law=True)).items()
+        return [one for (_, in_doubt, _), one in found if one.triggered > last and not in_doubt]
+
+    assert behind(whole) == behind(judged)
+
+
+@pytest.mark.parametrize("time", TimeModel)
+def test_by_hand(time: TimeModel) -> None:
+    """A late update of `p` leaves F, and what reads `q` alone; in sampled time F."""
+    spec = spec_of(
+        requirement(p, whenever=true, name="A"),
+        requirement(q, whenever=true, name="B"),
+        requirement(always(q, 0, 3), upon=probe("updated", "p"), name="C"),
+        requirement(p, upon=q, name="D"),
+        time=time,
+        period=1 if time is TimeModel.CLOCKED else None,
+    )
+    judged = timeline(p="1.1.0.1", q="1")
+    verdicts = judge(Case(spec, judged), next_law=True).verdicts
+    assert "".join(verdict.value for verdict in verdicts.values()) == "FPIP"
+    for late, expected in (
+        (Sample(3, {"p": False}), "FPII"),
+        (Sample(3, {}), "FPIP"),
+        (Sample(-1, {"e": True}), "FIII"),
+    ):
+        found = after_late(spec, verdicts, judged, [late])
+        values = "".join(verdict.value for verdict in found.values())
+        assert values == ("FIII" if time is TimeModel.SAMPLED else expected)

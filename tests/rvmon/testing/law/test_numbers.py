@@ -1,0 +1,102 @@
+"""Numbers of the law to come, worked out by hand from SEMANTICS 5."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from tests.tools.build import compared, spec_of, timeline, x, y
+
+from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.formula import Arithmetic, Literal, Numeric, UpdateFunction, UpdateValue
+from rvmon.testing.law.kleene import Truth
+from rvmon.testing.law.numbers import compare, number
+from rvmon.testing.law.sample_words import word_of
+from rvmon.trace.sample import Sample
+
+MOST, LEAST = 2**63 - 1, -(2**63)
+ODD = 2**53 + 1
+"""The least whole number that binary64 does not hold."""
+
+
+def of(op: str, *args: Numeric | float) -> Numeric:
+    return Arithmetic(
+        NumericOp.of(op), tuple(Literal(a) if isinstance(a, int | float) else a for a in args)
+    )
+
+
+def told(*values: dict[str, Any], next_law: bool = True) -> Any:
+    samples = [Sample(t, one) for t, one in enumerate(values)]
+    return word_of(spec_of(), samples, next_law=next_law).letters[-1]
+
+
+def value(expression: Numeric, *values: dict[str, Any]) -> Any:
+    return number(expression, told(*values), {}, {}, next_law=True)
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        (of("+", MOST, 1), None),
+        (of("-", LEAST, 1), None),
+        (of("*", 2**32, 2**31), None),
+        (of("*", 2**31, 2**31), 2**62),
+        (of("neg", LEAST), None),
+        (of("abs", LEAST), None),
+        # What leaves int64 on the way is unknown, though the whole would not.
+        (of("-", of("+", MOST, 1), 1), None),
+        (of("+", of("-", MOST, 1), 1), MOST),
+        # Beside a real, and in quotients, roots and lengths, whole numbers are rounded first.
+        (of("+", ODD, 0.0), 2.0**53),
+        (of("max", ODD, 0.0), 2.0**53),
+        (of("max", ODD, 0), ODD),
+        (of("/", ODD, 1), 2.0**53),
+        (of("/", 7, 2), 3.5),
+        (of("/", 7, 0), None),
+        (of("sqrt", -1), None),
+        (of("*", 1e200, 1e200), None),
+        (of("hypot", 3, 4), 5.0),
+    ],
+)
+def test_arithmetic(expression: Numeric, expected: Any) -> None:
+    """Whole numbers stay whole, exact and within int64; reals are binary64."""
+    found = value(expression, {"x": 0})
+    assert (type(found), found) == (type(expected), expected)
+
+
+def test_values_are_rounded_at_the_edge() -> None:
+    """A real signal holds binary64, a whole one int64 or nothing."""
+    assert (type(value(x, {"x": ODD})), value(x, {"x": ODD})) == (float, 2.0**53)
+    assert value(x, {"x": 10**400}) is None
+    assert value(y, {"y": ODD}) == ODD
+    assert value(y, {"y": MOST + 1}) is None
+
+
+def test_comparisons_are_exact() -> None:
+    """A whole number beside a real is not rounded."""
+    letter = told({"x": 2.0**53, "y": ODD})
+    for op, expected in ((">", Truth.FALSE), ("<", Truth.TRUE), ("==", Truth.FALSE)):
+        assert compare(compared(x, op, y), letter, {}, next_law=True) is expected
+
+
+def test_differences_and_rates() -> None:
+    """A difference of whole numbers is whole, a rate is a real, of seconds."""
+    told_twice = ({"y": 1}, {"y": 4})
+    delta, rate = (UpdateValue(f, "y") for f in (UpdateFunction.DELTA, UpdateFunction.RATE))
+    assert value(delta, *told_twice) == 3
+    assert (type(value(rate, *told_twice)), value(rate, *told_twice)) == (float, 3e9)
+    assert value(delta, {"y": LEAST}, {"y": MOST}) is None
+    assert value(rate, {"y": LEAST}, {"y": MOST}) is None
+
+
+def test_numbers_of_today_have_no_bound() -> None:
+    """What engines give today: whole numbers of any size, rounded nowhere."""
+    letter = told({"x": ODD}, next_law=False)
+    assert number(x, letter, {}, {}) == ODD
+    assert number(of("+", MOST, 1), letter, {}, {}) == MOST + 1
+
+
+def test_a_signal_that_is_drawn() -> None:
+    """Whole and real signals of drawn traces keep their kinds."""
+    [letter] = word_of(spec_of(), timeline(x="3", y="3"), next_law=True).letters
+    assert [type(letter.signals[name].value) for name in "xy"] == [float, int]

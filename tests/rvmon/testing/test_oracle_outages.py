@@ -1,0 +1,190 @@
+"""What an outage hides: worked out by hand from SEMANTICS 1."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from tests.tools.build import (
+    always,
+    compared,
+    e,
+    eventually,
+    following,
+    held,
+    no,
+    once,
+    p,
+    previous,
+    probe,
+    q,
+    requirement,
+    true,
+    two,
+    x,
+)
+
+from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.law.outage import Outage
+
+SAMPLED = {"time": TimeModel.SAMPLED}
+EVERY_4 = {"time": TimeModel.CLOCKED, "period": 4}
+
+
+def at(t: int, formula: Formula) -> Formula:
+    return eventually(formula, t, t)
+
+
+@pytest.mark.parametrize(
+    ("told", "known"),
+    [
+        # Within it, whatever was read there; behind it, from the first update at its end or later.
+        ({"p": "1....1", "lost": [("p", 2, 3)]}, "++--- +"),
+        ({"p": "1..1", "lost": [("p", 2, 3)], "end": 5}, "++--++"),
+        ({"p": "1.1", "lost": [("p", 2, 3)], "end": 5}, "++----"),
+        ({"p": "1..1", "lost": [("p", 3, 3)], "end": 5}, "+++---"),
+        # What ends one outage may lie in another.
+        ({"p": "1..1.1", "lost": [("p", 2, 3), ("p", 3, 5)], "end": 6}, "++----+"),
+        ({"p": "1....1", "lost": [("q e", 2, 3)]}, "++++++"),
+    ],
+)
+def test_a_signal(judge: Any, told: dict[str, Any], known: str) -> None:
+    """Its value is known where a mark says so."""
+    for t, mark in enumerate(known.replace(" ", "")):
+        assert judge(at(t, p), **told) == [f"0 P {t}" if mark == "+" else "0 I"]
+
+
+def test_a_signal_that_becomes_stale_is_surely_unknown_then(judge: Any) -> None:
+    """`known` is unknown until what was lost last would be stale."""
+    told = {"p": "1", "lost": [("p", 2, 3)], "stale": {"p": 2}, "end": 8}
+    for t, expected in enumerate(["P 0", "P 1", "I", "I", "I", "I", "F 7", "F 8"]):
+        assert judge(at(t, probe("known", "p")), **told) == [f"0 {expected}"]
+
+
+def test_an_event(judge: Any) -> None:
+    """It is unknown within, seen or not, and known again at once."""
+    told = {"p": "1.....", "e": "..1", "lost": [("e", 1, 3)], "end": 5}
+    expected = ["F 1", "I", "I", "I", "F 5", "I"]
+    assert [judge(at(t, e), **told)[0] for t in range(6)] == [f"0 {one}" for one in expected]
+    assert judge(requirement(q, upon=e), **told) == ["1 I"]
+
+
+@pytest.mark.parametrize("what", ["updated", "changed", "known"])
+def test_what_is_asked_of_updates(judge: Any, what: str) -> None:
+    """It is unknown within; the first update behind it may be no change."""
+    told = {"p": "11...0.1", "lost": [("p", 2, 3)], "end": 8}
+    expected = {
+        "updated": ["P 0", "P 1", "I", "I", "F 5", "P 5", "F 7", "P 7"],
+        "changed": ["F 1", "F 2", "I", "I", "F 5", "I", "F 7", "P 7"],
+        "known": ["P 0", "P 1", "I", "I", "I", "P 5", "P 6", "P 7"],
+    }
+    found = [judge(at(t, probe(what, "p")), **told)[0] for t in range(8)]
+    assert found == [f"0 {one}" for one in expected[what]]
+
+
+def test_what_looks_at_two_updates(judge: Any) -> None:
+    """`prev`, `delta` and `rate` are unknown until the second update behind it."""
+    told = {"x": "11...2.3", "lost": [("x", 2, 3)], "end": 8}
+    for function in UpdateFunction:
+        grew = compared(UpdateValue(function, "x"), ">=", 0)
+        assert [judge(at(t, grew), **told)[0][2] for t in range(1, 8)] == list("PIIIIIP")
+
+
+def test_an_age_is_an_interval(judge: Any) -> None:
+    """It lies between the time since the outage and that since the last update read."""
+    told = {"p": "1", "lost": [("p", 4, 6)], "end": 11}
+    older = [no(once(probe("updated", "p"), 0, age)) for age in range(12)]
+    assert [judge(at(10, one), **told)[0][2] for one in older] == list("PPPPIIIIIIFF")
+
+
+def test_what_was_lost_is_born(judge: Any) -> None:
+    """What is not there yet is excused, what was lost is not."""
+    told = {"p": "1", "q": "..1", "end": 3}
+    always_q = requirement(q, whenever=true)
+    assert judge(always_q, **told) == ["0 P 3 held"]
+    assert judge(always_q, **told, lost=[("q", 1, 1)]) == ["0 I"]
+    assert judge(always_q, **told, lost=[("p", 1, 1)]) == ["0 P 3 held"]
+
+
+@pytest.mark.parametrize("time", [{}, EVERY_4, SAMPLED])
+def test_a_trace_may_begin_in_an_outage(judge: Any, time: Any) -> None:
+    """Before the first sample there may be a position; `start` is there or here."""
+    told = {"p": "1...1...1", "lost": [("q", -8, -7)], **time}
+    assert judge(p, **told) == ["-8 I"]
+    assert judge(requirement(no(p), whenever=p), **told) == ["-8 F 0"]
+
+
+def test_how_long_a_trace_has_lasted(judge: Any) -> None:
+    """It may have begun in an outage, so that `held` is neither true nor false."""
+    told = {"p": "1", "e": "...11", "lost": []}
+    held_4 = requirement(held(p, 4), upon=e)
+    assert judge(held_4, **told) == ["3 F 3", "4 P 4"]
+    assert judge(held_4, **{**told, "lost": [("q", -1, -1)]}) == ["4 P 4", "3 I", "-1 I"]
+    told = {"p": "1.1", "e": "..1", **SAMPLED}
+    assert judge(requirement(held(p, 4), upon=e), **told) == ["2 F 2"]
+    assert judge(requirement(held(p, 4), upon=e), **told, lost=[("q", -8, -8)]) == ["2 I", "-8 I"]
+
+
+def test_a_trace_without_samples(judge: Any) -> None:
+    """There may be one, and nothing is known of it."""
+    assert judge(eventually(p, 0, 2), lost=[("p", 0, 5)]) == ["0 I"]
+
+
+@pytest.mark.parametrize("time", [{}, EVERY_4])
+def test_a_trace_reaches_to_the_end_of_an_outage(judge: Any, time: Any) -> None:
+    """That time went on was not lost."""
+    assert judge(eventually(p, 0, 3), p="0", lost=[("q", 2, 5)], **time) == ["0 F 4"]
+    assert judge(always(p), p="1", lost=[("q", 2, 5)], **time) == ["0 P 5 held"]
+    assert judge(always(p), p="1", lost=[("p", 5, 5)]) == ["0 I"]
+
+
+@pytest.mark.parametrize("lost", ["q", ""])
+def test_sampled_time_may_have_positions_within(judge: Any, lost: str) -> None:
+    """Whether there are is unknown, and so is every formula, of whatever names."""
+    told = {"p": "1....1.1", "lost": [(lost, 2, 3)], **SAMPLED}
+    # The trigger may hold there, for the first time behind position 0: one attempt in doubt.
+    assert judge(eventually(true, 2, 3), **told) == ["0 I", "3 I"]
+    assert judge(always(p, 0, 4), **told) == ["0 I", "3 I"]
+    assert judge(following(p), **told) == ["0 I", "3 I"]
+    assert judge(no(eventually(p, 1, 5)), **told) == ["0 F 5", "3 I"]
+    assert judge(requirement(true, upon=p), **told) == ["0 P 0", "3 I"]
+    looks_back = requirement(previous(p), upon=probe("updated", "p"))
+    assert judge(looks_back, **told) == ["0 F 0", "7 P 7", "5 I", "2 I"]
+
+
+@pytest.mark.parametrize(
+    ("explicit", "short"),
+    [
+        (two(true, "U", p), eventually(p)),
+        (two(no(true), "R", p), always(p)),
+        (two(p, "W", no(true)), always(p)),
+        (two(p, "M", true), eventually(p)),
+        (two(two(true, "or", q), "U", p), eventually(p)),
+        (two(true, "S", p), once(p)),
+    ],
+)
+def test_what_is_always_true_asks_for_no_position(
+    judge: Any, explicit: Formula, short: Formula
+) -> None:
+    """`F` is `true U` where there may be positions, too."""
+    for rows in ("1....1.0", "0....0.1", "1....1.1", "0.....0.0"):
+        told = {"p": rows, "e": "......11", "lost": [("q", 2, 3)], **SAMPLED}
+        assert judge(requirement(explicit, upon=e), **told) == judge(
+            requirement(short, upon=e), **told
+        )
+
+
+def test_clocked_time_counts_what_was_lost_at_the_tick_behind(judge: Any) -> None:
+    """An event or update between ticks belongs to the next one."""
+    told = {"p": "1", "e": "1", "x": "1.....2..3", "end": 12, "lost": [("e x", 5, 5)], **EVERY_4}
+    assert judge(at(4, e), **told) == ["0 F 5"]
+    assert judge(at(8, e), **told) == ["0 I"]
+    assert judge(requirement(p, upon=probe("changed", "x")), **told) == ["12 P 12"]
+    assert judge(at(8, compared(x, "==", 2)), **told) == ["0 P 8"]
+
+
+def test_an_outage_takes_time() -> None:
+    """It ends no earlier than it begins."""
+    with pytest.raises(ValueError, match="no time at all"):
+        Outage(frozenset(), 3, 2)
