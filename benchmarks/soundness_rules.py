@@ -243,6 +243,13 @@ RULES = (
         about="known(",
     ),
     Rule("what was lost is born", words, "_signal", _signals(_excused)),
+    Rule(
+        "or is not: it shows no birth to `since`",
+        *(truths, "since"),
+        lambda law: lambda *told, **_: law(*told),
+        about="since",
+        profile=_PAST,
+    ),
     Rule("and has a value before", words, "_signal", _signals(_not_moved), about="(x)"),
     Rule(
         "`prev`, `delta`, `rate` do not look across",
