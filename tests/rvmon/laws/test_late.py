@@ -8,12 +8,12 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from tests.tools.build import always, p, probe, q, requirement, spec_of, timeline, true
+from tests.tools.compare import Outcome, outcomes
 from tests.tools.late import after_late, is_touched, stretch_of
 from tests.tools.law import judge, word
 
 from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.compare import Outcome, outcomes
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import cases
