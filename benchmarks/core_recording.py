@@ -38,7 +38,7 @@ def recorded(pairs: int, seed: object) -> bytes:
     make = Maker("c", compiler)
     last: CompiledSpec | None = None
     for number in range(pairs // TRACES_EACH):
-        drawn = cases_of(f"{seed}/{number}", PROFILE, TRACES, TRACES_EACH, windows=15)
+        drawn = cases_of(f"{seed}/{number}", PROFILE, TRACES, TRACES_EACH, windows=15, letters=8)
         for case in drawn:
             if make(case) is None or disagreements(case, make):
                 continue

@@ -55,6 +55,7 @@ def judging(
         online_every=options.online_every,
         shrunk=0 if options.fail_fast else options.show,
         windows=options.windows,
+        letters=options.letters,
     )
 
 
@@ -69,6 +70,9 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--windows", type=int, default=0, help="per cent of the specs that are windows in windows"
+    )
+    parser.add_argument(
+        "--letters", type=int, default=0, help="per cent that speak of 17 propositions at once"
     )
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
     parser.add_argument("--engine", nargs="+", default=["auto"], metavar="ENGINE", help=_ENGINES)

@@ -24,6 +24,7 @@ from tests.tools.health import health_differences
 from tests.tools.held_back import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.kinds import kinds_of
+from tests.tools.letters import random_letters
 from tests.tools.online import (
     differences_after_end,
     explains,
@@ -126,7 +127,13 @@ class Campaign:
 
 
 def cases_of(
-    seed: object, profile: Profile, traces: TraceProfile, number: int = 1, *, windows: int = 0
+    seed: object,
+    profile: Profile,
+    traces: TraceProfile,
+    number: int = 1,
+    *,
+    windows: int = 0,
+    letters: int = 0,
 ) -> Iterator[Case]:
     """The random cases of a seed, the same for ever: one specification, so many traces.
 
@@ -136,10 +143,13 @@ def cases_of(
         traces: of the traces.
         number: of traces.
         windows: per cent of the specs that are windows, and `until`, within windows.
+        letters: per cent of the others that speak of 17 propositions at once.
     """
     rng = random.Random(str(seed))
     if windows and rng.random() * 100 < windows:
         spec = random_chain(rng, untils=rng.random() < 0.7)
+    elif letters and rng.random() * 100 < letters:
+        spec = random_letters(rng)
     else:
         spec = random_spec(rng, profile)
     for _ in range(number):
@@ -218,6 +228,7 @@ def campaign_of(
     online_every: int = 10,
     shrunk: int = 3,
     windows: int = 0,
+    letters: int = 0,
 ) -> Campaign:
     """Judge the cases of each seed with the oracle, once, and with some engines.
 
@@ -231,12 +242,13 @@ def campaign_of(
             0 for none.
         shrunk: so many disagreements of an engine are shrunk and shown, the others only named.
         windows: see `cases_of`.
+        letters: see there, too.
     """
     campaign = Campaign(Mix(), {name: Tally() for name in engines})
     cases = (
         (seed, case)
         for seed in seeds
-        for case in cases_of(seed, profile, traces, each, windows=windows)
+        for case in cases_of(seed, profile, traces, each, windows=windows, letters=letters)
     )
     for index, (seed, case) in enumerate(cases):
         asked = online_every > 0 and index % online_every == 0
