@@ -52,9 +52,13 @@ class Exported:
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
         (folder / "plans.h").write_text(_plans(names))
+        self.compile(command)
+
+    def compile(self, command: Sequence[str]) -> None:
+        """Compile the program, by a compiler with its options."""
         sources = [str(DRIVER), "rvmon_core.c"]
         line = [*command, "-I.", *sources, "-o", self._program.name, "-lm"]
-        subprocess.run(line, cwd=folder, check=True)  # noqa: S603
+        subprocess.run(line, cwd=self._program.parent, check=True)  # noqa: S603
 
     def judge(self, runs: Sequence[tuple[int, int]], reserved: int = 0) -> list[list[str]]:
         """What is printed of each case, which is run twice, by one monitor.

@@ -138,7 +138,8 @@ void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decisi
         own->rule = index;
         note_done(r, at);
     } else {
-        report(r, index, at, verdict, decision, t);
+        report(r, index, attempt_at(r->home, at), attempt_at(r->home, at)->number, verdict, decision,
+               t);
     }
 }
 
@@ -228,7 +229,15 @@ static bool is_kept(run *r, int32_t index, const attempt *x, int64_t end, int64_
     if (is_networked(r, index)) {
         return network_outlasts(r, index, x);
     }
-    return holds_at_end(&r->part->machines[index], x, end, reached);
+    return holds_at_end(&r->part->machines[index], x->location, x->clocks, end, reached);
+}
+
+/* The number that an attempt is told of by: those in doubt have numbers of their own. */
+uint32_t told_number(const run *r, int32_t at)
+{
+    const attempt *x = attempt_at(r->home, at);
+    const bool apart = r->part->plan->captured > 0;
+    return (apart && !x->sure) ? r->home->turns[at].doubt_number : x->number;
 }
 
 /* Settle an attempt that is undecided at the end. */
@@ -243,5 +252,6 @@ void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reac
     may_be_over = may_be_over || ((r->cut < NEVER) && x->clouded);
     state |= (hollow || (x->location == FAILED)) ? 2 : 0;
     state |= (may_be_over || (x->parted && (x->better == PASSED))) ? 4 : 0;
-    report(r, index, at, (uint8_t)(j->outcomes[state] & 3), (uint8_t)(j->outcomes[state] >> 2), end);
+    report(r, index, x, told_number(r, at), (uint8_t)(j->outcomes[state] & 3),
+           (uint8_t)(j->outcomes[state] >> 2), end);
 }

@@ -203,18 +203,19 @@ int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int
     return due;
 }
 
-bool holds_at_end(const machine *a, const attempt *x, int64_t end, int64_t reached)
+bool holds_at_end(const machine *a, int32_t location, const int64_t *clocks, int64_t end,
+                  int64_t reached)
 {
     bool holds = false;
     int32_t i;
     int32_t j;
-    for (i = a->clause_first[x->location]; i < a->clause_first[x->location + 1]; i++) {
+    for (i = a->clause_first[location]; i < a->clause_first[location + 1]; i++) {
         bool all = true;
         for (j = a->test_first[i]; j < a->test_first[i + 1]; j++) {
             const int32_t *test = &a->tests[2 * j];
                         if (test[0] >= 0) {
                 const int64_t now = (test[1] != 0) ? end : reached;
-                all = all && (now - x->clocks[test[0]] >= a->ages[j]);
+                all = all && (now - clocks[test[0]] >= a->ages[j]);
             }
         }
         holds = holds || all;

@@ -104,7 +104,8 @@ void flush_turns(home *h)
     while (at >= 0) {
         turn *own = &h->turns[at];
         const int32_t next = own->next_done;
-        report(own->judge, own->rule, at, own->verdict, own->decision, own->decided);
+        report(own->judge, own->rule, attempt_at(h, at), told_number(own->judge, at), own->verdict,
+               own->decision, own->decided);
         own->judge = NULL;
         give_back(h, at);
         at = next;

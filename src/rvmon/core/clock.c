@@ -193,7 +193,7 @@ static void have_judged(run *r, int64_t t)
     for (i = 0; i < r->touched_count; i++) {
         const int32_t index = r->touched[i];
         if (((r->judges[index].touched & TOUCHED_LETTER) != 0)
-            && ((r->judges[index].first >= 0) || watches(r, index))) {
+            && (has_attempts(&r->judges[index]) || watches(r, index))) {
             visit_judge(r, index, t);
         }
     }
@@ -367,6 +367,9 @@ void settle_all(run *r, int64_t end, int64_t reached)
     for (i = 0; i < r->part->plan->judges.count; i++) {
         if (is_networked(r, i) && !is_chained(r, i)) {
             network_close(r, i, end);
+        }
+        if (!queue_is_empty(&r->judges[i])) {
+            queue_close(r, i, end, reached);
         }
         for (at = next_open(r, i, -1); at >= 0; at = next_open(r, i, at)) {
             settle_attempt(r, i, at, end, reached);

@@ -388,15 +388,26 @@ static rv_record open_record(const run *r, int32_t index, int32_t at)
     rv_record made;
     (void)memset(&made, 0, sizeof made);
     made.requirement = r->part->judges[index].requirement;
-    made.number = x->number;
-    if ((r->part->plan->captured > 0) && !x->sure) {
-        made.number = r->home->turns[at].doubt_number;
-    }
+    made.number = told_number(r, at);
     made.triggered = x->triggered;
     made.captured = -1;
     made.verdict = RV_INCONCLUSIVE;
     made.decision = RV_OPEN;
     made.in_doubt = x->sure ? 0 : 1;
+    return made;
+}
+
+static rv_record queued_record(const run *r, int32_t index, int32_t i)
+{
+    const queued *x = queue_item(&r->judges[index], i);
+    rv_record made;
+    (void)memset(&made, 0, sizeof made);
+    made.requirement = r->part->judges[index].requirement;
+    made.number = x->number;
+    made.triggered = x->triggered;
+    made.captured = -1;
+    made.verdict = RV_INCONCLUSIVE;
+    made.decision = RV_OPEN;
     return made;
 }
 
@@ -410,6 +421,13 @@ void rv_each_open(const rv_monitor *m, rv_take take, void *user)
             int32_t k;
             for (k = 0; k < r->part->plan->judges.count; k++) {
                 int32_t at;
+                for (at = 0; !queue_is_empty(&r->judges[k]) && (at < r->judges[k].queue->count);
+                     at++) {
+                    const rv_record one = queued_record(r, k, at);
+                    if (!take(user, &one, NULL)) {
+                        return;
+                    }
+                }
                 for (at = next_open(r, k, -1); at >= 0; at = next_open(r, k, at)) {
                     const rv_record one = open_record(r, k, at);
                     if (!take(user, &one, r->captured)) {
@@ -438,7 +456,7 @@ static void count_home(const home *h, int32_t requirement, rv_counts *counts)
             if (h->part->judges[i].requirement != requirement) {
                 continue;
             }
-            counts->open = counts->open || (j->first >= 0) || (j->moot >= 0);
+            counts->open = counts->open || has_attempts(j) || (j->moot >= 0);
             if (h->part->plan->captured > 0) {
                 counts->heard = counts->heard
                                 || ((i == 0) && (r->parent == NULL) && occurred && was_heard(r, i));

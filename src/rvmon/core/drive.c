@@ -153,8 +153,11 @@ void pass_to(run *r, int32_t index, int64_t t)
     judge *j = &r->judges[index];
     const int64_t position = j->position;
     const int64_t step = step_of(r);
-    if (j->first < 0) {
+    if (!has_attempts(j)) {
         set_rule_due(r, index, NEVER);
+    } else if (j->first < 0) {
+        queue_pass(r, index, t);
+        j->position = (GAP(r) > 0) ? t : j->position;
     } else if (is_chained(r, index)) {
         chain_pass(r, index, t, true);
     } else if (is_networked(r, index)) {
@@ -172,6 +175,16 @@ void pass_to(run *r, int32_t index, int64_t t)
         j->restless = false;
     } else {
         /* Time has come there before. */
+    }
+}
+
+/* Step what is queued, if something is. */
+static void step_or_rest(run *r, int32_t index, int64_t t)
+{
+    if (queue_is_empty(&r->judges[index])) {
+        set_rule_due(r, index, NEVER);
+    } else {
+        queue_visit(r, index, t);
     }
 }
 
@@ -196,7 +209,15 @@ void visit_judge(run *r, int32_t index, int64_t t)
         other = class_of_letter(r, index, true);
     }
     was = (GAP(r) > 0) && (letter == j->letter) && (other == j->other);
-    if (!was || (j->first < 0) || (r->rules.due[index] <= t) || j->restless || j->slides) {
+    if (!queue_is_empty(j)) {
+        if (r->rules.due[index] < t) {
+            queue_pass(r, index, t - 1);
+        }
+        if (letter != other) {
+            loosen_queue(r, index);
+        }
+    }
+    if (!was || !has_attempts(j) || (r->rules.due[index] <= t) || j->restless || j->slides) {
         if (j->slides || (r->rules.due[index] < t)) {
             pass_to(r, index, t - 1);
         }
@@ -206,7 +227,11 @@ void visit_judge(run *r, int32_t index, int64_t t)
         j->restless = false;
         j->slides = false;
         j->position = t;
-        drive_all(r, index, BY_STEP, t, t, was);
+        if (j->first < 0) {
+            step_or_rest(r, index, t);
+        } else {
+            drive_all(r, index, BY_STEP, t, t, was);
+        }
     }
     j->position = t;
 }
@@ -231,8 +256,12 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     judge *j = &r->judges[index];
     attempt *x;
     int32_t at;
-    if ((j->first < 0) || (j->position < t)) {
+    if (!has_attempts(j) || (j->position < t)) {
         visit_judge(r, index, t);
+    }
+    if (is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
+        (void)queue_begin(r, index, t);
+        return;
     }
     at = place_taken(r);
     if (at < 0) {
@@ -305,6 +334,12 @@ void reach_judge(run *r, int32_t index, int64_t t)
         return;
     }
     pass_to(r, index, t - 1);
+    if (j->first < 0) {
+        if (!queue_is_empty(j)) {
+            queue_reach(r, index, t);
+        }
+        return;
+    }
     if (r->rules.due[index] <= t) {
         set_restless(r, index);
     }

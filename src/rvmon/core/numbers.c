@@ -5,6 +5,9 @@
 
 #include <math.h>
 
+#ifdef __FAST_MATH__
+#error "numbers have to be those of IEEE 754: compile without -ffast-math"
+#endif
 
 static rv_number whole(int64_t value)
 {

@@ -217,7 +217,7 @@ class Part:
         return first
 
     def _keyed(self) -> dict[str, int]:
-        """By event, the field whose value tells which instance it concerns; others concern all."""
+        """By event, the field whose value says which instance it concerns; others concern all."""
         each = next((rule.requirement.for_each for rule in self._plan.rules), None)
         if each is None:
             return {}

@@ -45,9 +45,9 @@ static void keep_record(rv_monitor *m, const rv_record *record)
 }
 
 /* Tell of an attempt that has its number. */
-void report(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t)
+void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
+            uint8_t decision, int64_t t)
 {
-    const attempt *x = attempt_at(r->home, at);
     const judge_plan *judged = &r->part->judges[index];
     const bool apart = r->part->plan->captured > 0;
     rv_record record;
@@ -67,7 +67,7 @@ void report(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision
     }
     (void)memset(&record, 0, sizeof record);
     record.requirement = judged->requirement;
-    record.number = (apart && !x->sure) ? r->home->turns[at].doubt_number : x->number;
+    record.number = number;
     record.triggered = x->triggered;
     record.decided = t;
     record.verdict = verdict;

@@ -78,6 +78,7 @@ run *new_run(home *h)
 {
     rv_monitor *m = h->monitor;
     cutter c = {NULL, 0};
+    int32_t i;
     run *made = arena_take(&m->memory, sizeof *made);
     if (made == NULL) {
         m->spoilt = true;
@@ -94,6 +95,12 @@ run *new_run(home *h)
     made->block = c.block;
     c.used = 0;
     made->copied = cut_block(&c, made);
+    for (i = 0; i < h->part->plan->judges.count; i++) {
+        if (!make_queue(made, i)) {
+            m->spoilt = true;
+            return NULL;
+        }
+    }
     return made;
 }
 
@@ -223,9 +230,12 @@ void clear_judges(run *r)
     for (i = 0; i < p->judges.count; i++) {
         networks *net = r->judges[i].net;
         chain *windows = r->judges[i].chain;
+        queue *line = r->judges[i].queue;
         (void)memset(&r->judges[i], 0, sizeof r->judges[i]);
         r->judges[i].net = net;
         r->judges[i].chain = windows;
+        r->judges[i].queue = line;
+        clear_queue(&r->judges[i]);
         if (windows != NULL) {
             windows->begun = false;
         }

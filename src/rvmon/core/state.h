@@ -264,6 +264,31 @@ typedef struct {
     bool parted;
 } chain;
 
+/* An attempt in a queue. */
+typedef struct {
+    int64_t triggered;
+    uint32_t number;
+    int32_t spare;
+} queued;
+
+/* So many of them, one behind the other, in one location. */
+typedef struct {
+    int32_t location;
+    int32_t count;
+} segment;
+
+/* Locations that a queue may come to at once; a plan's maker looks through the orders of fewer. */
+#define SEGMENTS_MOST 16
+
+typedef struct {
+    queued *items;             /* a ring, the oldest first */
+    int32_t room;              /* a power of two, or 0 */
+    int32_t head;
+    int32_t count;
+    int32_t segment_count;
+    segment segments[SEGMENTS_MOST];
+} queue;
+
 /* What becomes of a judge at a position. */
 enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
 
@@ -273,6 +298,7 @@ typedef struct {
     int64_t failed_at;         /* when the attempt of the episode that runs did */
     networks *net;
     chain *chain;
+    queue *queue;              /* NULL: its attempts are driven one by one */
     int32_t first;
     int32_t last;
     int32_t moot;              /* the first of those that stay open for good */
@@ -590,7 +616,8 @@ int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *bef
 int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until);
 int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,
                   bool *slides);
-bool holds_at_end(const machine *a, const attempt *x, int64_t end, int64_t reached);
+bool holds_at_end(const machine *a, int32_t location, const int64_t *clocks, int64_t end,
+                  int64_t reached);
 
 /* ---- attempts.c */
 bool is_true(const run *r, int32_t node);
@@ -609,11 +636,13 @@ void leave(run *r, int32_t index, int32_t before, int32_t at);
 bool is_moot(const attempt *x);
 void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
 int32_t next_open(const run *r, int32_t index, int32_t at);
+uint32_t told_number(const run *r, int32_t at);
 void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
 
 /* ---- records.c */
 bool grow_records(rv_monitor *m, int64_t wanted);
-void report(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
+void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
+            uint8_t decision, int64_t t);
 void sort_records(rv_monitor *m);
 
 /* ---- drive.c: attempts of a judge through time */
@@ -626,6 +655,25 @@ void begin(run *r, int32_t index, int64_t t, int64_t triggered);
 void reach_judge(run *r, int32_t index, int64_t t);
 bool starts(run *r, int32_t index, uint8_t truth);
 bool watches(const run *r, int32_t index);
+
+/* ---- queue.c: attempts of which age alone decides */
+bool make_queue(run *r, int32_t index);
+void clear_queue(judge *j);
+bool queue_is_empty(const judge *j);
+bool is_queued(const run *r, int32_t index);
+void queue_visit(run *r, int32_t index, int64_t t);
+void queue_pass(run *r, int32_t index, int64_t t);
+void queue_reach(run *r, int32_t index, int64_t t);
+bool queue_begin(run *r, int32_t index, int64_t t);
+void loosen_queue(run *r, int32_t index);
+void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
+const queued *queue_item(const judge *j, int32_t i);
+
+/* Whether a judge has attempts that a position may concern. */
+static inline bool has_attempts(const judge *j)
+{
+    return (j->first >= 0) || ((j->queue != NULL) && (j->queue->count > 0));
+}
 
 /* ---- clock.c */
 void clear_run(run *r);

@@ -65,6 +65,19 @@ def test_c_wants_a_folder(spec, tmp_path, capsys):
     assert not (tmp_path / "made").exists()
 
 
+def test_c_is_the_core_and_a_plan(spec, tmp_path, capsys):
+    """The files are named; the core's are the same for each plan, whose requirements are chosen."""
+    folder = tmp_path / "made"
+    assert main(["compile", spec, "--to", "c", "-o", str(folder)]) == 0
+    names = ["rvmon_core.h", "rvmon_core.c", "rvmon_core.hpp", "door_plan.h", "door_plan.c"]
+    assert capsys.readouterr().out.split() == [str(folder / name) for name in names]
+    before = {name: (folder / name).read_text() for name in names}
+    assert main(["compile", spec, "--to", "c", "-o", str(folder), "--only", "D2"]) == 0
+    changed = [name for name in names if (folder / name).read_text() != before[name]]
+    assert changed == ["door_plan.h", "door_plan.c"]
+    assert "DOOR_REQUIREMENT_D2 = 0, /* D2 */" in (folder / "door_plan.h").read_text()
+
+
 def test_unknown_requirements_are_named(spec, capsys):
     """The ones there are stand in the message."""
     assert main(["compile", spec, "--to", "dot", "--only", "D7"]) == 2

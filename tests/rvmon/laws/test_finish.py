@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rvmon.testing.compare import differences
+from tests.tools.compare import differences
 from tests.tools.law import judge, word
 
 from rvmon.testing.generate.spec import Profile
