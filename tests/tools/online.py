@@ -24,6 +24,11 @@ def is_online(monitor: Monitored) -> TypeGuard[OnlineMonitor]:
     return hasattr(type(monitor), "open")
 
 
+def is_silent(monitor: Monitored) -> bool:
+    """Whether it says nothing before the end."""
+    return getattr(type(monitor), "silent", False)
+
+
 def explains(monitor: Monitored) -> bool:
     """Whether it says what an attempt owes, and what was wrong with its inputs."""
     return getattr(type(monitor), "explains", True)

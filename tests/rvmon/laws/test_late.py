@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from rvmon.testing.compare import Outcome, outcomes
 from tests.tools.build import always, p, probe, q, requirement, spec_of, timeline, true
 from tests.tools.compare import Outcome, outcomes
 from tests.tools.late import after_late, is_touched, stretch_of
