@@ -158,14 +158,20 @@ def main(words: list[str]) -> int:
     parser.add_argument("--count", type=int, default=30, help="of each file")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--pairs", type=int, default=1_200)
-    parser.add_argument("--recorded", type=Path, help="cases, instead of new ones")
+    parser.add_argument(
+        "--recorded",
+        type=Path,
+        nargs="+",
+        help="cases, instead of new ones; then more for the rest",
+    )
     parser.add_argument("--tests", action="store_true", help="try those left by tests/rvmon/core")
     options = parser.parse_args(words)
-    cases = options.recorded.read_bytes() if options.recorded else None
+    cases = [path.read_bytes() for path in options.recorded or ()]
+    first, *further = cases or [recorded(options.pairs, options.seed)]
     left: list[Mutant] = []
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
-        trial = Trial(Path(directory), cases or recorded(options.pairs, options.seed))
+        trial = Trial(Path(directory), first)
         for path in sources():
             if options.files and path.name not in options.files:
                 continue
@@ -180,6 +186,13 @@ def main(words: list[str]) -> int:
             total += found
             print(f"{path.name}: {_told(found)}, of {len(possible)}", flush=True)
     print(f"all: {_told(total)}")
+    for more in further:
+        with tempfile.TemporaryDirectory() as directory:
+            trial = Trial(Path(directory), more)
+            left = [mutant for mutant in left if trial.outcome(mutant) == "survived"]
+        for mutant in left:
+            print(f"survived more  {mutant}", flush=True)
+        print(f"{len(left)} survived more cases", flush=True)
     if options.tests:
         left = [*tested(left)]
         for mutant in left:

@@ -38,6 +38,7 @@ def try_seed(
     outages: bool,
     alone: bool,
     about: str = "",
+    samples: int = 12,
 ) -> tuple[Case, Tried] | None:
     """Fill in what the case of a seed lost; `None` if the law does not speak of it.
 
@@ -48,9 +49,11 @@ def try_seed(
         outages: whether stretches of time are lost, under the law to come.
         alone: whether nothing else is.
         about: what the specification has to hold, as text.
+        samples: at most so many.
     """
     profile = replace(profile, stale=not alone)
-    traces = TraceProfile(unknowns=not alone, outages=100 if outages else 0)
+    lost = 100 if outages else 0
+    traces = TraceProfile(samples=samples, unknowns=not alone, outages=lost)
     case = narrowed(case_of(seed, profile, traces))
     if about not in show_spec(case.spec) or not (alone or is_spoken_of(case.spec)):
         return None

@@ -50,6 +50,7 @@ class Rule:
         times: the time models in which it matters.
         about: a word of the specifications for which it does.
         profile: of the specifications.
+        samples: at most so many; of few, more lies before the first.
     """
 
     says: str
@@ -59,6 +60,7 @@ class Rule:
     times: Sequence[TimeModel] = tuple(TimeModel)
     about: str = ""
     profile: Profile = _SMALL
+    samples: int = 12
 
 
 def _signals(change: Callable[[Any, SignalState], SignalState]) -> Callable[[Any], Any]:
@@ -241,6 +243,13 @@ RULES = (
         about="known(",
     ),
     Rule("what was lost is born", words, "_signal", _signals(_excused)),
+    Rule(
+        "or is not: it shows no birth to `since`",
+        *(truths, "since"),
+        lambda law: lambda *told, **_: law(*told),
+        about="since",
+        profile=_PAST,
+    ),
     Rule("and has a value before", words, "_signal", _signals(_not_moved), about="(x)"),
     Rule(
         "`prev`, `delta`, `rate` do not look across",
@@ -287,7 +296,9 @@ RULES = (
     ),
     Rule("`start` may have been there", truths.Truths, "_is_first", _first_read, about="start"),
     Rule("`held` may be long enough", past, "_lasted", _since_read, about="held("),
-    Rule("`held` may not be long enough", past, "_lasted", _since_lost, _SAMPLED, "held(", _PAST),
+    Rule(
+        "`held` may not be long enough", past, "_lasted", _since_lost, _SAMPLED, "held(", _PAST, 3
+    ),
     Rule("the trace reaches to the end of an outage", oracle, "word_of", _ends_when_read),
 )
 
@@ -301,7 +312,15 @@ def runs_needed(rule: Rule, seeds: Iterator[str], fillings: int = 8) -> int | No
             time = rule.times[number % len(rule.times)]
             profile = replace(rule.profile, time=time)
             alone = number % 2 == 1
-            tried = try_seed(seed, fillings, profile, outages=True, alone=alone, about=rule.about)
+            tried = try_seed(
+                seed,
+                fillings,
+                profile,
+                outages=True,
+                alone=alone,
+                about=rule.about,
+                samples=rule.samples,
+            )
             if tried is not None and tried[1].overturning is not None:
                 return number
     return None

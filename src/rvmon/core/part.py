@@ -11,7 +11,7 @@ from rvmon.core.nodes import Nodes
 from rvmon.core.programs import Names, Numbering, Programs
 from rvmon.core.sections import Listed, Section, Sections
 from rvmon.core.unit import SHARED, Unit
-from rvmon.plan.instances import reach_of
+from rvmon.plan.instances import keys_of
 from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.plan.plan import Plan, Uses
 from rvmon.spec.checked.formula import Compare, Numeric
@@ -221,7 +221,8 @@ class Part:
         each = next((rule.requirement.for_each for rule in self._plan.rules), None)
         if each is None:
             return {}
-        fields = dict(reach_of(self._plan.graph, each, None, looks_back=False).fields)
+        asked = (state for rule in self._plan.judged for state in rule.states)
+        fields = keys_of(self._plan.graph, each, asked)
         for event in events_of(*self._captured):
             if event != each.value.event:
                 fields.pop(event, None)

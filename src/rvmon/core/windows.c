@@ -54,6 +54,24 @@ static chaining chaining_of(run *r, int32_t index)
     return g;
 }
 
+/* A position so far ahead of another, or behind it; none is farther than the bounds of time. */
+static int64_t moved(int64_t position, int64_t distance)
+{
+    const int64_t at = position + distance;
+    return (at > LIMIT) ? LIMIT : ((at < -LIMIT) ? -LIMIT : at);
+}
+
+/* The stamp of time `over` ticks behind a position, or of the letter there. */
+static int64_t stamp_of(const chaining *g, int64_t position, int64_t over, bool letter)
+{
+    int64_t t;
+    if ((position >= LIMIT / g->f.step) || (over >= LIMIT)) {
+        return NEVER_KNOWN;
+    }
+    t = position * g->f.step + over; /* less than twice LIMIT */
+    return (t >= LIMIT) ? NEVER_KNOWN : 2 * t + (letter ? 1 : 0);
+}
+
 static const operator_plan *window_at(const chaining *g, int32_t level)
 {
     return &g->f.nodes[g->windows[level - 1]];
@@ -213,9 +231,9 @@ static int64_t reached_from(const chaining *g, int64_t position, int64_t distanc
     const changes *stamps = &g->c->stamps;
     int32_t i;
     if (!g->sparse || (distance == 0)) {
-        return position - distance;
+        return moved(position, -distance);
     }
-    i = changes_until(stamps, position - distance - 1);
+    i = changes_until(stamps, moved(position, -distance) - 1);
     return change_at(stamps, (i < stamps->count) ? i : stamps->count - 1);
 }
 
@@ -238,12 +256,12 @@ static void note_change(const chaining *g, chain_reading *w, int64_t at, bool va
             if (added) {
                 added = !((own->count > 0) && (last_change(own) >= start));
             } else { /* the stretch before, if that was joined to it, ends again */
-                position = (given->count > 0) ? last_change(given) - n->low : start - 1;
+                position = (given->count > 0) ? moved(last_change(given), -n->low) : start - 1;
                 added = position >= start;
                 start = position;
             }
         } else {
-            start = position - n->low;
+            start = moved(position, -n->low);
         }
         if (m->spoilt) {
             return;
@@ -286,7 +304,7 @@ static int64_t reach_of(const chaining *g)
 /* Drop what lies before all that is not known at a position. */
 static void forget_before(const chaining *g, int64_t position)
 {
-    int64_t start = position - reach_of(g) / g->f.step - 2;
+    int64_t start = moved(moved(position, -(reach_of(g) / g->f.step)), -2);
     int32_t i;
     int32_t level;
     if (g->sparse) {
@@ -386,17 +404,17 @@ static bool known_of(const chaining *g, const chain_reading *w, int64_t at, int6
     for (level = g->depth; level >= 1; level--) {
         const operator_plan *n = window_at(g, level);
         const changes *given = &w->levels[level - 1];
-        int64_t first = position + n->low;
+        int64_t first = moved(position, n->low);
         const int32_t i = changes_until(given, first);
         bool decides = value_behind(given, i) == (n->turned == 0);
         if (!decides) {
-            if ((i < given->count) && (change_at(given, i) <= position + n->high)) {
+            if ((i < given->count) && (change_at(given, i) <= moved(position, n->high))) {
                 decides = true;
                 first = change_at(given, i);
             } else {
-                const int64_t own = 2 * g->f.step * position + 2 * n->over;
+                const int64_t own = stamp_of(g, position, n->over, false);
                 over = (own > over) ? own : over;
-                first = position + n->high;
+                first = moved(position, n->high);
                 if (g->sparse) {
                     const int32_t k = changes_until(stamps, first);
                     first = change_at(stamps, (k > 0) ? k - 1 : 0);
@@ -408,7 +426,7 @@ static bool known_of(const chaining *g, const chain_reading *w, int64_t at, int6
         }
         position = first;
     }
-    *stamp = 2 * g->f.step * position + 1;
+    *stamp = stamp_of(g, position, 0, true);
     *stamp = (over > *stamp) ? over : *stamp;
     return value;
 }
@@ -477,7 +495,6 @@ static int64_t known_between(const chaining *g, const chain_reading *w, int64_t 
  * as of which it is known. */
 static bool outcome_of(const chaining *g, const chain_reading *w, int64_t at, int64_t *stamp)
 {
-    const int64_t twice = 2 * g->f.step;
     int64_t position = at;
     int64_t ends;
     int64_t fails;
@@ -489,14 +506,14 @@ static bool outcome_of(const chaining *g, const chain_reading *w, int64_t at, in
     fails = first_failure(g, w, position);
     if ((fails < ends) || ((fails == ends) && (fails != NEVER_KNOWN))) {
         (void)known_of(g, w, fails, stamp);
-        *stamp = later(*stamp, twice * fails + 1);
+        *stamp = later(*stamp, stamp_of(g, fails, 0, true));
         return false;
     }
     if (ends == NEVER_KNOWN) {
         *stamp = NEVER_KNOWN;
         return false;
     }
-    *stamp = later(twice * ends + 1, known_between(g, w, position, ends + 1));
+    *stamp = later(stamp_of(g, ends, 0, true), known_between(g, w, position, ends + 1));
     return true;
 }
 

@@ -61,6 +61,38 @@ def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: 
     )
 
 
+def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, FieldValue]:
+    """By event, the field whose value says which instance it concerns; other events concern all.
+
+    What else is said of such an event is said together with that: wherever the field has another
+    value, the conjunction is FALSE as if it did not occur.
+
+    Args:
+        graph: of the whole requirement.
+        each: of that.
+        asked: the state formulas of which somebody asks the values.
+    """
+    found = {each.value.event: each.value}
+    roots = {graph.index[state] for state in asked}
+    for name, places in graph.by_name.items():
+        leaves = {place: graph.nodes[place].leaf for place in places}
+        fields = {
+            place: field
+            for place, leaf in leaves.items()
+            if leaf is not None and (field := _compared(leaf, name, each.name)) is not None
+        }
+        if name in found or len({*fields.values()}) != 1:
+            continue
+        parents = {one for place in leaves.keys() - fields for one in graph.parents[place]}
+        alone = roots.intersection(leaves.keys() - fields) or any(
+            graph.nodes[one].op is not StateOp.AND or fields.keys().isdisjoint(graph.operands[one])
+            for one in parents
+        )
+        if not alone:
+            found[name] = next(iter(fields.values()))
+    return found
+
+
 def varying(graph: Graph) -> frozenset[int]:
     """The nodes whose value depends on captured values, or on whether these are known."""
     leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -56,9 +57,11 @@ class Form:
         return drive(monitor, case)[0]
 
 
+TIMES = int(os.environ.get("LAW_TIMES", "1"))
+"""So many times as many examples: for campaigns."""
+
 ALL = Profile()
 AHEAD = replace(ALL, mixed=False)
-BARE = replace(AHEAD, captures=False, for_each=False, requirements=1, depth=3)
 
 SUBJECTS = {
     "oracle": Subject(oracle, ALL, 15),
@@ -67,7 +70,8 @@ SUBJECTS = {
     "automaton": Subject(Form("automaton"), AHEAD, 6),
     "progression": Subject(Form("progression"), AHEAD, 6),
     "network": Subject(Form("network"), ALL, 8),
-    "c": Subject(Form("c"), BARE, 2),
+    "c": Subject(Form("c"), ALL, 12),
+    "c rows": Subject(Form("c rows"), ALL, 6),
 }
 
 
@@ -83,7 +87,7 @@ def holds(subject: Subject) -> Callable[[Law], None]:
 
     def tried(law: Law) -> None:
         few = settings(
-            max_examples=subject.examples,
+            max_examples=subject.examples * TIMES,
             deadline=None,
             suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
         )

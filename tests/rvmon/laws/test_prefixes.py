@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import pytest
 from hypothesis import strategies as st
 from tests.tools.compare import differences, outcomes
+from tests.tools.health import names_in
 
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.generate.vocabulary import BOOLS
 from rvmon.testing.law.attempts import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
@@ -50,18 +53,22 @@ def test_splitting_by_advance(subject: Any, holds: Any) -> None:
         assert subject.differences(case, replace(case, actions=tuple(actions))) == []
 
 
-def test_empty_samples_in_held_time(subject: Any, holds: Any) -> None:
-    """In held time samples that say nothing change nothing: no verdict depends on their rate."""
+@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
+def test_samples_that_nobody_reads(subject: Any, holds: Any, time: TimeModel) -> None:
+    """Where time has its own positions, samples that say nothing that is read change nothing."""
 
     @holds
     def _(data: st.DataObject) -> None:
-        case = data.draw(cases(replace(subject.profile, time=TimeModel.HELD)))
+        case = data.draw(cases(replace(subject.profile, time=time)))
         if not case.samples:
             return
+        read = {n for one in case.spec.requirements.values() for n in names_in(one)}
+        others = [name for name in BOOLS if name not in read and case.names is None]
+        said_too = {name: data.draw(st.booleans()) for name in others}
         first, last = case.samples[0].t, case.samples[-1].t
         said = {sample.t for sample in case.samples}
         extra = data.draw(st.lists(st.integers(first, last), max_size=5))
-        told = [*case.samples, *(Sample(t, {}) for t in {*extra} - said)]
+        told = [*case.samples, *(Sample(t, said_too) for t in {*extra} - said)]
         told.sort(key=lambda sample: sample.t)
         advances = tuple(t for t in case.advances if t > last)
         assert subject.differences(case, replace(case, actions=(*told, *advances))) == []

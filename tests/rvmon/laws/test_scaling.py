@@ -24,8 +24,8 @@ SPARSE = 1_000
 
 FURTHER = 1_000_000
 
-FORMS = ("auto", "automaton", "network")
-"""Progression may have to step at every tick; the steps of the core are no calls of Python."""
+FORMS = ("auto", "automaton", "network", "c")
+"""Progression may have to step at every tick; of the core, no steps are counted."""
 
 ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
 """The code whose calls are the steps of an engine."""

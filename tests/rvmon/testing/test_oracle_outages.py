@@ -107,6 +107,14 @@ def test_what_was_lost_is_born(judge: Any) -> None:
     assert judge(always_q, **told, lost=[("p", 1, 1)]) == ["0 P 3 held"]
 
 
+def test_what_was_lost_may_not_be_born(judge: Any) -> None:
+    """`q since p` is unborn if `p` is throughout the window, whatever `q` is."""
+    told = {"q": "0", "end": 4, "lost": [("p", 1, 2)], "next_law": True}
+    assert judge(at(3, two(q, "S", p, 0, 1)), **told) == ["0 I"]
+    assert judge(at(3, two(q, "S", p, 0, 1)), **told, p="1..1") == ["0 P 3"]
+    assert judge(at(3, two(q, "S", p, 0, 3)), **told, p="1") == ["0 F 4"]
+
+
 @pytest.mark.parametrize("time", [{}, EVERY_4, SAMPLED])
 def test_a_trace_may_begin_in_an_outage(judge: Any, time: Any) -> None:
     """Before the first sample there may be a position; `start` is there or here."""

@@ -21,6 +21,7 @@ class TraceProfile:
 
     Attributes:
         samples: at most so many.
+        fewest: at least so many, if the span allows.
         span: as many ticks from the first to the last sample, about.
         long: the per cent of traces that may be three times as long, where signals come later and
             more seldom.
@@ -32,6 +33,7 @@ class TraceProfile:
     """
 
     samples: int = 12
+    fewest: int = 0
     span: int = 40
     long: int = 0
     sparse: int = 0
@@ -67,7 +69,8 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
     values = _Values(spec, numbers, names, unknown, _several(spec), late, 35 // longer, sparse)
     time = start = pick(rng, (0, 1, 5, -3))
     actions: list[Sample | int] = []
-    for index in range(rng.randint(0 if chance(rng, 5) else 1, longer * profile.samples)):
+    drawn = rng.randint(0 if chance(rng, 5) else 1, longer * profile.samples)
+    for index in range(max(drawn, profile.fewest)):
         if index:
             gap = rng.randint(9, 30) if sparse and chance(rng, 8) else _gap(rng, gaps)
             if profile.advances and chance(rng, 15):

@@ -35,29 +35,34 @@ def is_within(distance: int, interval: Interval) -> bool:
 
 
 def since(
-    letters: Sequence[Letter], left: Operand, right: Operand, i: int, interval: Interval
+    letters: Sequence[Letter],
+    left: Operand,
+    right: Operand,
+    i: int,
+    interval: Interval,
+    *,
+    next_law: bool = False,
 ) -> Truth:
     """Some position of the window had `right`, and all after it, up to `i`, have `left`.
 
     Positions at which an operand is not born are passed over; if `right` is at none of the
-    window, the whole is not.
+    window, the whole is not. By the law to come, if it is nowhere TRUE or FALSE there, the whole
+    is unknown, though `left` be FALSE: what an outage swallowed may not be born either.
     """
+    shows_birth = {Truth.TRUE, Truth.FALSE} if next_law else {*Truth} - {Truth.UNBORN}
     now = letters[i].instant
     value, so_far = Truth.FALSE, Truth.TRUE
-    unborn = 0
-    born = False
+    seen: set[Truth] = set()
     for j in range(i, -1, -1):
         if is_within(now - letters[j].instant, interval):
             there = right(j)
-            if there is Truth.UNBORN:
-                unborn += 1
-            else:
-                born = True
+            seen.add(there)
+            if there is not Truth.UNBORN:
                 value = disjunction([value, conjunction([so_far, there])])
         so_far = conjunction([so_far, born_or_true(left(j))])
-        if value is Truth.TRUE or (born and so_far is Truth.FALSE):
+        if value is Truth.TRUE or (so_far is Truth.FALSE and seen & shows_birth):
             return value
-    return Truth.UNBORN if unborn and not born else value
+    return disjunction(seen) if seen and not seen & shows_birth else value
 
 
 def historically(letters: Sequence[Letter], operand: Operand, i: int, interval: Interval) -> Truth:

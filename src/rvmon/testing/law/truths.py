@@ -301,7 +301,7 @@ class Truths:
                 )
             case BinaryOp.SINCE:
                 lasting = unless_constant(formula.left, left, Truth.TRUE)
-                return since(self._letters, lasting, right, i, interval)
+                return since(self._letters, lasting, right, i, interval, next_law=self._next_law)
             case _:
                 assert_never(formula.op)
 

@@ -1,0 +1,36 @@
+"""A monitor that is used again is as a new one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from tests.tools.drive import drive, feed
+
+from rvmon.errors import RvmonError
+from rvmon.session import Spec
+from rvmon.testing.strategies import cases
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("engine", ["auto", "c"])
+@settings(max_examples=20, deadline=None)
+@given(data=st.data())
+def test_a_run_leaves_nothing_behind(engine: str, data: st.DataObject) -> None:
+    """Whatever came before a reset, and however far, each call says what it says in a first run."""
+    case = data.draw(cases())
+    before = data.draw(st.integers(0, len(case.actions)))
+    try:
+        monitor, new = (Spec(case.spec).monitor(engine=engine, sources=case.names) for _ in "12")
+    except RvmonError:  # the core does not judge it
+        assume(False)
+    for action in case.actions[:before]:
+        feed(monitor, action)
+    if data.draw(st.booleans()):
+        monitor.finish_ns()
+    monitor.reset()
+    assert monitor.open == new.open
+    told = drive(monitor, replace(case))
+    assert told == drive(new, case)
