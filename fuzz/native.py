@@ -22,20 +22,21 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from tests.tools.guarded import guarded_memory
+
 from rvmon.core.plan import pack
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.testing.generate.spec import Profile, random_spec
 
-HERE = Path(__file__).with_name("c")
-CORE = HERE.parents[1] / "src" / "rvmon" / "core"
+HARNESS = Path(__file__).with_name("harness.c")
+CORE = HARNESS.parents[1] / "src" / "rvmon" / "core"
 COMPILER = "afl-clang-fast"
 FLAGS = (
     *("-std=c99", "-g", "-O1", "-fno-omit-frame-pointer", "-ffp-contract=off", f"-I{CORE}"),
     *("-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"),
 )
-WEAK = ("-include", str(CORE / "state.h"), "-include", str(HERE / "weak.h"))
 
 TARGETS = {"plans": ("-DPLANS",), "samples": ()}
 """What is fuzzed, and how the harness is compiled for it."""
@@ -81,11 +82,10 @@ def compiled(folder: Path, target: str, *, compiler: str = COMPILER) -> Path:
     Raises:
         CalledProcessError: the compiler failed.
     """
-    memory, program = folder / "memory.o", folder / target
+    memory, program = folder / "memory.c", folder / target
+    memory.write_text(guarded_memory(), encoding="utf-8")
     sources = [path for path in CORE.glob("*.c") if path.name not in ("memory.c", "module.c")]
-    sources += [HERE / "guarded.c", HERE / "harness.c", memory]
-    words = [compiler, *FLAGS, *WEAK, "-c", str(CORE / "memory.c"), "-o", str(memory)]
-    subprocess.run(words, check=True, capture_output=True)
+    sources += [HARNESS, memory]
     words = [compiler, *FLAGS, *TARGETS[target], *map(str, sources), "-lm", "-o", str(program)]
     subprocess.run(words, check=True, capture_output=True)
     return program

@@ -1,8 +1,8 @@
 """Run the tests of the core with it compiled under AddressSanitizer and UBSan (gcc alone).
 
-The extension goes into a copy of the package, so that the one that is used stays as it is. What
-Python itself leaves unfreed at its end is not asked for; what the core should free is a matter of
-its tests.
+The extension is built in a copy of the package, so that the one that is used stays as it is; there
+each block of a monitor's memory is one of its own. What Python itself leaves unfreed at its end is
+not asked for; what the core should free is a matter of its tests.
 """
 
 from __future__ import annotations
@@ -13,22 +13,27 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.tools.guarded import guarded_memory
+
 ROOT = Path(__file__).parents[2]
 COPY = ROOT / "out" / "sanitized"
 FLAGS = "-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all"
 # All tests are run by our own declarations, too; and memory comes from where each block is watched:
 # Python's pools would hide a step too far, and all of Python without them takes twice as long.
 FLAGS += " -DRVMON_OWN_PYTHON_H -DPyMem_Malloc=malloc -DPyMem_Calloc=calloc"
-FLAGS += " -DPyMem_Realloc=realloc -DPyMem_Free=free"
+FLAGS += " -DPyMem_Realloc=realloc -DPyMem_Free=free -DGUARDED_MOST=SIZE_MAX"
 
 
 def main() -> int:
     """Build, run, and hand the exit code of the tests on."""
     shutil.rmtree(COPY, ignore_errors=True)
-    shutil.copytree(ROOT / "src", COPY, ignore=shutil.ignore_patterns("__pycache__", "*.so"))
+    ignored = shutil.ignore_patterns("__pycache__", "*.so")
+    shutil.copytree(ROOT / "src", COPY / "src", ignore=ignored)
+    (COPY / "src" / "rvmon" / "core" / "memory.c").write_text(guarded_memory(), encoding="utf-8")
+    shutil.copy2(ROOT / "hatch_build.py", COPY)
     environment = {**os.environ, "CC": "gcc", "CFLAGS": FLAGS}
-    built = [sys.executable, "hatch_build.py", "--into", str(COPY / "rvmon" / "core")]
-    subprocess.run(built, cwd=ROOT, env=environment, check=True, stdout=subprocess.DEVNULL)
+    built = [sys.executable, str(COPY / "hatch_build.py")]
+    subprocess.run(built, env=environment, check=True, stdout=subprocess.DEVNULL)
     # Python is not linked with the sanitizer, so it is loaded before all else; C++'s library too,
     # whose exceptions it has to see before any other extension throws one.
     first = [_library("libasan.so"), _library("libstdc++.so")]
@@ -36,7 +41,7 @@ def main() -> int:
         "LD_PRELOAD": " ".join(first),
         "ASAN_OPTIONS": "detect_leaks=0",
         "UBSAN_OPTIONS": "print_stacktrace=1",
-        "PYTHONPATH": os.pathsep.join([str(COPY), str(ROOT)]),
+        "PYTHONPATH": os.pathsep.join([str(COPY / "src"), str(ROOT)]),
     }
     # Only what Python prints is held back: a finding ends the program, and must be read.
     options = ["--capture=sys", "-n", "auto", "-m", "not compiler"]

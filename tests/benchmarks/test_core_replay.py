@@ -1,0 +1,65 @@
+"""The core in C alone: what it says of recorded cases, on this machine and on a smaller one."""
+
+import shutil
+import subprocess
+from argparse import Namespace
+from pathlib import Path
+
+import pytest
+from benchmarks.core_mutants import CORE, REPLAY, Trial, sources
+from benchmarks.core_recording import recorded
+from benchmarks.mutants import draw
+from benchmarks.mutation_c import c_mutants
+
+pytestmark = pytest.mark.compiler
+
+CASES = 80
+FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", f"-I{CORE}")
+
+
+@pytest.fixture(scope="module")
+def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file of recorded cases, of which the law and the core say the same."""
+    path = tmp_path_factory.mktemp("recorded") / "cases"
+    path.write_bytes(recorded(CASES, "replay"))
+    return path
+
+
+def said(folder: Path, cases: Path, *compiler: str) -> list[str]:
+    """What the core says when it is compiled so; one line of each case.
+
+    Raises:
+        CalledProcessError: it does not compile, or crashes.
+    """
+    program = folder / "replay"
+    words = [*compiler, *FLAGS, *map(str, sources()), str(REPLAY), "-lm", "-o", str(program)]
+    subprocess.run(words, check=True, capture_output=True)  # noqa: S603
+    words = [str(program), str(cases)]
+    done = subprocess.run(words, check=True, capture_output=True, text=True)  # noqa: S603
+    return done.stdout.splitlines()
+
+
+@pytest.mark.parametrize("other", ["clang", "gcc -m32 -msse2 -mfpmath=sse"])
+def test_machines_say_the_same(other: str, cases: Path, tmp_path: Path) -> None:
+    """Whoever compiles it, for 64 or 32 bits, however it is driven, in whatever block of memory."""
+    compiler = other.split()
+    if shutil.which(compiler[0]) is None:
+        pytest.skip(f"{other} is not installed")
+    first = said(tmp_path, cases, "gcc")
+    try:
+        assert said(tmp_path, cases, *compiler) == first
+    except subprocess.CalledProcessError as error:
+        if b"gnu/stubs" in error.stderr or b"libgcc" in error.stderr:
+            pytest.skip("gcc has no libraries of 32 bits (gcc-multilib)")
+        raise
+    assert len(first) > CASES / 2
+    wrong = [line for line in first if len(line.split()) > 2]
+    assert not wrong, "a letter of core_replay.c tells what should never be"
+
+
+def test_mutants_are_seen(cases: Path, tmp_path: Path) -> None:
+    """Most small changes of the core are told from it by some dozens of cases."""
+    trial = Trial(tmp_path, cases.read_bytes())
+    path = CORE / "graph.c"
+    drawn = draw(c_mutants(path), Namespace(seed=1, count=6))
+    assert sum(trial.outcome(mutant) == "killed" for mutant in drawn) >= 4
