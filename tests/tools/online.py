@@ -34,11 +34,6 @@ def explains(monitor: Monitored) -> bool:
     return getattr(type(monitor), "explains", True)
 
 
-def is_silent(monitor: Monitored) -> bool:
-    """Whether it says nothing before the end."""
-    return getattr(type(monitor), "silent", False)
-
-
 def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
     """What is wrong with what a monitor says at each action of a case; empty if all is right.
 
