@@ -1,6 +1,6 @@
 r"""Each rule of outages is needed: without it, filling in what was lost overturns a verdict.
 
-    python -m benchmarks.soundness_rules --runs 20000
+    python -m benchmarks.soundness_rules --runs 100000
 
 For each rule, how many random runs it took to find one whose verdict is wrong without it; exits 1
 if there is a rule without which none is found.
@@ -329,7 +329,7 @@ def runs_needed(rule: Rule, seeds: Iterator[str], fillings: int = 8) -> int | No
 def main(argv: list[str]) -> int:
     """Drop one rule after the other."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--runs", type=int, default=20_000, help="at most so many for each rule")
+    parser.add_argument("--runs", type=int, default=100_000, help="at most so many for each rule")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rule", help="only those that say so")
     options = parser.parse_args(argv)

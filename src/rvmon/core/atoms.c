@@ -1,6 +1,6 @@
 /* Atoms: what a formula reads off the input at a position. Each is read when its input changes, and
  * shown by the leaves that speak of it. */
-#include "state.h"
+#include "calls.h"
 
 static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
 {

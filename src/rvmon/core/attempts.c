@@ -1,5 +1,5 @@
 /* Attempts: numbered, decided, settled at the end. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

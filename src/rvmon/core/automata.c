@@ -2,7 +2,7 @@
  *
  * A row is a location with a region for each clock; the edge of a row and a class of letters says
  * where the attempt goes, and which old clock each new one is. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

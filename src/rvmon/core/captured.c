@@ -3,7 +3,7 @@
  *
  * By then it is known which of all instances came first: where attempts begin at one instant, the
  * one that was triggered first does, then that of the instance that occurred first. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* Positions and time: which instants are looked at, and in which order things happen there. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

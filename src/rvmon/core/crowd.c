@@ -1,6 +1,6 @@
 /* Which runs a part has, and which of them a call concerns: those that time wakes, and those that the
  * values of its events name. The others sleep on, however many there are. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The attempts of a judge through positions and time. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

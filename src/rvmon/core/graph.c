@@ -1,6 +1,6 @@
 /* The formulas of present and past as a graph: what depends on a change is worked out anew, operands
  * before operators. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* All runs of a part: begun, given samples, taken through time, ended. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The values of `for each` that are known, and their instances. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

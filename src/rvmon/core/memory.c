@@ -2,7 +2,7 @@
  *
  * So nothing can leak, a monitor in one block of a microcontroller works as one with a heap does, and
  * blocks that were given back serve again. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

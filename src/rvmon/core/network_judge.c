@@ -4,7 +4,7 @@
  *
  * Letting time come to them: what is known depends on time and letters alone, so the instant at which
  * an attempt was decided is found by taking a step back and trying smaller ones. */
-#include "state.h"
+#include "network.h"
 
 #include <string.h>
 
@@ -14,16 +14,6 @@
 #define PATIENCE 16
 /* Letters after which what nobody can ask for is dropped. */
 #define TIDY_EVERY 8
-
-/* A judge with its network. */
-typedef struct {
-    run *r;
-    judge *j;
-    networks *net;
-    int32_t index;
-    form f;
-    int32_t root;              /* the operator that is the whole formula */
-} judging;
 
 bool is_networked(const run *r, int32_t index)
 {
@@ -77,50 +67,6 @@ static networks *made_networks(const form *f)
     return made;
 }
 
-static bool is_spoilt(const judging *g)
-{
-    return g->f.monitor->spoilt;
-}
-
-/* How many networks there are at present. */
-static int32_t readings(const judging *g)
-{
-    return g->net->parted ? 2 : 1;
-}
-
-/* Whether nothing more is asked of a judge: memory was short, what its networks hold may be torn, or
- * there are none. */
-static bool is_given_up(judging *g)
-{
-    if ((g->net == NULL) || is_spoilt(g)) {
-        g->j->lag = 0;
-        set_rule_due(g->r, g->index, NEVER);
-        return true;
-    }
-    return false;
-}
-
-static attempt *attempt_of(const judging *g, int32_t at)
-{
-    return attempt_at(g->r->home, at);
-}
-
-static int64_t position_of(const attempt *x)
-{
-    return x->clocks[0];
-}
-
-static void set_due(judging *g, int64_t due)
-{
-    g->j->lag = 0;
-    set_rule_due(g->r, g->index, due);
-}
-
-static int64_t due_of(const judging *g)
-{
-    return g->r->rules.due[g->index];
-}
-
 /* Whether the letter that stays is another for the better than for the worse. */
 static bool parts(const judging *g)
 {
@@ -149,114 +95,6 @@ static void tidy_up(judging *g, int64_t position)
     if (g->net->parted && !parts(g)
         && networks_agree(&g->f, &g->net->readings[0], &g->net->readings[1])) {
         g->net->parted = false;
-    }
-}
-
-/* What becomes of an attempt by what is known; false if it is decided. None is once memory was short:
- * what then became known may be wrong. */
-static bool weigh(judging *g, int32_t at, int64_t t)
-{
-    attempt *x = attempt_of(g, at);
-    const bool parted = g->net->parted;
-    const operator_state *worse = &g->net->readings[0].nodes[g->root];
-    const operator_state *better = &g->net->readings[parted ? 1 : 0].nodes[g->root];
-    if (is_spoilt(g)) {
-        return true;
-    }
-    if (knows(worse, 1U, position_of(x))) {
-        decide(g->r, g->index, at, true, t);
-        return false;
-    }
-    if (knows(better, 0U, position_of(x))) {
-        decide(g->r, g->index, at, false, t);
-        return false;
-    }
-    if (parted && knows(worse, 0U, position_of(x))) {
-        x->location = FAILED;
-    }
-    if (parted && knows(better, 1U, position_of(x))) {
-        x->better = PASSED;
-        x->parted = true;
-    }
-    return true;
-}
-
-/* The oldest attempt whose position is not before one; -1: there is none. */
-static int32_t attempt_from(const judging *g, int64_t position)
-{
-    int32_t at = g->j->first;
-    if ((at < 0) || (position_of(attempt_of(g, g->j->last)) < position)) {
-        return -1;
-    }
-    while (position_of(attempt_of(g, at)) < position) {
-        at = attempt_of(g, at)->next;
-    }
-    return at;
-}
-
-/* The position of an attempt that what became known of a formula decides; NEVER: of none. */
-static int64_t decided_one(const judging *g)
-{
-    uint8_t value;
-    int32_t i;
-    for (value = 0; value < 2U; value++) {
-        const int32_t reading = (g->net->parted && (value == 0U)) ? 1 : 0;
-        const ranges *news = &g->net->readings[reading].nodes[g->root].news[value];
-        for (i = news->first; i < news->end; i++) {
-            const int32_t at = attempt_from(g, news->at[i].first);
-            if ((at >= 0) && (position_of(attempt_of(g, at)) <= news->at[i].last)) {
-                return position_of(attempt_of(g, at));
-            }
-        }
-    }
-    return NEVER;
-}
-
-/* The first position from one on at which something became known of a formula; NEVER: there is none. */
-static int64_t next_new(const judging *g, int64_t position)
-{
-    int64_t found = NEVER;
-    int32_t i;
-    int32_t j;
-    for (i = 0; i < 2 * readings(g); i++) {
-        const ranges *news = &g->net->readings[i / 2].nodes[g->root].news[i % 2];
-        for (j = news->first; j < news->end; j++) {
-            if (news->at[j].last >= position) {
-                const int64_t first = news->at[j].first;
-                found = least(found, (first > position) ? first : position);
-            }
-        }
-    }
-    return found;
-}
-
-/* Judge the attempts of which something became known, at `t`. */
-static void hear_news(judging *g, int64_t t)
-{
-    int64_t asked = -NEVER;
-    int32_t before = -1;
-    int32_t at = g->j->first;
-    if (!g->net->parted && (decided_one(g) == NEVER)) {
-        return;
-    }
-    g->net->calls = 0;
-    while (at >= 0) {
-        const int32_t next = attempt_of(g, at)->next;
-        const int64_t position = position_of(attempt_of(g, at));
-        if (position > asked) {
-            asked = next_new(g, position);
-            if (asked == NEVER) {
-                break;
-            }
-        }
-        if ((position >= asked) && !weigh(g, at, t)) {
-            leave(g->r, g->index, before, at);
-        } else if (is_moot(attempt_of(g, at))) {
-            lay_aside(g->r, g->index, before, at);
-        } else {
-            before = at;
-        }
-        at = next;
     }
 }
 

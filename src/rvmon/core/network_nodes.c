@@ -3,7 +3,7 @@
  * A step says how far time and letters have come; each node takes from its operands what is new of
  * them. What is known depends on that alone, not on the steps that led there: so a step can be taken
  * back, and when something was known first is found by smaller steps. */
-#include "state.h"
+#include "calls.h"
 
 /* Where positions are samples they count from 0, and these are kept by instant. */
 int64_t instant_of(const form *f, const network *w, int64_t position)

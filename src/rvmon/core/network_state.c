@@ -1,5 +1,5 @@
 /* A network as a whole: begun, copied, compared, tidied up. */
-#include "state.h"
+#include "calls.h"
 
 /* Begin at a position, of which nothing is known yet. */
 void start_over(const form *f, network *w, int64_t t, int64_t position)

@@ -1,7 +1,7 @@
 /* Numbers: binary64 and int64, compared exactly with each other; what is no number is unknown.
  *
  * Source: the law, section 5. */
-#include "state.h"
+#include "calls.h"
 
 #include <math.h>
 

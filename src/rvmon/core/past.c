@@ -1,5 +1,5 @@
 /* Operators that look back in bounds, and triggers that may be hidden. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
  * matters, attempts are driven one by one.
  *
  * Source: AUTOMATA 3. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

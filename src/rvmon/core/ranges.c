@@ -1,5 +1,5 @@
 /* Ranges of positions, in order, none touching another. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

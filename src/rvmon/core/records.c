@@ -1,5 +1,5 @@
 /* Records of attempts, in the order of reports. */
-#include "state.h"
+#include "calls.h"
 
 #include <stdlib.h>
 #include <string.h>

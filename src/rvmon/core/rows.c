@@ -1,5 +1,5 @@
 /* Rows of columns: each is a sample, and one that changes nothing is passed over. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* Runs of a part: made, forked, taken through what was, put aside. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* Timers: an indexed heap, so that the next one costs nothing and a change the logarithm of those
  * that are set. */
-#include "state.h"
+#include "calls.h"
 
 static void put(timers *h, int32_t place, int32_t id)
 {

@@ -1,5 +1,5 @@
 /* What a sample says: held values, births, updates, occurrences. */
-#include "state.h"
+#include "calls.h"
 
 #include <string.h>
 

@@ -1,0 +1,284 @@
+/* What the files of the core call of each other, file by file. */
+#ifndef RVMON_CALLS_H
+#define RVMON_CALLS_H
+
+#include "state.h"
+
+#define GAP(r) ((r)->home->monitor->plan.header->gap)
+#define LIST(p, l) (&(p)->lists[(l).first])
+#define PLAN(r) (&(r)->home->monitor->plan)
+
+static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
+
+static inline int64_t step_of(const run *r)
+{
+    const int64_t gap = GAP(r);
+    return (gap > 0) ? gap : 1;
+}
+
+static inline int64_t least(int64_t a, int64_t b)
+{
+    return (a < b) ? a : b;
+}
+
+/* Have a judge look at the position at hand. */
+static inline void touch(run *r, int32_t index, uint8_t what)
+{
+    judge *j = &r->judges[index];
+    if (j->touched == 0U) {
+        r->touched[r->touched_count] = index;
+        r->touched_count++;
+    }
+    j->touched |= what;
+}
+
+static inline uint8_t truth_if(bool value)
+{
+    return value ? IS_TRUE : IS_FALSE;
+}
+
+/* An instant so much after another one, which is less than LIMIT. */
+static inline int64_t sum(int64_t t, int64_t duration)
+{
+    return (duration >= LIMIT) ? NEVER : t + duration;
+}
+
+static inline attempt *attempt_at(const home *h, int32_t i)
+{
+    return (attempt *)(void *)(h->pool + h->stride * (size_t)i);
+}
+
+/* A larger array with what stood in the old one; NULL if memory is short, which spoils the run. */
+void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
+
+/* ---- timers.c */
+void timers_set(timers *h, int32_t id, int64_t due);
+void timers_clear(timers *h, int32_t ids);
+static inline int64_t timers_next(const timers *h)
+{
+    return (h->count > 0) ? h->due[h->ids[0]] : NEVER;
+}
+/* The ids that are due by `t`, into `found`; returns how many. */
+int32_t timers_due(const timers *h, int64_t t, int32_t *found);
+
+/* ---- numbers.c */
+int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b); /* a truth */
+bool same_number(const rv_number *a, const rv_number *b);
+rv_number program_value(const run *r, int32_t place, const int32_t *at);
+rv_number number_of_double(double x);
+
+/* ---- values.c: samples, held values, what occurred */
+void take_update(run *r, int64_t t, const incoming *in);
+void forget(run *r);
+void go_stale(run *r, int32_t perishable);
+void lack(run *r, bool event, int32_t local);
+
+/* ---- atoms.c */
+void recheck(run *r, int32_t atom);
+void recheck_list(run *r, list l);
+void recheck_fading(run *r);
+void reread(run *r, int32_t atom, bool pending);
+uint8_t leaf_truth(const run *r, const node_plan *n);
+
+/* ---- past.c */
+uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
+uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
+
+/* ---- graph.c: the nodes of a part */
+void soil(run *r, int32_t node);
+void soil_all(run *r);
+void work_out(run *r, int64_t t);
+bool is_soiled(const run *r);
+void vary(run *r, int64_t t, bool pending);
+void settle_phase(run *r);
+
+/* ---- automata.c: one attempt through positions and time */
+typedef struct {
+    int32_t location;
+    int64_t *clocks;
+} token;
+
+int32_t class_of_letter(const run *r, int32_t index, bool better);
+bool step_token(const machine *a, token *k, int64_t t, int32_t letter);
+bool rests(const machine *a, const token *k, int64_t t, int32_t letter);
+int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *before);
+int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until);
+int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,
+                  bool *slides);
+bool holds_at_end(const machine *a, int32_t location, const int64_t *clocks, int64_t end,
+                  int64_t reached);
+
+/* ---- attempts.c */
+bool is_true(const run *r, int32_t node);
+bool is_current(const run *r, int32_t index, int32_t at);
+bool grow_pool(home *h, int64_t wanted);
+int32_t place_taken(run *r);
+void give_back(home *h, int32_t at);
+void number_attempt(run *r, int32_t index, int32_t at, int64_t t);
+bool is_sure(const run *r, int32_t index);
+bool runs_on(const run *r, int32_t index);
+void leave_episode(run *r, int32_t index);
+void look_at(run *r, int32_t index, int64_t t);
+void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
+void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
+void leave(run *r, int32_t index, int32_t before, int32_t at);
+bool is_moot(const attempt *x);
+void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
+int32_t next_open(const run *r, int32_t index, int32_t at);
+uint32_t told_number(const run *r, int32_t at);
+void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
+
+/* ---- records.c */
+bool grow_records(rv_monitor *m, int64_t wanted);
+void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
+            uint8_t decision, int64_t t);
+void sort_records(rv_monitor *m);
+
+/* ---- drive.c: attempts of a judge through time */
+void set_rule_due(run *r, int32_t index, int64_t due);
+void set_restless(run *r, int32_t index);
+void pass_to(run *r, int32_t index, int64_t t);
+void visit_judge(run *r, int32_t index, int64_t t);
+void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
+void begin(run *r, int32_t index, int64_t t, int64_t triggered);
+void reach_judge(run *r, int32_t index, int64_t t);
+bool starts(run *r, int32_t index, uint8_t truth);
+bool watches(const run *r, int32_t index);
+
+/* ---- queue.c: attempts of which age alone decides */
+bool make_queue(run *r, int32_t index);
+void clear_queue(judge *j);
+bool queue_is_empty(const judge *j);
+bool is_queued(const run *r, int32_t index);
+void queue_visit(run *r, int32_t index, int64_t t);
+void queue_pass(run *r, int32_t index, int64_t t);
+void queue_reach(run *r, int32_t index, int64_t t);
+bool queue_begin(run *r, int32_t index, int64_t t);
+void loosen_queue(run *r, int32_t index);
+void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
+const queued *queue_item(const judge *j, int32_t i);
+
+/* Whether a judge has attempts that a position may concern. */
+static inline bool has_attempts(const judge *j)
+{
+    return (j->first >= 0) || ((j->queue != NULL) && (j->queue->count > 0));
+}
+
+/* ---- clock.c */
+void clear_run(run *r);
+void clear_judges(run *r);
+void visit(run *r, int64_t t);
+void reach(run *r, int64_t t);
+void through(run *r, int64_t limit, bool comes);
+void approach(run *r, int64_t t);
+void arrive(run *r, int64_t t);
+void set_alarm(run *r, int64_t position);
+int64_t next_position(const run *r);
+int64_t next_decision(run *r);
+void settle_all(run *r, int64_t end, int64_t reached);
+bool was_heard(const run *r, int32_t index);
+
+/* ---- ranges.c */
+int32_t range_from(const ranges *r, int64_t position);
+int32_t range_around(const ranges *r, int64_t position);
+int64_t last_up_to(const ranges *r, int64_t position);
+void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t last);
+void ranges_insert(rv_monitor *m, ranges *r, int32_t i, int64_t first, int64_t last);
+void ranges_cut(rv_monitor *m, ranges *r, int64_t first, int64_t last);
+void ranges_drop(ranges *r, int64_t before);
+void ranges_empty(ranges *r);
+void ranges_copy(rv_monitor *m, ranges *made, const ranges *r);
+bool ranges_alike(const ranges *one, const ranges *other);
+
+/* ---- network_nodes.c, network_state.c: what is known of a formula */
+typedef struct {
+    const plan *plan;
+    const form_plan *form;
+    const operator_plan *nodes;
+    int64_t gap;
+    int64_t step;
+    rv_monitor *monitor;
+} form;
+
+form form_of(const run *r, int32_t index);
+int64_t floored(int64_t t, int64_t step);
+int64_t instant_of(const form *f, const network *w, int64_t position);
+int64_t position_by(const form *f, const network *w, int64_t t);
+int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance);
+int64_t up_to(const form *f, const network *w, int64_t position, int64_t distance);
+bool knows(const operator_state *o, uint8_t value, int64_t position);
+void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t last);
+void unlearn(const form *f, network *w);
+void start_over(const form *f, network *w, int64_t t, int64_t position);
+void copy_network(const form *f, network *made, const network *w);
+bool networks_agree(const form *f, const network *one, const network *other);
+void tidy(const form *f, network *w, int64_t position);
+
+/* ---- network_judge.c: attempts that a network judges */
+bool is_networked(const run *r, int32_t index);
+void network_pass(run *r, int32_t index, int64_t now, bool is_position);
+void network_put_off(run *r, int32_t index, int64_t until);
+void network_approach(run *r, int32_t index, int64_t until);
+void network_foresee(run *r, int32_t index, int64_t until);
+void network_come_to(run *r, int32_t index, int64_t t);
+bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
+void network_close(run *r, int32_t index, int64_t end);
+bool network_outlasts(run *r, int32_t index, const attempt *x);
+
+/* ---- windows.c: attempts that a chain of windows judges */
+bool is_chained(const run *r, int32_t index);
+void chain_visit(run *r, int32_t index, int64_t t);
+void chain_pass(run *r, int32_t index, int64_t t, bool is_position);
+bool chain_enter(run *r, int32_t index, int32_t at, int64_t t);
+bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached);
+
+/* ---- runs.c: made, forked, replayed, let go */
+run *new_run(home *h);
+run *forked(const run *r);
+void set_aside(home *h, run *r);
+void give(run *r, int64_t t, const incoming *in, int32_t count);
+void keep_updates(home *h, int64_t t);
+void replay(run *r);
+
+/* ---- captured.c: attempts with captured values */
+bool starts_here(const run *r, int32_t index);
+void note_turn(run *r, int32_t at, int64_t t);
+void note_done(run *r, int32_t at);
+void flush_turns(home *h);
+void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered);
+void look_after(run *r, int64_t t);
+void soil_lapsed(run *r);
+void forget_last(run *r);
+bool is_idle(const run *r);
+void let_go(run *r);
+
+/* ---- keys.c: instances of a `for each` */
+bool begin_keys(home *h);
+void open_instances(home *h, int64_t t);
+void close_instance(run *r);
+bool is_over(const run *r);
+run *instance_of(const home *h, const rv_number *value);
+void open_at(run *r, int64_t t);
+int32_t concerning(const run *r, const rv_update *u);
+
+/* ---- crowd.c: which runs a part has, and which of them a call concerns */
+bool register_run(home *h, run *r);
+void touch_run(run *r);
+void enlist(run *r, bool captured);
+void delist(run *r, bool captured);
+void set_alarms(home *h);
+int32_t call_due(home *h, int64_t t);
+int32_t call_concerned(home *h, int64_t t);
+void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t));
+
+/* ---- homes.c: all runs of a part */
+bool home_begin(home *h);
+bool home_reserve(home *h, int32_t attempts);
+void home_lack(home *h, bool event, int32_t local);
+void home_sample(home *h, int64_t t);
+void home_wait(home *h, int64_t t);
+void home_close(home *h, int64_t end, int64_t reached);
+int64_t home_due(home *h);
+run *following(const home *h, const run *r);
+
+#endif

@@ -1,0 +1,167 @@
+/* What a monitor tells: records, open attempts, counts and verdicts. */
+#include "core.h"
+
+#include "calls.h"
+
+#include <string.h>
+
+int64_t rv_records(const rv_monitor *m, const rv_record **records)
+{
+    *records = m->records;
+    return m->record_count;
+}
+
+const rv_number *rv_captured(const rv_monitor *m, const rv_record *record)
+{
+    return (record->captured < 0) ? NULL : &m->captured[record->captured];
+}
+
+void rv_forget_records(rv_monitor *m)
+{
+    m->record_count = 0;
+    m->captured_count = 0;
+    m->sorted = 0;
+}
+
+/* The record of an attempt that is open. */
+static rv_record open_record(const run *r, int32_t index, int32_t at)
+{
+    const attempt *x = attempt_at(r->home, at);
+    rv_record made;
+    (void)memset(&made, 0, sizeof made);
+    made.requirement = r->part->judges[index].requirement;
+    made.number = told_number(r, at);
+    made.triggered = x->triggered;
+    made.captured = -1;
+    made.verdict = RV_INCONCLUSIVE;
+    made.decision = RV_OPEN;
+    made.in_doubt = x->sure ? 0 : 1;
+    return made;
+}
+
+static rv_record queued_record(const run *r, int32_t index, int32_t i)
+{
+    const queued *x = queue_item(&r->judges[index], i);
+    rv_record made;
+    (void)memset(&made, 0, sizeof made);
+    made.requirement = r->part->judges[index].requirement;
+    made.number = x->number;
+    made.triggered = x->triggered;
+    made.captured = -1;
+    made.verdict = RV_INCONCLUSIVE;
+    made.decision = RV_OPEN;
+    return made;
+}
+
+void rv_each_open(const rv_monitor *m, rv_take take, void *user)
+{
+    int32_t i;
+    for (i = 0; i < m->plan.part_count; i++) {
+        const home *h = &m->homes[i];
+        const run *r;
+        for (r = h->root; r != NULL; r = following(h, r)) {
+            int32_t k;
+            for (k = 0; k < r->part->plan->judges.count; k++) {
+                int32_t at;
+                for (at = 0; !queue_is_empty(&r->judges[k]) && (at < r->judges[k].queue->count);
+                     at++) {
+                    const rv_record one = queued_record(r, k, at);
+                    if (!take(user, &one, NULL)) {
+                        return;
+                    }
+                }
+                for (at = next_open(r, k, -1); at >= 0; at = next_open(r, k, at)) {
+                    const rv_record one = open_record(r, k, at);
+                    if (!take(user, &one, r->captured)) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/* Add what the runs of a home have of a requirement. */
+static void count_home(const home *h, int32_t requirement, rv_counts *counts)
+{
+    const run *r;
+    int32_t i;
+    if (h->part->plan->captured > 0) {
+        counts->failed += h->failed;
+        counts->passed += h->passed;
+        counts->inconclusive += h->inconclusive;
+    }
+    for (r = h->root; r != NULL; r = following(h, r)) {
+        const bool occurred = (r->rank == 0U) || (r->occurred <= r->at.position);
+        for (i = 0; i < h->part->plan->judges.count; i++) {
+            const judge *j = &r->judges[i];
+            if (h->part->judges[i].requirement != requirement) {
+                continue;
+            }
+            counts->open = counts->open || has_attempts(j) || (j->moot >= 0);
+            if (h->part->plan->captured > 0) {
+                counts->heard = counts->heard
+                                || ((i == 0) && (r->parent == NULL) && occurred && was_heard(r, i));
+            } else if (i < h->part->plan->requirements) {
+                counts->failed += j->failed;
+                counts->passed += j->passed;
+                counts->inconclusive += j->inconclusive;
+                counts->heard = was_heard(r, i);
+            } else {
+                /* Attempts in doubt count as those of their requirement. */
+            }
+        }
+    }
+}
+
+rv_counts rv_count(const rv_monitor *m, int32_t requirement)
+{
+    rv_counts counts;
+    int32_t i;
+    (void)memset(&counts, 0, sizeof counts);
+    for (i = 0; i < m->plan.part_count; i++) {
+        const part_plan *p = m->homes[i].part->plan;
+        if ((p->captured == 0) || (p->requirement == requirement)) {
+            count_home(&m->homes[i], requirement, &counts);
+        }
+    }
+    counts.open = counts.open && !m->finished;
+    return counts;
+}
+
+int rv_verdict(const rv_monitor *m, int32_t requirement)
+{
+    const rv_counts counts = rv_count(m, requirement);
+    if (counts.failed > 0) {
+        return RV_FAIL;
+    }
+    if ((counts.inconclusive > 0) || counts.open || m->spoilt) {
+        return RV_INCONCLUSIVE;
+    }
+    if (counts.passed > 0) {
+        return RV_PASS;
+    }
+    return counts.heard ? RV_NOT_TRIGGERED : RV_INCONCLUSIVE;
+}
+
+bool rv_spoilt(const rv_monitor *m)
+{
+    return m->spoilt;
+}
+
+rv_sizes rv_sizes_of(const rv_monitor *m)
+{
+    rv_sizes found;
+    found.signals = m->plan.header->signals;
+    found.events = m->plan.header->events;
+    found.fields = m->plan.header->fields;
+    found.requirements = m->plan.header->requirements;
+    found.captured = m->plan.header->captured;
+    return found;
+}
+
+int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first)
+{
+    *first = m->plan.field_first[event];
+    return m->plan.field_first[event + 1] - *first;
+}
