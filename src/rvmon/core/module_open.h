@@ -1,0 +1,132 @@
+/* How module.c makes a monitor: from a plan in bytes, the readings of its names and the fields of an attempt.
+ * Included there alone. */
+#ifndef RVMON_MODULE_OPEN_H
+#define RVMON_MODULE_OPEN_H
+
+#include "module_attempts.h"
+
+/* Open the plan in some bytes; false with an error. */
+static bool open_plan(monitor *c, PyObject *data)
+{
+    const rv_memory heap = {malloc, free, NULL, 0};
+    const size_t size = (size_t)PyBytes_Size(data);
+    const void *plan = PyBytes_AsString(data);
+    if ((uintptr_t)plan % 8U != 0U) {
+        c->plan = malloc(size + 1U);
+        if (c->plan == NULL) {
+            (void)PyErr_NoMemory();
+            return false;
+        }
+        plan = memcpy(c->plan, plan, size);
+    }
+    c->m = rv_new(plan, size, heap);
+    if (c->m == NULL) {
+        const int32_t wrong = rv_plan_check(plan, size);
+        if (wrong >= 0) {
+            (void)PyErr_Format(PyExc_ValueError, "the plan is damaged (section %d)", (int)wrong);
+        } else {
+            (void)PyErr_NoMemory();
+        }
+        return false;
+    }
+    c->sizes = rv_sizes_of(c->m);
+    return true;
+}
+
+/* Learn what attempts are made of; false with an error. */
+static bool find_slots(monitor *c, PyObject *descriptors)
+{
+    int i;
+    if (PyTuple_Size(descriptors) != SLOT_COUNT) {
+        PyErr_SetString(PyExc_ValueError, "not the fields of an attempt");
+        return false;
+    }
+    for (i = 0; i < SLOT_COUNT; i++) {
+        c->slots[i] = PyTuple_GetItem(descriptors, i);
+        c->set[i] = (descrsetfunc)(uintptr_t)PyType_GetSlot(Py_TYPE(c->slots[i]),
+                                                           Py_tp_descr_set);
+        if (c->set[i] == NULL) {
+            PyErr_SetString(PyExc_TypeError, "no field of an attempt");
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Learn how many values each requirement captures; false with an error. */
+static bool find_captured(monitor *c, PyObject *counts)
+{
+    int32_t i;
+    if ((PyTuple_Size(counts) != c->sizes.requirements)
+        || (PyTuple_Size(c->ids) != c->sizes.requirements)) {
+        PyErr_SetString(PyExc_ValueError, "not the requirements of the plan");
+        return false;
+    }
+    c->captured = PyMem_Calloc((size_t)c->sizes.requirements + 1U, sizeof *c->captured);
+    if (c->captured == NULL) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    for (i = 0; i < c->sizes.requirements; i++) {
+        const long count = PyLong_AsLong(PyTuple_GetItem(counts, i));
+        if ((count < 0) || (count > c->sizes.captured)) {
+            if (PyErr_Occurred() == NULL) {
+                PyErr_SetString(PyExc_ValueError, "more captured values than in the plan");
+            }
+            return false;
+        }
+        c->captured[i] = (int32_t)count;
+    }
+    return true;
+}
+
+/* Say which names have no source; false with an error. */
+static bool set_absent(const monitor *c, PyObject *absent)
+{
+    int32_t i;
+    if (PyBytes_Size(absent) != c->in.names) {
+        PyErr_SetString(PyExc_ValueError, "not the names of the plan");
+        return false;
+    }
+    for (i = 0; i < c->in.names; i++) {
+        if (PyBytes_AsString(absent)[i] != 0) {
+            rv_set_absent(c->m, i);
+        }
+    }
+    return true;
+}
+
+/* Monitor(plan, (numbers, words, kinds, single), absent, (look_closer, look_closer_ns),
+ *         (attempt, descriptors, ids, verdicts, decisions, details, captured)) */
+static PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
+{
+    PyObject *data;
+    PyObject *numbers;
+    PyObject *words;
+    PyObject *kinds;
+    PyObject *single;
+    PyObject *absent;
+    PyObject *descriptors;
+    PyObject *captured;
+    monitor *c = (monitor *)PyType_GenericAlloc(type, 0);
+    (void)unused;
+    if (c == NULL) {
+        return NULL;
+    }
+    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O!OO!)", &PyBytes_Type, &data,
+                         &PyDict_Type, &numbers, &PyTuple_Type, &words, &PyBytes_Type, &kinds,
+                         &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->look_closer,
+                         &c->look_closer_ns, &PyType_Type, &c->attempt, &PyTuple_Type, &descriptors,
+                         &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
+                         &c->decisions, &c->details, &PyTuple_Type, &captured)) {
+        c->owner = Py_NewRef(args);
+        if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
+            && find_slots(c, descriptors) && find_captured(c, captured) && set_absent(c, absent)) {
+            return (PyObject *)c;
+        }
+    }
+    Py_DECREF(c);
+    return NULL;
+}
+
+#endif
