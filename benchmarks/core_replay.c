@@ -245,8 +245,12 @@ static told by_steps(rv_monitor *m, const story *s, bool asks)
         note_records(&x, m, s->plan, due, a->s.t);
         due = (asks && (i % 3 != 0)) ? rv_next_due(m) : RV_NO_TIME;
         if (asks && (i % 2 == 0)) {
+            int32_t k;
             x.open *= 31;
             rv_each_open(m, note_open, &x.open);
+            for (k = 0; k < rv_sizes_of(m).requirements; k++) {
+                x.open = 3 * x.open + (rv_count(m, k).open ? 1 : 0);
+            }
         }
     }
     note_end(&x, m, s);
@@ -388,9 +392,9 @@ static void judge(const story *s)
     blame_other(&whole, &other, 'o');
     used = rv_memory_used(m);
     rv_free(m);
-    for (size = used / 4; (size <= 2 * used) && (size < sizeof block); size += used / 4 + 64) {
+    for (size = used / 4; (size <= 2 * used) && (size + 16 < sizeof block); size += used / 4 + 64) {
         rv_memory own = {NULL, NULL, NULL, 0};
-        own.block = block;
+        own.block = block + size % 16; /* aligned or not */
         own.size = size;
         m = rv_new(s->plan, s->size, own);
         if (m != NULL) {

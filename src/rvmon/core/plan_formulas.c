@@ -16,7 +16,7 @@ bool check_inputs(const plan *p, const part_plan *x)
     }
     for (i = 0; i < x->events.count; i++) {
         const event_plan *e = &p->events[x->events.first + i];
-        const int32_t number = e->name - p->header->signals;
+        const int64_t number = (int64_t)e->name - p->header->signals;
         if (!is_within(number, 0, p->header->events) || (e->field != fields)
             || (e->fields != p->field_first[number + 1] - p->field_first[number])
             || (((e->flags & EVENT_KEY) != 0) && ((x->each == 0) || (i != x->each_event)))
