@@ -43,6 +43,13 @@ static inline int64_t sum(int64_t t, int64_t duration)
     return (duration >= LIMIT) ? NEVER : t + duration;
 }
 
+/* A position so far ahead of another, or behind it; none is farther than the bounds of time. */
+static inline int64_t moved(int64_t position, int64_t distance)
+{
+    const int64_t at = position + distance;
+    return (at > LIMIT) ? LIMIT : ((at < -LIMIT) ? -LIMIT : at);
+}
+
 static inline attempt *attempt_at(const home *h, int32_t i)
 {
     return (attempt *)(void *)(h->pool + h->stride * (size_t)i);

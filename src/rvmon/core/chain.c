@@ -16,13 +16,6 @@
 
 #include <string.h>
 
-/* A position so far ahead of another, or behind it; none is farther than the bounds of time. */
-static int64_t moved(int64_t position, int64_t distance)
-{
-    const int64_t at = position + distance;
-    return (at > LIMIT) ? LIMIT : ((at < -LIMIT) ? -LIMIT : at);
-}
-
 /* The stamp of time `over` ticks behind a position, or of the letter there. */
 static int64_t stamp_of(const chaining *g, int64_t position, int64_t over, bool letter)
 {

@@ -5,14 +5,21 @@
  * back, and when something was known first is found by smaller steps. */
 #include "calls.h"
 
+/* The instant of a clock's position, within the bounds of time. */
+static int64_t ticks_of(int64_t position, int64_t step)
+{
+    const int64_t most = LIMIT / step;
+    return (position >= most) ? LIMIT : ((position <= -most) ? -LIMIT : position * step);
+}
+
 /* Where positions are samples they count from 0, and these are kept by instant. */
 int64_t instant_of(const form *f, const network *w, int64_t position)
 {
     int64_t t = -LIMIT;
     if (f->gap > 0) {
-        t = position * f->step;
+        t = (f->step == 1) ? position : ticks_of(position, f->step);
     } else if (position > w->last) {
-        t = w->samples.at[w->samples.end - 1].last + (position - w->last);
+        t = moved(w->samples.at[w->samples.end - 1].last, position - w->last);
     } else if (position >= w->oldest) {
         t = w->samples.at[w->samples.first + (int32_t)(position - w->oldest)].last;
     } else {
@@ -38,13 +45,14 @@ int64_t position_by(const form *f, const network *w, int64_t t)
 /* The first position so far behind another, or the last one that is not farther. */
 int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance)
 {
-    return (f->gap > 0) ? position + distance
-                     : position_by(f, w, instant_of(f, w, position) + distance - 1) + 1;
+    return (f->gap > 0) ? moved(position, distance)
+                     : position_by(f, w, moved(instant_of(f, w, position), distance) - 1) + 1;
 }
 
 int64_t up_to(const form *f, const network *w, int64_t position, int64_t distance)
 {
-    return (f->gap > 0) ? position + distance : position_by(f, w, instant_of(f, w, position) + distance);
+    return (f->gap > 0) ? moved(position, distance)
+                     : position_by(f, w, moved(instant_of(f, w, position), distance));
 }
 
 bool knows(const operator_state *o, uint8_t value, int64_t position)
