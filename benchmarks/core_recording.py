@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import struct
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from tests.tools.differential import cases_of, disagreements
@@ -33,23 +33,30 @@ TRACES_EACH = 4
 
 def recorded(pairs: int, seed: object) -> bytes:
     """So many random cases, less those that the core does not judge, or judges otherwise."""
+    return written(
+        case
+        for number in range(pairs // TRACES_EACH)
+        for case in cases_of(
+            f"{seed}/{number}", PROFILE, TRACES, TRACES_EACH, windows=15, letters=8
+        )
+    )
+
+
+def written(cases: Iterable[Case]) -> bytes:
+    """Cases, less those that the core does not judge, or not as the law has it."""
     found: list[bytes] = []
     compiler = Compiler()
     make = Maker("c", compiler)
     last: CompiledSpec | None = None
-    for number in range(pairs // TRACES_EACH):
-        drawn = cases_of(f"{seed}/{number}", PROFILE, TRACES, TRACES_EACH, windows=15, letters=8)
-        for case in drawn:
-            if make(case) is None or disagreements(case, make):
-                continue
-            compiled = compiler(case.spec)
-            planned = planned_core(compiled, tuple(compiled.requirements.values()))
-            words = [*_case(planned, case)]
-            plan = planned.packed.data if compiled is not last else b""
-            last = compiled
-            found.append(
-                struct.pack("<q", len(plan)) + plan + struct.pack(f"<{len(words)}q", *words)
-            )
+    for case in cases:
+        if make(case) is None or disagreements(case, make):
+            continue
+        compiled = compiler(case.spec)
+        planned = planned_core(compiled, tuple(compiled.requirements.values()))
+        words = [*_case(planned, case)]
+        plan = planned.packed.data if compiled is not last else b""
+        last = compiled
+        found.append(struct.pack("<q", len(plan)) + plan + struct.pack(f"<{len(words)}q", *words))
     return struct.pack("<q", len(found)) + b"".join(found)
 
 

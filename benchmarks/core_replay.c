@@ -394,7 +394,7 @@ static void judge(const story *s)
     rv_free(m);
     for (size = used / 4; (size <= 2 * used) && (size + 16 < sizeof block); size += used / 4 + 64) {
         rv_memory own = {NULL, NULL, NULL, 0};
-        own.block = block + size % 16; /* aligned or not */
+        own.block = block + size / 16 % 16; /* aligned or not */
         own.size = size;
         m = rv_new(s->plan, s->size, own);
         if (m != NULL) {

@@ -46,8 +46,10 @@ static inline int64_t sum(int64_t t, int64_t duration)
 /* A position so far ahead of another, or behind it; none is farther than the bounds of time. */
 static inline int64_t moved(int64_t position, int64_t distance)
 {
-    const int64_t at = position + distance;
-    return (at > LIMIT) ? LIMIT : ((at < -LIMIT) ? -LIMIT : at);
+    if (distance > 0) {
+        return (position > LIMIT - distance) ? LIMIT : position + distance;
+    }
+    return (position < -LIMIT - distance) ? -LIMIT : position + distance;
 }
 
 static inline attempt *attempt_at(const home *h, int32_t i)

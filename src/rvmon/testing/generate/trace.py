@@ -201,7 +201,9 @@ class _Values:
                 return min(max(int(pick(rng, self.numbers)), -(2**63)), 2**63 - 1)
             case Kind.REAL:
                 value = pick(rng, self.numbers)
-                return value if abs(value) <= 2**53 else float(value)
+                if abs(self.numbers[-1]) < 2**53:
+                    return value
+                return float(value) + pick(rng, (-0.5, 0.0, 0.5))  # beside whole numbers
 
     def _occurrence(self, rng: Rng, name: str, fields: Mapping[str, Type]) -> Value:
         if chance(rng, self.unknown):

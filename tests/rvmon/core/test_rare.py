@@ -1,0 +1,98 @@
+"""Cases that random ones seldom meet: each needs a line of the core that little else does."""
+
+import pytest
+from tests.tools.differential import disagreements
+from tests.tools.forms import Maker
+
+import rvmon
+from rvmon.testing.case import Case
+from rvmon.trace.sample import Sample
+
+NAMES = """signal p, q : bool
+signal x : real
+event e
+event g(k: int)
+"""
+
+
+def case_of(time: str, owed: str, *actions: object, end: int | None = None) -> Case:
+    """A case of one requirement; actions are pairs of an instant and values, or instants."""
+    spec = rvmon.loads(f"time {time}\n{NAMES}requirement R\n  {owed}\n").checked
+    told = (Sample(*action) if isinstance(action, tuple) else action for action in actions)
+    return Case(spec, tuple(told), end)
+
+
+ENDS = [
+    case_of(time, f"upon start then {owed}", (0, {"p": True, "q": False}), (3, {}), until, end=end)
+    for time in ("held", "sampled", "sampled every 2 ns")
+    for owed in ("G[5 ns, inf) p", "F[0 ns, 5 ns] q", "(G[5 ns, inf) p) or F[2 ns, 4 ns] q")
+    for until in (3, 5, 9)
+    for end in (None, 4, 6, 12)
+]
+
+CASES = {
+    "two readings with clocks of different ages in one location": case_of(
+        "held",
+        "upon e then G[0 ns, 20 ns] (p -> F[0 ns, 3 ns] q)",
+        (0, {"e": True, "p": False, "q": False}),
+        (1, {"p": None}),
+        (2, {"p": False}),
+        (3, {"p": True}),
+        (4, {"p": False}),
+        (5, {"q": True}),
+        (6, {"q": False}),
+        end=30,
+    ),
+    "an occurrence that is unknown, beside a signal without a value": case_of(
+        "sampled", "upon g.k > x then false", (0, {"g": None}), (1, {}), (2, {"x": 1.0})
+    ),
+    "and one of which the field alone is": case_of(
+        "sampled", "upon g.k > x then false", (0, {"g": {"k": None}}), (1, {}), (2, {"x": 1.0})
+    ),
+    "a requirement of a network that fails again and again while nothing is said": case_of(
+        "held",
+        "whenever p then F[1 ns, 2 ns] G[0 ns, 1 ns] H[0 ns, 3 ns] q",
+        (0, {"p": True, "q": False}),
+        40,
+        (50, {"q": True}),
+        end=60,
+    ),
+    "a captured value of an episode whose trigger was unknown": case_of(
+        "held",
+        "whenever p then F[0 ns, 4 ns] x > v\n  let v = x",
+        (0, {"p": True, "x": 1.0}),
+        (2, {"p": None, "x": 2.0}),
+        (3, {"p": False}),
+        (6, {"p": True}),
+        (8, {"x": 3.0}),
+        (9, {"p": False}),
+        end=20,
+    ),
+}
+
+CASES |= {
+    f"an episode with a value, clouded and undecided, at end: {policy}": case_of(
+        "held",
+        f"whenever p then F[0 ns, 40 ns] (q and x > v)\n  at end: {policy}\n  let v = x",
+        (0, {"p": True, "q": False, "x": 1.0}),
+        (2, {"p": None, "x": 2.0}),
+        (3, {"p": True}),
+        end=9,
+    )
+    for policy in ("strong", "weak", "pass", "fail", "strict")
+}
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("form", ["c", "c rows"])
+@pytest.mark.parametrize("name", CASES)
+def test_a_rare_case_is_judged_as_the_law_has_it(name: str, form: str) -> None:
+    """By each call, and in the report."""
+    assert disagreements(CASES[name], Maker(form), online=True) == []
+
+
+@pytest.mark.law
+def test_the_end_is_told_from_how_far_time_came() -> None:
+    """A window may open, or be over, behind the last position."""
+    make = Maker("c")
+    assert [text for case in ENDS for text in disagreements(case, make, online=True)] == []
