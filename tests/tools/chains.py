@@ -36,7 +36,7 @@ def random_chain(rng: random.Random, *, untils: bool = False) -> CheckedSpec:
     """
     time = rng.choice(("held", "sampled", f"sampled every {rng.randint(1, 3)} ns"))
     formula = rng.choice(("q", "not q", "(q and r)", "(q or r)", "x > 1"))
-    for _ in range(rng.choice((1, 1, 2, 2, 2, 3))):
+    for _ in range(rng.choice((1, 2, 2, 3, 3, 4))):
         low = rng.choice((0, 0, 1, 3)) if time != "sampled" or rng.random() < 0.2 else 0
         high = low + rng.choice((0, 1, 2, 5, 9))
         bounds = f"[{low} ns, {high} ns]"
