@@ -201,7 +201,7 @@ class _Values:
                 return min(max(int(pick(rng, self.numbers)), -(2**63)), 2**63 - 1)
             case Kind.REAL:
                 value = pick(rng, self.numbers)
-                if max(map(abs, self.numbers)) < 2**53:
+                if all(abs(number) < 2**53 for number in self.numbers):
                     return value
                 return float(value) + pick(rng, (-0.5, 0.0, 0.5))  # beside whole numbers
 
