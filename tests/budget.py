@@ -9,7 +9,7 @@ BUDGETS = {
     "src/handover": 2,
     "src/rvmon": 20,
     "tests": 10,
-    "tests/benchmarks": 10,
+    "tests/benchmarks": 25,
     "tests/docs": 30,
     "tests/examples": 20,
     "tests/handover": 4,

@@ -13,8 +13,8 @@ from benchmarks.mutation_c import c_mutants
 
 pytestmark = pytest.mark.compiler
 
-CASES = 80
-FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", f"-I{CORE}")
+CASES = 60
+FLAGS = ("-std=c99", "-O0", "-ffp-contract=off", f"-I{CORE}")
 
 
 @pytest.fixture(scope="module")
@@ -61,5 +61,5 @@ def test_mutants_are_seen(cases: Path, tmp_path: Path) -> None:
     """Most small changes of the core are told from it by some dozens of cases."""
     trial = Trial(tmp_path, cases.read_bytes())
     path = CORE / "graph.c"
-    drawn = draw(c_mutants(path), Namespace(seed=1, count=6))
-    assert sum(trial.outcome(mutant) == "killed" for mutant in drawn) >= 4
+    drawn = draw(c_mutants(path), Namespace(seed=1, count=4))
+    assert sum(trial.outcome(mutant) == "killed" for mutant in drawn) >= 3
