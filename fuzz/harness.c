@@ -17,6 +17,7 @@
 #define STEPS_MOST 200
 
 extern long guarded_left;
+extern size_t guarded_in_use;
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -234,6 +235,10 @@ static void judge(const void *bytes, size_t size, script s)
         rv_free(m);
     }
     guarded_left = -1;
+    if (guarded_in_use != 0) {
+        (void)fprintf(stderr, "%zu bytes are not given back\n", guarded_in_use);
+        abort();
+    }
 }
 
 #ifdef PLANS

@@ -21,7 +21,8 @@ typedef struct guarded_head {
 #define GUARDED_MOST ((size_t)1 << 26)
 #endif
 
-static size_t guarded_in_use;
+/* Bytes that were taken and not given back. */
+size_t guarded_in_use;
 
 /* So many blocks more are given, then none; negative: all are. */
 long guarded_left = -1;
