@@ -80,6 +80,12 @@ static int64_t position_of_attempt(const attempt *x)
     return x->clocks[0];
 }
 
+/* The instant of a stamp, before 0 too. */
+static int64_t instant_of_stamp(int64_t stamp)
+{
+    return stamp / 2 - (((stamp < 0) && (stamp % 2 != 0)) ? 1 : 0);
+}
+
 /* Judge one attempt by a stamp; false if it was decided. `due` is the stamp at which it will be if the
  * letter stays. */
 static bool weigh_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
@@ -106,7 +112,7 @@ static bool weigh_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
     stamp = least(worse ? worse_stamp : NEVER_KNOWN, better ? NEVER_KNOWN : better_stamp);
     if (stamp <= limit) {
         decide(g->r, g->index, at, worse && (stamp == worse_stamp),
-               later(stamp / 2 - ((stamp < 0) && (stamp % 2 != 0)), position * g->f.step));
+               later(instant_of_stamp(stamp), position * g->f.step));
         return false;
     }
     if (g->c->parted || x->parted) {
@@ -145,7 +151,7 @@ static void look_through(chaining *g, int64_t limit)
         }
         at = next;
     }
-    set_rule_due(g->r, g->index, (next_due == NEVER_KNOWN) ? NEVER : next_due / 2);
+    set_rule_due(g->r, g->index, (next_due == NEVER_KNOWN) ? NEVER : instant_of_stamp(next_due));
 }
 
 static void read_letter(const chaining *g, uint8_t *letter)
@@ -237,7 +243,7 @@ bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
     if (!weigh_in_chain(&g, at, 2 * t + 1, &due)) {
         return false;
     }
-    x->due = (due == NEVER_KNOWN) ? NEVER : due / 2;
+    x->due = (due == NEVER_KNOWN) ? NEVER : instant_of_stamp(due);
     return true;
 }
 

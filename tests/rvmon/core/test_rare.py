@@ -57,6 +57,13 @@ CASES = {
         (50, {"q": True}),
         end=60,
     ),
+    "windows within windows, decided by a sample before 0": case_of(
+        "held",
+        "upon start then F[1 ns, 1 ns] F[1 ns, 1 ns] p",
+        (-3, {"p": True}),
+        (-1, {}),
+        (6, {}),
+    ),
     "a captured value of an episode whose trigger was unknown": case_of(
         "held",
         "whenever p then F[0 ns, 4 ns] x > v\n  let v = x",
