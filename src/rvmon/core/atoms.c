@@ -110,13 +110,14 @@ static void list_fresh(run *r, int32_t atom)
     }
 }
 
-void recheck(run *r, int32_t atom)
+bool recheck(run *r, int32_t atom)
 {
     const atom_plan *a = &r->part->atoms[atom];
     const uint8_t now = (a->op == ATOM_REAL) ? compare_real(a->compare, &r->value[a->input], a->constant)
                                              : atom_now(r, a);
+    const bool changed = now != r->atom[atom];
     /* A comparison of fields stays unknown for another reason: it matters to what is not born. */
-    if ((now != r->atom[atom]) || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
+    if (changed || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
         const list nodes = a->nodes[r->at.phase];
         const int32_t *node = LIST(PLAN(r), nodes);
         int32_t i;
@@ -128,15 +129,18 @@ void recheck(run *r, int32_t atom)
     if (r->momentary[atom] != 0U) {
         list_fresh(r, atom);
     }
+    return changed;
 }
 
-void recheck_list(run *r, list l)
+bool recheck_list(run *r, list l)
 {
     const int32_t *atoms = LIST(PLAN(r), l);
+    bool changed = false;
     int32_t i;
     for (i = 0; i < l.count; i++) {
-        recheck(r, atoms[i]);
+        changed = recheck(r, atoms[i]) || changed;
     }
+    return changed;
 }
 
 /* Read again what spoke of the last position only; what was read since speaks of this one. */
@@ -149,7 +153,7 @@ void recheck_fading(run *r)
     }
     r->at.fading_count = 0;
     for (i = 0; i < count; i++) {
-        recheck(r, r->fading[i]);
+        (void)recheck(r, r->fading[i]);
     }
     for (i = 0; i < r->at.fresh_count; i++) {
         const int32_t atom = r->fresh[i];

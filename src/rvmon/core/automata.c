@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-
-
 /* The class of a letter of which there are too many for a table: the digits that matter are asked
  * for one after the other. */
 static int32_t class_by_diagram(const run *r, const judge_plan *j, bool better)
@@ -33,18 +31,23 @@ int32_t class_of_letter(const run *r, int32_t index, bool better)
                                                     : r->judges[index].worse];
 }
 
-static int32_t row_of(const machine *a, const token *k, int64_t t)
+/* The row of a token at an instant, and until when it is the same if the token stays. */
+static int32_t row_of(const machine *a, const token *k, int64_t t, int64_t *until)
 {
     const int32_t width = a->widths[k->location];
     const int32_t first = k->location * a->clocks;
     int32_t row = a->bases[k->location];
     int32_t c;
+    *until = NEVER;
     for (c = 0; c < width; c++) {
-        const int64_t age = t - k->clocks[c];
-        const int32_t end = a->cut_first[first + c + 1];
-        int32_t i;
-        for (i = a->cut_first[first + c]; (i < end) && (age >= a->cuts[i]); i++) {
+        const int64_t clock = k->clocks[c];
+        const int64_t *cut = &a->cuts[a->cut_first[first + c]];
+        const int64_t *end = &a->cuts[a->cut_first[first + c + 1]];
+        for (; (cut < end) && (t >= clock + *cut); cut++) {
             row += a->strides[first + c];
+        }
+        if (cut < end) {
+            *until = least(*until, clock + *cut);
         }
     }
     return row;
@@ -52,7 +55,8 @@ static int32_t row_of(const machine *a, const token *k, int64_t t)
 
 bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
 {
-    const int32_t number = a->edges[row_of(a, k, t) * a->classes + letter];
+    int64_t until;
+    const int32_t number = a->edges[row_of(a, k, t, &until) * a->classes + letter];
     const int32_t target = a->targets[number];
     const int32_t *sources = &a->sources[number * a->clocks];
     const int32_t width = a->widths[target];
@@ -77,16 +81,28 @@ bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
     return moved;
 }
 
-/* Whether a token that came from a step at `t` would stay where it is if the letter stays. */
-bool rests(const machine *a, const token *k, int64_t t, int32_t letter)
+/* Whether a token that came from a step at `t` would stay where it is if the letter stays; `due` is when
+ * the next region of its ages begins. */
+bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due)
 {
-    const int32_t number = a->edges[row_of(a, k, t + a->step) * a->classes + letter];
-    const int32_t *sources = &a->sources[number * a->clocks];
+    const int64_t next = t + a->step;
     const int32_t width = a->widths[k->location];
+    int32_t row = row_of(a, k, t, due);
+    int64_t until;
+    const int32_t *sources;
+    int32_t number;
     int32_t c;
-    if ((a->gap == 0) || (a->targets[number] != k->location)) {
+    if (a->gap == 0) {
         return false;
     }
+    if (*due <= next) {
+        row = row_of(a, k, next, &until);
+    }
+    number = a->edges[row * a->classes + letter];
+    if (a->targets[number] != k->location) {
+        return false;
+    }
+    sources = &a->sources[number * a->clocks];
     for (c = 0; c < width; c++) {
         if ((sources[c] < 0) || (k->clocks[sources[c]] != k->clocks[c])) {
             return false;
@@ -124,12 +140,13 @@ int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until)
 {
     int64_t cut = next_cut(a, k, t, NULL);
     while (cut <= until) {
-        const int32_t truth = a->time_values[row_of(a, k, cut)];
+        int64_t next;
+        const int32_t truth = a->time_values[row_of(a, k, cut, &next)];
         if (truth != IS_UNKNOWN) {
             k->location = (truth == IS_TRUE) ? PASSED : FAILED;
             break;
         }
-        cut = next_cut(a, k, cut, NULL);
+        cut = next;
     }
     return cut;
 }
@@ -181,7 +198,7 @@ int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int
         }
         if (loops(a, was, before, k, &slid)) {
             const int64_t cut = next_cut(a, k, position, before);
-            const int64_t ahead = (least(cut - 1, last) - position) / a->step * a->step;
+            const int64_t ahead = whole_steps(least(cut - 1, last) - position, a->step);
             *slides = *slides || slid;
             if (ahead > 0) {
                 const int32_t width = a->widths[k->location];
@@ -213,7 +230,7 @@ bool holds_at_end(const machine *a, int32_t location, const int64_t *clocks, int
         bool all = true;
         for (j = a->test_first[i]; j < a->test_first[i + 1]; j++) {
             const int32_t *test = &a->tests[2 * j];
-                        if (test[0] >= 0) {
+            if (test[0] >= 0) {
                 const int64_t now = (test[1] != 0) ? end : reached;
                 all = all && (now - clocks[test[0]] >= a->ages[j]);
             }

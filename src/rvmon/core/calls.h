@@ -9,11 +9,33 @@
 #define PLAN(r) (&(r)->home->monitor->plan)
 
 static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
+static const span NO_SPAN = {0.0, 0.0};
 
 static inline int64_t step_of(const run *r)
 {
     const int64_t gap = GAP(r);
     return (gap > 0) ? gap : 1;
+}
+
+/* So much of a duration as whole steps fill. */
+static inline int64_t whole_steps(int64_t duration, int64_t step)
+{
+    return (step == 1) ? duration : duration / step * step; /* a division takes its time */
+}
+
+/* How many positions of a clock lie within the bounds of time. */
+static inline int64_t positions_within(int64_t step)
+{
+    return (step == 1) ? LIMIT : LIMIT / step;
+}
+
+/* The last position of a clock not behind an instant. */
+static inline int64_t floored(int64_t t, int64_t step)
+{
+    if (step == 1) {
+        return t;
+    }
+    return ((t >= 0) || (t % step == 0)) ? t / step : t / step - 1;
 }
 
 static inline int64_t least(int64_t a, int64_t b)
@@ -83,8 +105,8 @@ void go_stale(run *r, int32_t perishable);
 void lack(run *r, bool event, int32_t local);
 
 /* ---- atoms.c */
-void recheck(run *r, int32_t atom);
-void recheck_list(run *r, list l);
+bool recheck(run *r, int32_t atom);     /* whether it is another truth */
+bool recheck_list(run *r, list l);      /* whether one of them is */
 void recheck_fading(run *r);
 void reread(run *r, int32_t atom, bool pending);
 uint8_t leaf_truth(const run *r, const node_plan *n);
@@ -109,7 +131,7 @@ typedef struct {
 
 int32_t class_of_letter(const run *r, int32_t index, bool better);
 bool step_token(const machine *a, token *k, int64_t t, int32_t letter);
-bool rests(const machine *a, const token *k, int64_t t, int32_t letter);
+bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due);
 int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *before);
 int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until);
 int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,
@@ -210,7 +232,6 @@ typedef struct {
 } form;
 
 form form_of(const run *r, int32_t index);
-int64_t floored(int64_t t, int64_t step);
 int64_t instant_of(const form *f, const network *w, int64_t position);
 int64_t position_by(const form *f, const network *w, int64_t t);
 int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance);
@@ -227,11 +248,10 @@ void tidy(const form *f, network *w, int64_t position);
 bool is_networked(const run *r, int32_t index);
 void network_pass(run *r, int32_t index, int64_t now, bool is_position);
 void network_put_off(run *r, int32_t index, int64_t until);
-void network_approach(run *r, int32_t index, int64_t until);
-void network_foresee(run *r, int32_t index, int64_t until);
+void network_foresee(run *r, int32_t index, int64_t now);
 void network_come_to(run *r, int32_t index, int64_t t);
 bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
-void network_close(run *r, int32_t index, int64_t end);
+void network_close(run *r, int32_t index, int64_t end, int64_t reached);
 bool network_outlasts(run *r, int32_t index, const attempt *x);
 
 /* ---- windows.c: attempts that a chain of windows judges */

@@ -20,7 +20,7 @@
 static int64_t stamp_of(const chaining *g, int64_t position, int64_t over, bool letter)
 {
     int64_t t;
-    if ((position >= LIMIT / g->f.step) || (over >= LIMIT)) {
+    if ((position >= positions_within(g->f.step)) || (over >= LIMIT)) {
         return NEVER_KNOWN;
     }
     t = position * g->f.step + over; /* less than twice LIMIT */
@@ -111,7 +111,7 @@ static int64_t reach_of(const chaining *g)
 /* Drop what lies before all that is not known at a position. */
 void forget_before(const chaining *g, int64_t position)
 {
-    int64_t start = moved(moved(position, -(reach_of(g) / g->f.step)), -2);
+    int64_t start = moved(moved(position, -floored(reach_of(g), g->f.step)), -2);
     int32_t i;
     int32_t level;
     if (g->sparse) {

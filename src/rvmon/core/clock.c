@@ -174,7 +174,7 @@ static void start(run *r, int64_t t)
     r->at.starting = true;
     r->at.origin = t;
     for (i = 0; i < r->part->plan->atoms.count; i++) {
-        recheck(r, i);
+        (void)recheck(r, i);
     }
     soil_all(r);
     touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
@@ -302,7 +302,7 @@ void through(run *r, int64_t limit, bool comes)
             network_put_off(r, index[i], until);
         }
         for (i = 0; restarts && (i < networked); i++) {
-            network_approach(r, index[i], until);
+            network_foresee(r, index[i], until);
         }
         /* What fails may be followed by another attempt at once. */
         stop = restarts ? least(until, timers_next(&r->rules)) : until;
@@ -366,7 +366,7 @@ void settle_all(run *r, int64_t end, int64_t reached)
     int32_t at;
     for (i = 0; i < r->part->plan->judges.count; i++) {
         if (is_networked(r, i) && !is_chained(r, i)) {
-            network_close(r, i, end);
+            network_close(r, i, end, reached);
         }
         if (!queue_is_empty(&r->judges[i])) {
             queue_close(r, i, end, reached);

@@ -29,11 +29,11 @@ static int64_t drive_token(run *r, const machine *a, int32_t index, token *k, in
         const bool moved = step_token(a, k, t, letter);
         if (k->location <= PASSED) {
             due = t;
-        } else if (moved && !rests(a, k, t, letter)) {
+        } else if (!rests(a, k, t, letter, &due) && moved) {
             set_restless(r, index);
             due = t + 1;
         } else {
-            due = next_cut(a, k, t, NULL);
+            /* It waits for another letter, or for time. */
         }
     } else if (how == BY_RUN) {
         due = run_token(a, k, letter, from, t, &r->judges[index].slides);
@@ -171,7 +171,7 @@ void pass_to(run *r, int32_t index, int64_t t)
         const bool slid = j->slides;
         j->slides = false;
         drive_all(r, index, BY_RUN, position + step, t, !slid);
-        j->position += (t - position) / step * step;
+        j->position += whole_steps(t - position, step);
         j->restless = false;
     } else {
         /* Time has come there before. */

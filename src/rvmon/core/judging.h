@@ -76,7 +76,6 @@ typedef struct {
     uint8_t *next_leaf;        /* the same from the position `turn` on */
     int64_t turn;
     int32_t visits;
-    int32_t calls;             /* since the letter changed */
     bool begun;
     bool parted;
 } networks;

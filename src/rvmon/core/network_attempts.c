@@ -88,7 +88,6 @@ void hear_news(judging *g, int64_t t)
     if (!g->net->parted && (decided_one(g) == NEVER)) {
         return;
     }
-    g->net->calls = 0;
     while (at >= 0) {
         const int32_t next = attempt_of(g, at)->next;
         const int64_t position = position_of(attempt_of(g, at));

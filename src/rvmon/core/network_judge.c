@@ -10,8 +10,9 @@
 
 /* Instants that are tried at most before a search halves what is left. */
 #define GUESSES 16
-/* Calls after which a letter that has stayed is looked ahead for: one that changes often is not. */
-#define PATIENCE 16
+/* A letter is taken to stay so many times as long as it has: what would be decided then is looked up
+ * once, and not at each position until it is another one. */
+#define STAYS 16
 /* Letters after which what nobody can ask for is dropped. */
 #define TIDY_EVERY 8
 
@@ -208,6 +209,18 @@ static int64_t go(judging *g, int64_t now, int64_t last)
     return is_spoilt(g) ? NEVER : high;
 }
 
+/* How far a letter is looked ahead for. */
+static int64_t ahead_of(const judging *g, int64_t now)
+{
+    const int64_t stayed = now - g->j->position;
+    if (g->f.gap == 0) {
+        return now;
+    }
+    return (stayed < LIMIT / (2 * STAYS)) ? least(now + STAYS * stayed, LIMIT - 1) : LIMIT - 1;
+}
+
+/* Have a judge due at the next instant at which an attempt is decided if the letter stays, or behind
+ * `until`; the networks stay where they are. */
 static void foresee(judging *g, int64_t until)
 {
     const int64_t decided = go(g, until, last_at(g, until));
@@ -215,54 +228,40 @@ static void foresee(judging *g, int64_t until)
     set_due(g, (decided < NEVER) ? decided : until + 1);
 }
 
-/* Have a judge due at the next instant at which an attempt is decided if the letter stays, or behind
- * `until`. */
-void network_foresee(run *r, int32_t index, int64_t until)
+/* Have a judge that may decide something by `now` due at the instant at which it does, if the letter
+ * stays. */
+void network_foresee(run *r, int32_t index, int64_t now)
 {
     judging g = judging_of(r, index);
-    if ((g.j->first >= 0) && (due_of(&g) <= until) && !is_given_up(&g)) {
-        foresee(&g, until);
+    if ((g.j->first >= 0) && (due_of(&g) <= now) && !is_given_up(&g)) {
+        foresee(&g, ahead_of(&g, now));
     }
 }
 
-/* Nothing more is decided by `now`: of a letter that has stayed for some calls, see what it brings
- * if it goes on to. */
-static void rest(judging *g, int64_t now)
+/* Let time come to `now`, and the letter to positions up to `last`; attempts are decided meanwhile. If the
+ * letter is known up to `now` it is looked ahead for until later. */
+static void pass(judging *g, int64_t now, int64_t last, int64_t until)
 {
-    const int64_t stayed = now - g->j->position;
-    set_due(g, now + 1);
-    g->net->calls++;
-    if ((g->f.gap > 0) && (g->net->calls > PATIENCE)) {
-        const int64_t until = (stayed < LIMIT / 8) ? least(now + 4 * stayed, LIMIT - 1) : LIMIT - 1;
-        if (due_of(g) <= until) {
-            foresee(g, until);
+    const bool complete = last == last_at(g, now); /* else the position there is still to come */
+    while (g->j->first >= 0) {
+        const int64_t decided = go(g, until, complete ? last_at(g, until) : last);
+        if (decided > now) {
+            unlearn_all(g);
+            set_due(g, !complete ? now : (decided < NEVER) ? decided : until + 1);
+            return;
         }
+        hear_news(g, decided);
+        set_due(g, decided);
     }
-}
-
-/* Let time come to `now`, and the letter to positions up to `last`; attempts are decided meanwhile. */
-static void pass(judging *g, int64_t now, int64_t last)
-{
-    int64_t decided;
-    do {
-        decided = go(g, now, last);
-        hear_news(g, least(decided, now));
-        set_due(g, least(decided, now));
-    } while ((decided < now) && (g->j->first >= 0));
-    if (g->j->first < 0) {
-        set_due(g, NEVER);
-    } else if (last < last_at(g, now)) {
-        set_due(g, now); /* the position there is still to come */
-    } else {
-        rest(g, now);
-    }
+    set_due(g, NEVER);
 }
 
 void network_pass(run *r, int32_t index, int64_t now, bool is_position)
 {
     judging g = judging_of(r, index);
     if (!is_given_up(&g)) {
-        pass(&g, now, last_at(&g, is_position ? now : now - 1));
+        pass(&g, now, last_at(&g, is_position ? now : now - 1),
+             is_position ? ahead_of(&g, now) : now);
     }
 }
 
@@ -276,23 +275,6 @@ void network_put_off(run *r, int32_t index, int64_t until)
     if (alone && (j->first >= 0) && (due <= until)) {
         j->lag += until + 1 - due;
         set_rule_due(r, index, until + 1);
-    }
-}
-
-/* Let time come to `until`, but not to the first instant at which an attempt is decided: the judge is
- * due then. */
-void network_approach(run *r, int32_t index, int64_t until)
-{
-    judging g = judging_of(r, index);
-    if ((g.j->first >= 0) && (due_of(&g) <= until) && !is_given_up(&g)) {
-        const int64_t decided = go(&g, until, last_at(&g, until));
-        if (decided < NEVER) {
-            unlearn_all(&g);
-            set_due(&g, decided);
-        } else {
-            hear_news(&g, until);
-            rest(&g, until);
-        }
     }
 }
 
@@ -338,14 +320,13 @@ static void come_to(judging *g, int64_t t)
     } else if (g->j->position == t) {
         return;
     } else if ((g->f.gap > 0) && !changed) {
-        pass(g, t, position);
+        pass(g, t, position, ahead_of(g, t));
         return;
     } else {
         position = (g->f.gap > 0) ? position : w->last + 1;
         tidy_up(g, position);
     }
     g->j->position = t;
-    g->net->calls = 0;
     g->j->restless = false;
     if (g->f.gap == 0) {
         set_restless(g->r, g->index);
@@ -367,7 +348,7 @@ static void come_to(judging *g, int64_t t)
         /* See first what was decided by the letter that was. */
         unlearn_all(g);
         g->net->turn = NEVER;
-        pass(g, t - 1, position - 1);
+        pass(g, t - 1, position - 1, t - 1);
         g->net->turn = position;
         learn_all(g, t, position);
     }
@@ -388,24 +369,29 @@ void network_come_to(run *r, int32_t index, int64_t t)
     }
 }
 
-/* Let an attempt begin at the position at `t`, to which its network has come. */
+/* Let an attempt begin at the position at `t`, at which the letter is. */
 bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
 {
     judging g = judging_of(r, index);
     if (is_given_up(&g)) {
         return true;
     }
-    g.net->calls = 0;
+    if (g.net->readings[0].last < last_at(&g, t)) {
+        learn_all(&g, t, last_at(&g, t));
+        hear_news(&g, t);
+    }
     attempt_of(&g, at)->due = t + 1;
     attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
     return weigh(&g, at, t);
 }
 
-/* Apply the rule for the end of a trace; nothing more is learnt. */
-void network_close(run *r, int32_t index, int64_t end)
+/* Apply the rule for the end of a trace, when time has come to `reached`. */
+void network_close(run *r, int32_t index, int64_t end, int64_t reached)
 {
     judging g = judging_of(r, index);
     if ((g.j->first >= 0) && !is_given_up(&g)) {
+        learn_all(&g, reached, last_at(&g, end));
+        hear_news(&g, reached); /* who stays open for good */
         g.net->readings[0].closed = end;
         learn(&g.f, g.net, 0, g.net->readings[0].now, g.net->readings[0].last);
     }

@@ -8,7 +8,7 @@
 /* The instant of a clock's position, within the bounds of time. */
 static int64_t ticks_of(int64_t position, int64_t step)
 {
-    const int64_t most = LIMIT / step;
+    const int64_t most = positions_within(step);
     return (position >= most) ? LIMIT : ((position <= -most) ? -LIMIT : position * step);
 }
 
@@ -26,11 +26,6 @@ int64_t instant_of(const form *f, const network *w, int64_t position)
         /* Long ago. */
     }
     return t;
-}
-
-int64_t floored(int64_t t, int64_t step)
-{
-    return ((t >= 0) || (t % step == 0)) ? t / step : t / step - 1;
 }
 
 /* The last position not behind an instant. */

@@ -295,9 +295,9 @@ static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
         found = subtracted(now, &found);
         if ((op == CODE_RATE) && (found.kind != RV_UNKNOWN)) {
             const rv_number second = whole(INT64_C(1000000000));
-            const rv_number span = whole(h->at - h->before_at);
+            const rv_number distance = whole(h->at - h->before_at);
             found = multiplied(&found, &second);
-            found = (found.kind == RV_UNKNOWN) ? found : divided(&found, &span);
+            found = (found.kind == RV_UNKNOWN) ? found : divided(&found, &distance);
         }
     }
     return found;

@@ -47,7 +47,8 @@ bool make_queue(run *r, int32_t index)
     const judge_plan *plan_of_judge = &r->part->judges[index];
     const int32_t flags = plan_of_judge->flags & (JUDGE_IN_RUNS | JUDGE_EPISODIC);
     judge *j = &r->judges[index];
-    if ((flags != JUDGE_IN_RUNS) || (plan_of_judge->automaton < 0) || (GAP(r) > 1)
+    if ((flags != JUDGE_IN_RUNS) || (plan_of_judge->automaton < 0)
+        || (r->part->machines[index].clocks > 1) || (GAP(r) > 1)
         || (r->part->plan->captured > 0) || (j->queue != NULL)) {
         return true;
     }
@@ -323,11 +324,12 @@ bool queue_begin(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
     queue *q = g.q;
-    int64_t clocks[CLOCKS_MOST] = {0};
+    int64_t clock = 0;
+    int64_t due;
     queued x;
     token k;
     k.location = g.a->initial;
-    k.clocks = clocks;
+    k.clocks = &clock;
     (void)step_token(g.a, &k, t, g.j->letter);
     x.triggered = t;
     g.j->count++;
@@ -366,12 +368,11 @@ bool queue_begin(run *r, int32_t index, int64_t t)
         r->home->monitor->spoilt = true;
         return false;
     }
-    if (!rests(g.a, &k, t, g.j->letter)) {
+    if (!rests(g.a, &k, t, g.j->letter, &due)) {
         set_restless(r, index);
-        set_rule_due(r, index, least(r->rules.due[index], t + 1));
-    } else {
-        set_rule_due(r, index, least(r->rules.due[index], next_cut(g.a, &k, t, NULL)));
+        due = t + 1;
     }
+    set_rule_due(r, index, least(r->rules.due[index], due));
     return true;
 }
 

@@ -38,6 +38,7 @@ static size_t cut_block(cutter *c, run *r)
     size_t copied;
     r->captured = piece(c, p->captured, sizeof *r->captured);
     r->value = piece(c, signals, sizeof *r->value);
+    r->spans = piece(c, signals, sizeof *r->spans);
     r->history = piece(c, signals, sizeof *r->history);
     r->edges = piece(c, 2 * (int64_t)p->edges, sizeof *r->edges);
     cut_timers(c, &r->wake, p->timers + p->perishable);
@@ -190,6 +191,7 @@ void clear_run(run *r)
     }
     for (i = 0; i < p->signals.count; i++) {
         (void)memset(&r->value[i], 0, sizeof r->value[i]);
+        r->spans[i] = NO_SPAN;
         (void)memset(&r->history[i], 0, sizeof r->history[i]);
         r->births[i] = 0;
         r->changed[i] = 0;
@@ -243,7 +245,6 @@ void clear_judges(run *r)
             net->begun = false;
             net->parted = false;
             net->visits = 0;
-            net->calls = 0;
             net->turn = NEVER;
         }
         r->judges[i].position = -LIMIT;

@@ -118,6 +118,12 @@ typedef struct {
     int32_t count;
 } timers;
 
+/* What lies between two numbers, neither of them among it. */
+typedef struct {
+    double low;
+    double high;
+} span;
+
 typedef struct {
     rv_number last;
     rv_number before;
@@ -237,6 +243,7 @@ struct run {
     char *block;
     rv_number *captured;
     rv_number *value;
+    span *spans;               /* of each signal, where no comparison of it comes out otherwise */
     history *history;
     occurrences *payloads;
     int32_t *chosen;           /* by event, the occurrence that a comparison looks at */

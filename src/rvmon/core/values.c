@@ -1,8 +1,11 @@
 /* What a sample says: held values, births, updates, occurrences. */
 #include "calls.h"
 
+#include <math.h>
 #include <string.h>
 
+/* Whole numbers up to there are exact as doubles, and their neighbours are others. */
+#define EXACT (INT64_C(1) << 52)
 
 /* Remember to forget what is said of a name once its position is over. Signals come first. */
 static void mark(run *r, int32_t name)
@@ -51,13 +54,63 @@ static uint8_t remember(history *h, int64_t t, const rv_number *value)
     return truth_if(!same_number(value, &h->before));
 }
 
+/* Whether a signal can take a value and nothing else is to be done. */
+static bool means_the_same(const run *r, int32_t local, const rv_number *value)
+{
+    const span *s = &r->spans[local];
+    const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
+    return (s->low < x) && (x < s->high) && (value->kind == r->value[local].kind);
+}
+
+/* Learn between which numbers a signal can move and change nothing: those next to its value that it is
+ * compared with. There are none if more hangs on it than comparisons with constants. */
+static void learn_span(run *r, int32_t local)
+{
+    const signal_plan *s = &r->part->signals[local];
+    const list atoms = s->on_change[r->at.phase];
+    const int32_t *place = LIST(PLAN(r), atoms);
+    const rv_number *value = &r->value[local];
+    span *found = &r->spans[local];
+    int32_t i;
+    *found = NO_SPAN;
+    if ((s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
+        return;
+    }
+    if (value->kind == RV_WHOLE) {
+        if ((value->as.whole > -EXACT) && (value->as.whole < EXACT)) {
+            found->low = (double)(value->as.whole - 1);
+            found->high = (double)(value->as.whole + 1);
+        }
+    } else if (value->kind == RV_REAL) {
+        found->low = -HUGE_VAL;
+        found->high = HUGE_VAL;
+        for (i = 0; i < atoms.count; i++) {
+            const atom_plan *a = &r->part->atoms[place[i]];
+            if ((a->op == ATOM_REAL) && (value->as.real < a->constant)) {
+                found->high = (a->constant < found->high) ? a->constant : found->high;
+            } else if ((a->op == ATOM_REAL) && (value->as.real > a->constant)) {
+                found->low = (a->constant > found->low) ? a->constant : found->low;
+            } else {
+                *found = NO_SPAN;
+                return;
+            }
+        }
+    } else {
+        /* What is unknown is seldom told twice. */
+    }
+}
+
 /* Hold a value; what reads it is looked at again if it is another one. */
 static void hold(run *r, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
         r->value[local] = *value;
-        recheck_list(r, r->part->signals[local].on_change[r->at.phase]);
+        if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
+            r->spans[local] = NO_SPAN; /* mostly the next value means something else again */
+            return;
+        }
     }
+    learn_span(r, local);
 }
 
 static void come_to_birth(run *r, int32_t local, bool known)
@@ -80,6 +133,10 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
 {
     const signal_plan *s = &r->part->signals[local];
     const bool known = value->kind != RV_UNKNOWN;
+    if (means_the_same(r, local, value)) {
+        r->value[local] = *value;
+        return;
+    }
     if (!known && ((s->flags & SIGNAL_IGNORES_NAN) != 0)) {
         return;
     }
@@ -104,7 +161,7 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
         }
         r->at.dirty = true;
         hold(r, local, value);
-        recheck_list(r, s->on_update[r->at.phase]);
+        (void)recheck_list(r, s->on_update[r->at.phase]);
     } else {
         hold(r, local, value);
     }
@@ -162,7 +219,7 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
         }
         r->at.dirty = true;
     }
-    recheck_list(r, e->on_occurrence[r->at.phase]);
+    (void)recheck_list(r, e->on_occurrence[r->at.phase]);
 }
 
 void take_update(run *r, int64_t t, const incoming *in)
