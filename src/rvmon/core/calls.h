@@ -244,6 +244,9 @@ void copy_network(const form *f, network *made, const network *w);
 bool networks_agree(const form *f, const network *one, const network *other);
 void tidy(const form *f, network *w, int64_t position);
 
+/* ---- network_ahead.c: the first instant at which something new of a formula can be known, or before */
+int64_t soonest_news(const form *f, networks *net, int32_t reading);
+
 /* ---- network_judge.c: attempts that a network judges */
 bool is_networked(const run *r, int32_t index);
 void network_pass(run *r, int32_t index, int64_t now, bool is_position);

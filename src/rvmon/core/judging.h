@@ -55,6 +55,7 @@ typedef struct {
     int64_t base;              /* the first position that was wanted and not known */
     int64_t swept;             /* up to which its operands only lead on */
     int64_t wanted;
+    int64_t soonest[2];        /* by value, before when nothing new of it can be known */
 } operator_state;
 
 typedef struct {

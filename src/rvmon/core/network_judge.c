@@ -209,6 +209,17 @@ static int64_t go(judging *g, int64_t now, int64_t last)
     return is_spoilt(g) ? NEVER : high;
 }
 
+/* The instant from `now` on before which nothing is decided if the letter stays. */
+static int64_t soonest(const judging *g, int64_t now)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; i < readings(g); i++) {
+        found = least(found, soonest_news(&g->f, g->net, i));
+    }
+    return (found > now) ? found : now;
+}
+
 /* How far a letter is looked ahead for. */
 static int64_t ahead_of(const judging *g, int64_t now)
 {
@@ -243,6 +254,10 @@ void network_foresee(run *r, int32_t index, int64_t now)
 static void pass(judging *g, int64_t now, int64_t last, int64_t until)
 {
     const bool complete = last == last_at(g, now); /* else the position there is still to come */
+    if ((g->f.gap > 0) && complete && (soonest(g, now) > now)) {
+        set_due(g, soonest(g, now));
+        return;
+    }
     while (g->j->first >= 0) {
         const int64_t decided = go(g, until, complete ? last_at(g, until) : last);
         if (decided > now) {
@@ -354,7 +369,7 @@ static void come_to(judging *g, int64_t t)
     }
     turn_to_next(g);
     hear_news(g, t);
-    set_due(g, (g->j->first < 0) ? NEVER : t + 1);
+    set_due(g, (g->j->first < 0) ? NEVER : soonest(g, t + 1));
 }
 
 void network_come_to(run *r, int32_t index, int64_t t)
@@ -380,7 +395,7 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
         learn_all(&g, t, last_at(&g, t));
         hear_news(&g, t);
     }
-    attempt_of(&g, at)->due = t + 1;
+    attempt_of(&g, at)->due = soonest(&g, t + 1);
     attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
     return weigh(&g, at, t);
 }
