@@ -2,22 +2,25 @@
  * shown by the leaves that speak of it. */
 #include "calls.h"
 
+/* How a value stands to a constant: less, equal, greater, as bits; which of them a comparison is true
+ * for. */
+enum { LESS = 1, EQUAL = 2, GREATER = 4 };
+
+static const uint8_t HOLDS_FOR[CMPS] = {
+    [CMP_LT] = LESS, [CMP_LE] = LESS | EQUAL, [CMP_EQ] = EQUAL, [CMP_NE] = LESS | GREATER,
+    [CMP_GE] = GREATER | EQUAL, [CMP_GT] = GREATER,
+};
+
+/* Without a branch for what nobody can foretell. */
 static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
 {
     const double x = value->as.real;
-    bool holds;
+    const int32_t stands = LESS * (int32_t)(x < constant) + EQUAL * (int32_t)(x == constant)
+                           + GREATER * (int32_t)(x > constant);
     if (value->kind != RV_REAL) {
         return IS_UNKNOWN;
     }
-    switch (how) {
-    case CMP_LT: holds = x < constant; break;
-    case CMP_LE: holds = x <= constant; break;
-    case CMP_EQ: holds = x == constant; break;
-    case CMP_NE: holds = x != constant; break;
-    case CMP_GE: holds = x >= constant; break;
-    default: holds = x > constant; break;
-    }
-    return holds ? IS_TRUE : IS_FALSE;
+    return ((HOLDS_FOR[how] & stands) != 0) ? IS_TRUE : IS_FALSE;
 }
 
 static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)

@@ -87,7 +87,7 @@ void timers_set(timers *h, int32_t id, int64_t due);
 void timers_clear(timers *h, int32_t ids);
 static inline int64_t timers_next(const timers *h)
 {
-    return (h->count > 0) ? h->due[h->ids[0]] : NEVER;
+    return h->next;
 }
 /* The ids that are due by `t`, into `found`; returns how many. */
 int32_t timers_due(const timers *h, int64_t t, int32_t *found);

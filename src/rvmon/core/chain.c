@@ -16,6 +16,9 @@
 
 #include <string.h>
 
+/* Letters after which what is known is dropped. */
+#define FORGETS_EVERY 8
+
 /* The stamp of time `over` ticks behind a position, or of the letter there. */
 static int64_t stamp_of(const chaining *g, int64_t position, int64_t over, bool letter)
 {
@@ -108,12 +111,17 @@ static int64_t reach_of(const chaining *g)
     return reach;
 }
 
-/* Drop what lies before all that is not known at a position. */
+/* Drop now and then what lies before all that is not known at a position. */
 void forget_before(const chaining *g, int64_t position)
 {
     int64_t start = moved(moved(position, -floored(reach_of(g), g->f.step)), -2);
     int32_t i;
     int32_t level;
+    g->c->kept++;
+    if ((g->c->kept < FORGETS_EVERY) && !g->c->parted) { /* readings that agree have dropped as much */
+        return;
+    }
+    g->c->kept = 0;
     if (g->sparse) {
         changes *stamps = &g->c->stamps;
         while ((stamps->count > 1) && (change_at(stamps, 0) < start)) {

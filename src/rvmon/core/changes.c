@@ -72,12 +72,15 @@ int32_t changes_until(const changes *c, int64_t position)
 {
     int32_t low = 0;
     int32_t left = c->count;
+    if (left == 0) {
+        return 0;
+    }
     while (left > 1) {
         const int32_t half = left / 2;
         low += (change_at(c, low + half - 1) <= position) ? half : 0;
         left -= half;
     }
-    return low + (((left == 1) && (change_at(c, low) <= position)) ? 1 : 0);
+    return low + ((change_at(c, low) <= position) ? 1 : 0);
 }
 
 bool value_behind(const changes *c, int32_t count)

@@ -62,6 +62,7 @@ static bool prepare(rv_monitor *m)
         one->forms = &p->forms[one->plan->forms.first];
         m->homes[i].monitor = m;
         m->homes[i].part = one;
+        m->homes[i].alarms.next = NEVER;
         if (!prepare_part(m, one)) {
             return false;
         }

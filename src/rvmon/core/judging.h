@@ -106,6 +106,7 @@ typedef struct {
     uint8_t *values;           /* by operator up to the base, room for what it is */
     uint8_t letter[3];         /* the base, and the two leaves: 1 if it is true for the worse, and 2
                                 * for the better */
+    int32_t kept;              /* letters since what is known was dropped */
     bool begun;
     bool parted;
 } chain;

@@ -74,16 +74,16 @@ static queued *item(const queue *q, int32_t i)
 static int32_t first_after(const queue *q, int32_t from, int32_t end, int64_t t)
 {
     int32_t low = from;
-    int32_t high = end;
-    while (low < high) {
-        const int32_t middle = low + (high - low) / 2;
-        if (item(q, middle)->triggered <= t) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
+    int32_t left = end - from;
+    if (left == 0) {
+        return low;
     }
-    return low;
+    while (left > 1) { /* which half is next nobody can foretell: no branch */
+        const int32_t half = left / 2;
+        low += (item(q, low + half - 1)->triggered <= t) ? half : 0;
+        left -= half;
+    }
+    return low + ((item(q, low)->triggered <= t) ? 1 : 0);
 }
 
 static const int64_t *cuts_of(const machine *a, int32_t location, int32_t *count)

@@ -7,23 +7,20 @@
 int32_t range_from(const ranges *r, int64_t position)
 {
     int32_t low = r->first;
-    int32_t high = r->end;
-    if ((low == high) || (r->at[high - 1].last < position)) {
-        return high;
+    int32_t left = r->end - low;
+    if (left == 0) {
+        return low;
     }
-    high--; /* ends behind it, as that at `high` does from now on; mostly the last one */
-    if ((low < high) && (r->at[high - 1].last < position)) {
-        low = high;
+    if ((left > 1) && (r->at[r->end - 2].last < position)) { /* as mostly */
+        low = r->end - 1;
+        left = 1;
     }
-    while (low < high) {
-        const int32_t middle = low + (high - low) / 2;
-        if (r->at[middle].last < position) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
+    while (left > 1) { /* which half is next nobody can foretell: no branch */
+        const int32_t half = left / 2;
+        low += (r->at[low + half - 1].last < position) ? half : 0;
+        left -= half;
     }
-    return low;
+    return low + ((r->at[low].last < position) ? 1 : 0);
 }
 
 /* The range that holds a position; -1: none does. */

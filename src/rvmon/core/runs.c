@@ -281,6 +281,7 @@ run *forked(const run *r)
     }
     (void)memcpy(made->block, r->block, r->copied);
     made->wake.count = r->wake.count;
+    made->wake.next = r->wake.next;
     made->at = r->at;
     if (!copy_grown(made, r)) {
         set_aside(h, made);

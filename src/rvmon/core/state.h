@@ -115,6 +115,7 @@ typedef struct {
     int64_t *due;              /* by id */
     int32_t *ids;              /* the heap */
     int32_t *place;            /* by id, within the heap */
+    int64_t next;              /* when the first of them is due */
     int32_t count;
 } timers;
 

@@ -44,12 +44,9 @@ static void sink(timers *h, int32_t from)
     put(h, place, id);
 }
 
-void timers_set(timers *h, int32_t id, int64_t due)
+static void move(timers *h, int32_t id, int64_t due)
 {
     const int64_t was = h->due[id];
-    if (was == due) {
-        return;
-    }
     h->due[id] = due;
     if (was == NEVER) {
         put(h, h->count, id);
@@ -71,9 +68,18 @@ void timers_set(timers *h, int32_t id, int64_t due)
     }
 }
 
+void timers_set(timers *h, int32_t id, int64_t due)
+{
+    if (h->due[id] != due) {
+        move(h, id, due);
+        h->next = (h->count > 0) ? h->due[h->ids[0]] : NEVER;
+    }
+}
+
 void timers_clear(timers *h, int32_t ids)
 {
     int32_t i;
+    h->next = NEVER;
     h->count = 0;
     for (i = 0; i < ids; i++) {
         h->due[i] = NEVER;

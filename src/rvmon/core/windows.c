@@ -83,7 +83,7 @@ static int64_t position_of_attempt(const attempt *x)
 /* The instant of a stamp, before 0 too. */
 static int64_t instant_of_stamp(int64_t stamp)
 {
-    return stamp / 2 - (((stamp < 0) && (stamp % 2 != 0)) ? 1 : 0);
+    return (stamp - (stamp & 1)) / 2;
 }
 
 /* Judge one attempt by a stamp; false if it was decided. `due` is the stamp at which it will be if the
