@@ -204,8 +204,9 @@ static PyObject *flush_of(monitor *c, PyObject *unused)
 /* The attempts that are undecided now, and those that will stay so. */
 static PyObject *open_of(monitor *c, PyObject *unused)
 {
-    gathering g = {c, NULL, NULL, 0, 0, false};
+    gathering g;
     (void)unused;
+    begin_gathering(&g, c);
     gather_records(c, 0, true, &g);
     if (!g.failed) {
         rv_each_open(c->m, gather, &g);

@@ -50,12 +50,46 @@ static bool is_done(int code)
  * them may set off the collector, and that anything, such as steps of this very monitor. */
 typedef struct {
     const monitor *c;
-    rv_record *records;
+    rv_record *records;        /* `few` as long as they fit in there */
     rv_number *captured;
     int64_t count;
     int64_t room;
     bool failed;
+    rv_record few[8];
 } gathering;
+
+static void begin_gathering(gathering *g, const monitor *c)
+{
+    g->c = c;
+    g->records = g->few;
+    g->captured = NULL;
+    g->count = 0;
+    g->room = (c->sizes.captured > 0) ? 0 : (int64_t)(sizeof g->few / sizeof *g->few);
+    g->failed = false;
+}
+
+static bool widen_gathering(gathering *g)
+{
+    const size_t most = (size_t)g->c->sizes.captured;
+    const bool few = g->records == g->few;
+    const size_t room = (g->room > 0) ? 2 * (size_t)g->room : 8;
+    rv_record *records = PyMem_Realloc(few ? NULL : g->records, room * sizeof *records);
+    rv_number *numbers = NULL;
+    if (records != NULL) {
+        if (few) {
+            (void)memcpy(records, g->few, (size_t)g->count * sizeof *records);
+        }
+        g->records = records;
+        numbers = PyMem_Realloc(g->captured, (room * most + 1U) * sizeof *numbers);
+    }
+    if (numbers == NULL) {
+        g->failed = true;
+        return false;
+    }
+    g->captured = numbers;
+    g->room = (int64_t)room;
+    return true;
+}
 
 /* Write down what an attempt captured, if anything; further places are left as they are. */
 static void copy_captured(const monitor *c, const rv_record *record, const rv_number *captured,
@@ -69,25 +103,15 @@ static void copy_captured(const monitor *c, const rv_record *record, const rv_nu
 static bool gather(void *user, const rv_record *record, const rv_number *captured)
 {
     gathering *g = (gathering *)user;
-    const size_t most = (size_t)g->c->sizes.captured;
-    if (g->count == g->room) {
-        const int64_t room = (g->room > 0) ? 2 * g->room : 16;
-        rv_record *records = PyMem_Realloc(g->records, (size_t)room * sizeof *records);
-        rv_number *numbers = NULL;
-        if (records != NULL) {
-            g->records = records;
-            numbers = PyMem_Realloc(g->captured, ((size_t)room * most + 1U) * sizeof *numbers);
-        }
-        if (numbers == NULL) {
-            g->failed = true;
-            return false;
-        }
-        g->captured = numbers;
-        g->room = room;
+    if ((g->count == g->room) && !widen_gathering(g)) {
+        return false;
     }
     g->records[g->count] = *record;
     g->records[g->count].captured = (captured != NULL) ? 0 : -1;
-    copy_captured(g->c, record, captured, &g->captured[(size_t)g->count * most]);
+    if (captured != NULL) {
+        copy_captured(g->c, record, captured,
+                      &g->captured[g->count * (int64_t)g->c->sizes.captured]);
+    }
     g->count++;
     return true;
 }
@@ -159,16 +183,20 @@ static PyObject *attempt_of(const monitor *c, const rv_record *record, const rv_
 /* The attempts that were gathered, as a list; what holds them is given back. */
 static PyObject *listed(gathering *g)
 {
-    PyObject *made = g->failed ? PyErr_NoMemory() : PyList_New(0);
+    PyObject *made = g->failed ? PyErr_NoMemory() : PyList_New((Py_ssize_t)g->count);
     int64_t i;
     for (i = 0; (made != NULL) && (i < g->count); i++) {
-        PyObject *one = attempt_of(g->c, &g->records[i], &g->captured[i * g->c->sizes.captured]);
-        if ((one == NULL) || (PyList_Append(made, one) < 0)) {
+        const rv_record *record = &g->records[i];
+        const rv_number *captured =
+            (record->captured < 0) ? NULL : &g->captured[i * g->c->sizes.captured];
+        PyObject *one = attempt_of(g->c, record, captured);
+        if ((one == NULL) || (PyList_SetItem(made, (Py_ssize_t)i, one) < 0)) {
             Py_CLEAR(made);
         }
-        Py_XDECREF(one);
     }
-    PyMem_Free(g->records);
+    if (g->records != g->few) {
+        PyMem_Free(g->records);
+    }
     PyMem_Free(g->captured);
     return made;
 }
@@ -192,11 +220,12 @@ static PyObject *decided_since(monitor *c)
     const rv_record *records;
     const int64_t count = rv_records(c->m, &records);
     const int64_t first = c->given;
-    gathering g = {c, NULL, NULL, 0, 0, false};
+    gathering g;
     if (count == first) {
         return PyTuple_New(0); /* always the same one */
     }
     c->given = count;
+    begin_gathering(&g, c);
     gather_records(c, first, false, &g);
     return listed(&g);
 }

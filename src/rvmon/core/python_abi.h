@@ -200,6 +200,7 @@ double PyFloat_AsDouble(PyObject *);
 PyObject *PyFloat_FromDouble(double);
 
 int PyList_Append(PyObject *, PyObject *);
+int PyList_SetItem(PyObject *, Py_ssize_t, PyObject *);
 PyObject *PyList_New(Py_ssize_t);
 
 long PyLong_AsLong(PyObject *);
