@@ -99,7 +99,26 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at);
 rv_number number_of_double(double x);
 
 /* ---- values.c: samples, held values, what occurred */
-void take_update(run *r, int64_t t, const incoming *in);
+void take_news(run *r, int64_t t, const incoming *in);
+
+/* Whether a signal can take a value and nothing else is to be done. */
+static inline bool means_the_same(const run *r, int32_t local, const rv_number *value)
+{
+    const span *s = &r->spans[local];
+    const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
+    return (value->kind == r->value[local].kind) && (s->low < x) && (x < s->high);
+}
+
+static inline void take_update(run *r, int64_t t, const incoming *in)
+{
+    const rv_update *u = in->update;
+    if (!in->event && (u->says == RV_SAYS_YES) && means_the_same(r, in->local, &u->value)) {
+        r->value[in->local] = u->value;
+    } else {
+        take_news(r, t, in);
+    }
+}
+
 void forget(run *r);
 void go_stale(run *r, int32_t perishable);
 void lack(run *r, bool event, int32_t local);

@@ -21,39 +21,48 @@ void set_restless(run *r, int32_t index)
     }
 }
 
-static int64_t drive_token(run *r, const machine *a, int32_t index, token *k, int32_t letter,
-                           int32_t how, int64_t from, int64_t t)
+/* Where attempts of a judge are taken. */
+typedef struct {
+    run *r;
+    judge *j;
+    const machine *a;
+    int32_t index;
+    int32_t how;
+    int64_t from;
+    int64_t t;
+} journey;
+
+static int64_t drive_token(const journey *g, token *k, int32_t letter)
 {
+    const machine *a = g->a;
     int64_t due;
-    if (how == BY_STEP) {
-        const bool moved = step_token(a, k, t, letter);
+    if (g->how == BY_STEP) {
+        const bool moved = step_token(a, k, g->t, letter);
         if (k->location <= PASSED) {
-            due = t;
-        } else if (!rests(a, k, t, letter, &due) && moved) {
-            set_restless(r, index);
-            due = t + 1;
+            due = g->t;
+        } else if (!rests(a, k, g->t, letter, &due) && moved) {
+            set_restless(g->r, g->index);
+            due = g->t + 1;
         } else {
             /* It waits for another letter, or for time. */
         }
-    } else if (how == BY_RUN) {
-        due = run_token(a, k, letter, from, t, &r->judges[index].slides);
+    } else if (g->how == BY_RUN) {
+        due = run_token(a, k, letter, g->from, g->t, &g->j->slides);
     } else {
-        due = settle_token(a, k, from, t);
+        due = settle_token(a, k, g->from, g->t);
         if ((a->gap > 0) && (k->location > PASSED)) {
-            due = least(due, t); /* the position there is still to come */
+            due = least(due, g->t); /* the position there is still to come */
         }
     }
     return due;
 }
 
 /* Drive one attempt of which some reading of the unknown may differ; false if it was decided. */
-static bool drive_readings(run *r, const machine *a, int32_t index, int32_t at, int32_t how,
-                           int64_t from, int64_t t, int64_t *due)
+static bool drive_readings(const journey *g, int32_t at, attempt *x)
 {
-    judge *j = &r->judges[index];
-    attempt *x = attempt_at(r->home, at);
+    const machine *a = g->a;
     const int32_t clocks = a->clocks;
-    const int32_t width = r->part->plan->clocks;
+    const int32_t width = g->r->part->plan->clocks;
     token worse;
     token better;
     int64_t own = NEVER;
@@ -65,18 +74,18 @@ static bool drive_readings(run *r, const machine *a, int32_t index, int32_t at, 
         (void)memcpy(better.clocks, worse.clocks, (size_t)clocks * sizeof *worse.clocks);
     }
     if (worse.location != FAILED) {
-        own = drive_token(r, a, index, &worse, j->letter, how, from, t);
+        own = drive_token(g, &worse, g->j->letter);
         if (worse.location == PASSED) {
             x->location = PASSED;
-            decide(r, index, at, true, own);
+            decide(g->r, g->index, at, true, own);
             return false;
         }
         own = (worse.location == FAILED) ? NEVER : own;
     }
     if (better.location != PASSED) {
-        const int64_t other = drive_token(r, a, index, &better, j->other, how, from, t);
+        const int64_t other = drive_token(g, &better, g->j->other);
         if (better.location == FAILED) {
-            decide(r, index, at, false, other);
+            decide(g->r, g->index, at, false, other);
             return false;
         }
         own = (better.location == PASSED) ? own : least(own, other);
@@ -88,38 +97,50 @@ static bool drive_readings(run *r, const machine *a, int32_t index, int32_t at, 
         const int32_t used = a->widths[worse.location];
         x->parted = memcmp(better.clocks, worse.clocks, (size_t)used * sizeof *worse.clocks) != 0;
     }
-    *due = own;
+    x->due = own;
     return true;
 }
 
-/* Drive one attempt; false if it was decided, else `due` says when it is due. */
-static bool drive(run *r, const machine *a, int32_t index, int32_t at, int32_t how, int64_t from,
-                  int64_t t, int64_t *due)
+/* Drive one attempt, up to when it is due; false if it was decided. */
+static bool drive(const journey *g, int32_t at, attempt *x)
 {
-    judge *j = &r->judges[index];
-    attempt *x = attempt_at(r->home, at);
+    int64_t due;
     token k;
-    if (x->parted || (j->letter != j->other)) {
-        return drive_readings(r, a, index, at, how, from, t, due);
+    if (x->parted || (g->j->letter != g->j->other)) {
+        return drive_readings(g, at, x);
     }
     k.location = x->location;
     k.clocks = x->clocks;
-    *due = drive_token(r, a, index, &k, j->letter, how, from, t);
+    due = drive_token(g, &k, g->j->letter);
     x->location = k.location;
     if (k.location <= PASSED) {
-        decide(r, index, at, k.location == PASSED, *due);
+        decide(g->r, g->index, at, k.location == PASSED, due);
         return false;
     }
+    x->due = due;
     return true;
+}
+
+static journey journey_of(run *r, int32_t index, int32_t how, int64_t from, int64_t t)
+{
+    journey g;
+    g.r = r;
+    g.j = &r->judges[index];
+    g.a = &r->part->machines[index];
+    g.index = index;
+    g.how = how;
+    g.from = from;
+    g.t = t;
+    return g;
 }
 
 /* Drive all attempts; if the letter stays as it `was` and none slides, those that are not due by `t`
  * stay as they are, too. */
 static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t t, bool was)
 {
-    judge *j = &r->judges[index];
-    const machine *a = &r->part->machines[index];
-    const bool some = (a->gap > 0) && was && j->sorted;
+    const journey g = journey_of(r, index, how, from, t);
+    judge *j = g.j;
+    const bool some = (g.a->gap > 0) && was && j->sorted;
     int64_t next_due = NEVER;
     int64_t latest = INT64_MIN;
     int32_t before = -1;
@@ -129,7 +150,7 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
         attempt *x = attempt_at(r->home, at);
         const int32_t next = x->next;
         const bool waits = some && (x->due > t); /* and so do all behind it */
-        if (!waits && !drive(r, a, index, at, how, from, t, &x->due)) {
+        if (!waits && !drive(&g, at, x)) {
             leave(r, index, before, at);
         } else if (is_moot(x)) {
             lay_aside(r, index, before, at);
@@ -239,14 +260,15 @@ void visit_judge(run *r, int32_t index, int64_t t)
 /* Judge an attempt at the position at `t`, at which it begins; false if that decides it. */
 static bool remains(run *r, int32_t index, int32_t at, int64_t t)
 {
-    attempt *x = attempt_at(r->home, at);
+    journey g;
     if (is_chained(r, index)) {
         return chain_enter(r, index, at, t);
     }
     if (is_networked(r, index)) {
         return network_enter(r, index, at, t);
     }
-    return drive(r, &r->part->machines[index], index, at, BY_STEP, t, t, &x->due);
+    g = journey_of(r, index, BY_STEP, t, t);
+    return drive(&g, at, attempt_at(r->home, at));
 }
 
 /* Start an attempt that is judged in this run. */

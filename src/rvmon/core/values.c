@@ -54,14 +54,6 @@ static uint8_t remember(history *h, int64_t t, const rv_number *value)
     return truth_if(!same_number(value, &h->before));
 }
 
-/* Whether a signal can take a value and nothing else is to be done. */
-static bool means_the_same(const run *r, int32_t local, const rv_number *value)
-{
-    const span *s = &r->spans[local];
-    const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
-    return (s->low < x) && (x < s->high) && (value->kind == r->value[local].kind);
-}
-
 /* Learn between which numbers a signal can move and change nothing: those next to its value that it is
  * compared with. There are none if more hangs on it than comparisons with constants. */
 static void learn_span(run *r, int32_t local)
@@ -133,10 +125,6 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
 {
     const signal_plan *s = &r->part->signals[local];
     const bool known = value->kind != RV_UNKNOWN;
-    if (means_the_same(r, local, value)) {
-        r->value[local] = *value;
-        return;
-    }
     if (!known && ((s->flags & SIGNAL_IGNORES_NAN) != 0)) {
         return;
     }
@@ -222,7 +210,7 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
     (void)recheck_list(r, e->on_occurrence[r->at.phase]);
 }
 
-void take_update(run *r, int64_t t, const incoming *in)
+void take_news(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
     if (!in->event) {
