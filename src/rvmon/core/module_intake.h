@@ -38,8 +38,8 @@ typedef struct {
     int64_t fields_most;       /* if each occurs once */
 } intake;
 
-/* The number of a value; false if that takes a closer look. */
-static bool number_of(PyObject *value, const reading *as, rv_number *number)
+/* The number of a value that is no real one; false if that takes a closer look. */
+static bool number_of_other(PyObject *value, const reading *as, rv_number *number)
 {
     int beyond = 0;
     if (as->kind == IS_BOOLEAN) {
@@ -56,11 +56,6 @@ static bool number_of(PyObject *value, const reading *as, rv_number *number)
         number->as.whole = (found == NULL) ? 0 : PyLong_AsLongLong(found);
         return found != NULL;
     }
-    if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
-        number->as.real = PyFloat_AsDouble(value);
-        number->kind = (number->as.real == number->as.real) ? RV_REAL : RV_UNKNOWN;
-        return true;
-    }
     if (!PyLong_CheckExact(value)) {
         return false;
     }
@@ -71,6 +66,17 @@ static bool number_of(PyObject *value, const reading *as, rv_number *number)
         number->as.real = (double)number->as.whole;
     }
     return beyond == 0;
+}
+
+/* The number of a value; false if that takes a closer look. */
+static inline bool number_of(PyObject *value, const reading *as, rv_number *number)
+{
+    if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
+        number->as.real = PyFloat_AsDouble(value);
+        number->kind = (number->as.real == number->as.real) ? RV_REAL : RV_UNKNOWN;
+        return true;
+    }
+    return number_of_other(value, as, number);
 }
 
 /* The number of the name that came as so manyth; -1 if none can come that is so called.

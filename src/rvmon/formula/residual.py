@@ -85,7 +85,7 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
 
 def _conjunction(clause: Clause) -> Clause:
     """Without the atoms that others of the clause imply."""
-    implied = [atom for atom in clause if _follows(atom, clause)]
+    implied = [atom for atom in clause.difference(_rigid(clause)) if _follows(atom, clause)]
     return clause.difference(implied) if implied else clause
 
 
@@ -95,13 +95,21 @@ def _reduced(clauses: Iterable[Clause]) -> Residual:
     if ordered and not ordered[0]:
         return HOLDS
     kept: list[Clause] = []
+    rigid: dict[Clause, Clause] = {}
     for clause in ordered:
         if any(map(clause.issuperset, kept)):
             continue
-        if not any(_clause_implies(clause, other) for other in kept):
-            kept = [other for other in kept if not _clause_implies(other, clause)]
+        rigid[clause] = _rigid(clause)
+        if not any(rigid[one] <= clause and _clause_implies(clause, one) for one in kept):
+            own = rigid[clause]
+            kept = [one for one in kept if not (own <= one and _clause_implies(one, clause))]
             kept.append(clause)
     return frozenset(kept)
+
+
+def _rigid(clause: Clause) -> Clause:
+    """The atoms that follow from no other: a clause that implies this one has them, too."""
+    return frozenset([atom for atom in clause if not isinstance(atom[0], (Until, Release))])
 
 
 def _clause_implies(strong: Clause, weak: Clause) -> bool:
