@@ -58,6 +58,17 @@ static inline int64_t due_of(const judging *g)
     return g->r->rules.due[g->index];
 }
 
+/* ---- network_nodes.c, network_sweeps.c */
+void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last);
+void lead(const form *f, const network *w, const operator_plan *n, operator_state *o);
+void follow(const form *f, const network *w, const operator_plan *n, operator_state *o);
+
+/* ---- network_search.c */
+void learn_all(judging *g, int64_t now, int64_t last);
+void unlearn_all(judging *g);
+int64_t last_at(const judging *g, int64_t t);
+int64_t step_to_decision(judging *g, int64_t now, int64_t last);
+
 /* ---- network_attempts.c */
 bool weigh(judging *g, int32_t at, int64_t t);
 int64_t decided_one(const judging *g);

@@ -1,15 +1,10 @@
 /* Attempts that a delay network judges: each is a position of it, and the network is shared by all
  * attempts of a judge. From the first unknown letter on there are two, the unknown taken for the worse
- * and for the better.
- *
- * Letting time come to them: what is known depends on time and letters alone, so the instant at which
- * an attempt was decided is found by taking a step back and trying smaller ones. */
+ * and for the better. */
 #include "network.h"
 
 #include <string.h>
 
-/* Instants that are tried at most before a search halves what is left. */
-#define GUESSES 16
 /* A letter is taken to stay so many times as long as it has: what would be decided then is looked up
  * once, and not at each position until it is another one. */
 #define STAYS 16
@@ -99,116 +94,6 @@ static void tidy_up(judging *g, int64_t position)
     }
 }
 
-static void learn_all(judging *g, int64_t now, int64_t last)
-{
-    int32_t i;
-    for (i = 0; i < readings(g); i++) {
-        learn(&g->f, g->net, i, now, last);
-    }
-}
-
-static void unlearn_all(judging *g)
-{
-    int32_t i;
-    for (i = 0; i < readings(g); i++) {
-        unlearn(&g->f, &g->net->readings[i]);
-    }
-}
-
-/* The last position of which the letter is known behind an instant. */
-static int64_t last_at(const judging *g, int64_t t)
-{
-    return (g->f.gap > 0) ? floored(t, g->f.step) : g->net->readings[0].last;
-}
-
-/* Guess when it was that a position of the formula became known, or what made it so, by `high`; what
- * is likely comes last.
- *
- * What is new of a node goes up to a front, which moves with time, or did so till now. */
-static int32_t guess(const judging *g, int64_t position, int64_t high, int64_t *found)
-{
-    const int32_t operators = g->f.form->operators.count;
-    int32_t count = 0;
-    int32_t i;
-    int32_t j;
-    int32_t k;
-    for (i = 0; i < 2 * operators; i++) {
-        const bool itself = i >= operators;
-        const operator_plan *n = &g->f.nodes[i % operators];
-        for (j = 0; j < 2 * readings(g); j++) {
-            const network *w = &g->net->readings[j / 2];
-            const ranges *news = &w->nodes[i % operators].news[j % 2];
-            const int64_t front = (g->f.gap > 0) ? high - (w->now - w->last * g->f.step) : high;
-            for (k = news->first; (k < news->end) && (count + 2 <= GUESSES); k++) {
-                const range *on = &news->at[k];
-                const bool within = (on->first <= position) && (position <= on->last);
-                const int64_t first = itself ? position : on->first;
-                if (!itself || within) {
-                    found[count] = front - (on->last - first) * g->f.step;
-                    count++;
-                }
-                if ((!itself || within) && (n->kind == OP_WINDOW) && (n->over >= 0)) {
-                    found[count] = instant_of(&g->f, w, first) + n->over;
-                    count++;
-                }
-            }
-        }
-    }
-    return count;
-}
-
-/* Let time come to `now`, and the letter to positions up to `last`; but not behind the first instant
- * at which an attempt is decided. Returns that; NEVER: none is. */
-static int64_t go(judging *g, int64_t now, int64_t last)
-{
-    int64_t found[GUESSES];
-    int64_t low = due_of(g) - g->j->lag - 1;
-    int64_t high = now;
-    int64_t at = now;
-    int64_t one;
-    int32_t tries = GUESSES;
-    int32_t count = 0;
-    learn_all(g, now, last);
-    one = decided_one(g);
-    if ((one == NEVER) || is_spoilt(g)) {
-        return NEVER; /* what did not fit is not known: nothing is found by steps */
-    }
-    if (high - low > 1) {
-        count = guess(g, one, high, found);
-    }
-    while (high - low > 1) {
-        int64_t middle = low + (high - low) / 2;
-        if ((count > 0) && (tries > 0)) {
-            count--;
-            middle = found[count];
-            if ((middle <= low) || (middle >= high)) {
-                continue;
-            }
-            tries--;
-        }
-        unlearn_all(g);
-        at = middle;
-        learn_all(g, at, last_at(g, at));
-        one = decided_one(g);
-        if (one == NEVER) {
-            low = middle;
-        } else {
-            high = middle;
-            count = guess(g, one, high, found);
-            if (count == GUESSES) {
-                count--;
-            }
-            found[count] = high - 1; /* it may be exact */
-            count++;
-        }
-    }
-    if (at != high) {
-        unlearn_all(g);
-        learn_all(g, high, (high == now) ? last : last_at(g, high));
-    }
-    return is_spoilt(g) ? NEVER : high;
-}
-
 /* The instant from `now` on before which nothing is decided if the letter stays. */
 static int64_t soonest(const judging *g, int64_t now)
 {
@@ -234,7 +119,7 @@ static int64_t ahead_of(const judging *g, int64_t now)
  * `until`; the networks stay where they are. */
 static void foresee(judging *g, int64_t until)
 {
-    const int64_t decided = go(g, until, last_at(g, until));
+    const int64_t decided = step_to_decision(g, until, last_at(g, until));
     unlearn_all(g);
     set_due(g, (decided < NEVER) ? decided : until + 1);
 }
@@ -259,7 +144,7 @@ static void pass(judging *g, int64_t now, int64_t last, int64_t until)
         return;
     }
     while (g->j->first >= 0) {
-        const int64_t decided = go(g, until, complete ? last_at(g, until) : last);
+        const int64_t decided = step_to_decision(g, until, complete ? last_at(g, until) : last);
         if (decided > now) {
             unlearn_all(g);
             set_due(g, !complete ? now : (decided < NEVER) ? decided : until + 1);
