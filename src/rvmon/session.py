@@ -91,7 +91,7 @@ class Spec:
     def _compiled(self) -> CompiledSpec:
         from rvmon.monitor.compiled.specification import CompiledSpec
 
-        return CompiledSpec(self.checked)
+        return CompiledSpec(self.checked, is_kept=True)
 
     def engines(self, *, only: Iterable[str] | None = None) -> Mapping[str, EngineChoice]:
         r"""Which engine `auto` takes for each requirement, online and for recordings, and why.

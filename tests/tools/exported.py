@@ -114,7 +114,7 @@ class Exported:
 
 
 def _planned(compiled: CompiledSpec) -> PlannedCore:
-    return planned_core(compiled, list(compiled.requirements.values()))
+    return planned_core(compiled)
 
 
 def _plans(names: Sequence[str]) -> str:

@@ -56,7 +56,7 @@ NUMBERS = ("p", "q", "x", "n", "mode", "e", "f")
 def planned_of(text: str = SPEC) -> PlannedCore:
     """A packed specification."""
     compiled = compile_spec(rvmon.loads(text).checked)
-    return planned_core(compiled, compiled.chosen(None))
+    return planned_core(compiled)
 
 
 @pytest.fixture(scope="module")

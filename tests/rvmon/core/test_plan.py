@@ -27,7 +27,8 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.core.atoms import MOST_EVENTS, AtomOp
 from rvmon.core.forms import Operator
 from rvmon.core.nodes import NodeOp
-from rvmon.core.plan import Packed, pack
+from rvmon.core.packed import Packed
+from rvmon.core.plan import pack
 from rvmon.core.programs import DEPTH, Code
 from rvmon.core.sections import RECORDS, Section
 from rvmon.errors import RvmonError

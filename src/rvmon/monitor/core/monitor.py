@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rvmon.errors import SnapshotError
-from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
 from rvmon.monitor.online.evaluators import Evaluators
@@ -28,7 +27,6 @@ class CoreMonitor(Monitor):
     Args:
         planned: the plan of the requirements.
         compiled: the specification.
-        requirements: to be judged.
         settle: see `build_monitor`.
         sources: the names that can arrive; `None`: all.
     """
@@ -37,7 +35,6 @@ class CoreMonitor(Monitor):
         self,
         planned: PlannedCore,
         compiled: CompiledSpec,
-        requirements: Sequence[CompiledRequirement],
         settle: str,
         sources: frozenset[str] | None,
     ) -> None:
@@ -46,7 +43,11 @@ class CoreMonitor(Monitor):
         self._core = planned.monitor(
             names - (names if sources is None else sources), self._take_at, self._look_closer
         )
-        super().__init__(compiled, requirements, "c", settle, sources, None)
+        super().__init__(compiled, (), "c", settle, sources, None)
+
+    @property
+    def _single_payloads(self) -> frozenset[str]:
+        return self._planned.single_payloads
 
     def _attend(self) -> None:
         if self._intake is None and not self._listeners:

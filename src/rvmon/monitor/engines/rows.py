@@ -7,7 +7,8 @@ from dataclasses import replace
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, Engine
 from rvmon.readers.blocks import NotPlainError
-from rvmon.readers.source import Columns, Source
+from rvmon.readers.source import Columns, Fillable, Source
+from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.report import Report
 
 
@@ -17,23 +18,30 @@ def columns_of(compiled: CompiledSpec, source: Source, asked: Asked) -> Columns:
     Raises:
         NotPlainError: there are none, or samples may be put into another order.
     """
-    if compiled.checked.max_delay is not None:
+    return ordered_columns(compiled.checked, source, lambda: fillable(compiled, asked.only))
+
+
+def ordered_columns(spec: CheckedSpec, source: Source, filled: Fillable) -> Columns:
+    """The same.
+
+    Args:
+        spec: the specification.
+        source: the recording.
+        filled: see `Source.columns`.
+    """
+    if spec.max_delay is not None:
         raise NotPlainError("its samples may come late (`max delay`)")
-    return source.columns(lambda: fillable(compiled, asked.only))
+    return source.columns(filled)
 
 
 def fillable(compiled: CompiledSpec, only: tuple[str, ...] | None) -> frozenset[str]:
     """The names of which only the present value matters, not whether there was an update."""
     from rvmon.monitor.compiled.code_plan import plan_requirements
 
-    spec = compiled.checked
     chosen = compiled.chosen(only)
     if not all(one.is_fed for one in chosen):
         return frozenset()
-    uses = plan_requirements(compiled, chosen).uses
-    counted = {name for name, use in uses.items() if use.marked or use.history}
-    stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
-    return frozenset({*spec.signals, *spec.events} - counted - stale)
+    return plan_requirements(compiled, chosen).fillable
 
 
 def judge_rows(engine: Engine, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
