@@ -72,18 +72,6 @@ def test_what_came_since_the_last_tick_belongs_to_the_instance_that_begins_at_th
     ]
 
 
-def test_values_at_the_end_of_a_clock_are_refused():
-    """What came behind its last tick has replaced them; Python judges, and is named."""
-    spec = rvmon.loads(
-        "spec s\ntime sampled every 3 ns\nsignal y : int\n"
-        "requirement R\n  upon end\n  then y == v\n  let v = y\n"
-    )
-    with pytest.raises(rvmon.RvmonError, match="last tick of its clock"):
-        spec.monitor(engine="c")
-    report = spec.evaluate([(0, {"y": 1}), (1e-9, {"y": 2})])
-    assert [one.captured for one in report.attempts] == [{"v": 1}]
-
-
 @pytest.mark.parametrize(
     ("requirement", "samples"),
     [

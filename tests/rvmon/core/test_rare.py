@@ -90,6 +90,38 @@ CASES |= {
 }
 
 
+LAST_TICKS = [
+    case_of(
+        "sampled every 4 ns",
+        f"upon end\n  then {owed}",
+        (-2, {"x": 1.0, "g": {"k": 1}}),
+        (1, {"p": True, "g": {"k": 2}}),
+        *between,
+        (4, {"x": 2.0, "g": {"k": 1}}),
+        (6, {"g": {"k": 3}}),
+        (7, {"x": None, "p": False, "g": {"k": 4}}),
+        end=end,
+    )
+    for owed in (
+        "x > v or p\n  let v = x",
+        "true\n  let v = prev(x)",
+        "true\n  let v = g.k",
+        "x >= v and historically g.k < v\n  let v = x",
+        "x >= v\n  for each key in g.k\n  let v = x",
+        "once (x == v and g.k == key)\n  for each key in g.k\n  let v = x",
+    )
+    for between in ((), (2,), (3,), (4,))
+    for end in (7, 8, 11, 14)
+]
+
+
+@pytest.mark.law
+def test_what_is_captured_at_the_end_is_what_the_last_tick_saw() -> None:
+    """Not what came behind it, be it values, payloads, updates, or instances."""
+    make = Maker("c")
+    assert [text for case in LAST_TICKS for text in disagreements(case, make, online=True)] == []
+
+
 @pytest.mark.law
 @pytest.mark.parametrize("form", ["c", "c rows"])
 @pytest.mark.parametrize("name", CASES)
