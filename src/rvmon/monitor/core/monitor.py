@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rvmon.errors import SnapshotError
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
+from rvmon.monitor.inputs.health import by_name, of_intake
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.online.one_call import overlap
@@ -111,7 +113,9 @@ class CoreMonitor(Monitor):
         end = self._core.finish(t_ns)
         decided = self._core.flush()
         self._note_times()
-        return report_of_run(self._planned, self._core, self._health.began or 0, end), decided
+        report = report_of_run(self._planned, self._core, self._health.began or 0, end)
+        health = [] if self._intake is None else of_intake(self._intake)
+        return replace(report, health=tuple(sorted(health, key=by_name))), decided
 
     def snapshot(self) -> bytes:
         """Refused: what the core holds is not written down.

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rvmon.monitor.engines import rows
 from rvmon.monitor.engines.registry import Asked, engine_named
-from rvmon.monitor.engines.rows import ordered_columns
 from rvmon.readers.blocks import NotPlainError
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled.refusal import Refusal
     from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.monitor.compiled.specification import CompiledSpec
     from rvmon.monitor.online.monitor import Monitor
@@ -23,11 +22,8 @@ class C:
 
     name = "c"
 
-    def refuses(self, requirement: CompiledRequirement) -> Refusal | None:
-        """What needs Python beside it."""
-        from rvmon.monitor.compiled.refusal import of_c
-
-        return of_c(requirement)
+    def refuses(self, requirement: CompiledRequirement) -> None:
+        """Nothing."""
 
     def online(self, compiled: CompiledSpec, asked: Asked) -> Monitor:
         """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
@@ -48,12 +44,14 @@ class C:
         """By columns, else by samples."""
         if _is_nothing(compiled, asked):
             return engine_named("auto").judge(compiled, source, asked)
+        if compiled.checked.max_delay is not None:  # its samples are put in order first
+            return rows.judge_samples(self, compiled, source, asked)
         from rvmon.monitor.core.planned import planned_core
         from rvmon.monitor.core.recording import judge_columns, judge_samples
 
         planned = planned_core(compiled, asked.only)
         try:
-            columns = ordered_columns(compiled.checked, source, lambda: planned.fillable)
+            columns = source.columns(lambda: planned.fillable)
             report = judge_columns(planned, columns, source.end)
         except NotPlainError:
             report = judge_samples(compiled.checked, planned, source)

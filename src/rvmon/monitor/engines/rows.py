@@ -7,8 +7,7 @@ from dataclasses import replace
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, Engine
 from rvmon.readers.blocks import NotPlainError
-from rvmon.readers.source import Columns, Fillable, Source
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.readers.source import Columns, Source
 from rvmon.verdict.report import Report
 
 
@@ -18,20 +17,9 @@ def columns_of(compiled: CompiledSpec, source: Source, asked: Asked) -> Columns:
     Raises:
         NotPlainError: there are none, or samples may be put into another order.
     """
-    return ordered_columns(compiled.checked, source, lambda: fillable(compiled, asked.only))
-
-
-def ordered_columns(spec: CheckedSpec, source: Source, filled: Fillable) -> Columns:
-    """The same.
-
-    Args:
-        spec: the specification.
-        source: the recording.
-        filled: see `Source.columns`.
-    """
-    if spec.max_delay is not None:
+    if compiled.checked.max_delay is not None:
         raise NotPlainError("its samples may come late (`max delay`)")
-    return source.columns(filled)
+    return source.columns(lambda: fillable(compiled, asked.only))
 
 
 def fillable(compiled: CompiledSpec, only: tuple[str, ...] | None) -> frozenset[str]:
