@@ -109,7 +109,7 @@ class Exported:
         monitor.finish(case.end)
         records, numbers = monitor.records()
         rows = np.frombuffer(records, RECORD)
-        values = np.frombuffer(numbers, NUMBER).reshape(len(rows), max(planned.captured.counts))
+        values = np.frombuffer(numbers, NUMBER).reshape(len(rows), -1 if len(rows) else 0)
         return [_record(*one) for one in zip(rows, values, strict=True)]
 
 

@@ -25,15 +25,11 @@ class CapturedValues:
         spec: the specification.
         ids: of the requirements, in the order of their numbers.
         labels: by label, its number.
-
-    Attributes:
-        counts: how many values the attempts of each requirement have.
     """
 
     def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
         self._kinds = [_kinds(spec, spec.requirements[one]) for one in ids]
         self._labels = {number: label for label, number in labels.items()}
-        self.counts = tuple(map(len, self._kinds))
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
         """What an attempt captured, by name.

@@ -86,7 +86,6 @@ class PlannedCore:
             VERDICTS,
             DECISIONS,
             self._details,
-            self.captured.counts,
         )
         return native.Monitor(
             self.packed.data,
