@@ -78,6 +78,20 @@ CASES = {
 }
 
 CASES |= {
+    f"instances made anew in another order, {time}, their trigger: {known}": case_of(
+        time,
+        "upon g and p\n  then F[2 ns, 4 ns] q\n  for each key in g.k",
+        (0, {"p": False, "q": False, "g": {"k": 1}}),
+        (6, {"g": {"k": 2}}),
+        (12, {"g": {"k": 3}}),
+        (24, {"p": known, "g": ({"k": 3}, {"k": 2}, {"k": 1})}),
+        (36, {"p": None, "q": True}),
+        end=40,
+    )
+    for known, time in ((True, "held"), (None, "held"), (None, "sampled every 2 ns"))
+}
+
+CASES |= {
     f"an episode with a value, clouded and undecided, at end: {policy}": case_of(
         "held",
         f"whenever p then F[0 ns, 40 ns] (q and x > v)\n  at end: {policy}\n  let v = x",
