@@ -136,6 +136,57 @@ def test_what_is_captured_at_the_end_is_what_the_last_tick_saw() -> None:
     assert [text for case in LAST_TICKS for text in disagreements(case, make, online=True)] == []
 
 
+RESTARTS = [
+    case_of(
+        time,
+        f"whenever p then {owed} and F[3 ns, {last} ns] q\nrequirement Q\n  upon e then true",
+        (0, {"p": True, "q": True, "x": 0.0}),
+        (2, {"p": False}),
+        (4, {"p": True}),
+        (6, {"q": False}),
+        *told,
+        (32, {}),
+        end=45,
+    )
+    for time in ("held", "sampled every 2 ns")
+    for owed in ("(F[0 ns, 13 ns] x > 1)", "(F[0 ns, 18 ns] G[0 ns, 2 ns] x > 1)")
+    for last in (4, 5)
+    for told in ((), (12,), (20,))
+]
+
+
+@pytest.mark.law
+def test_an_episode_goes_on_at_once_while_an_older_one_is_open() -> None:
+    """It fails while nothing is said, and again behind that, before the older one is decided."""
+    make = Maker("c")
+    assert [text for case in RESTARTS for text in disagreements(case, make, online=True)] == []
+
+
+BASES = [
+    case_of(
+        time,
+        f"{mode} then F[0 ns, 6 ns] G[1 ns, 4 ns] {base}",
+        (0, {"p": True, "q": False, "e": True}),
+        (2, {"q": True, "e": True}),
+        (5, {"p": None}),
+        (8, {"p": True}),
+        (9, {"p": False, "q": None, "e": True}),
+        (20, {"q": True}),
+        end=32,
+    )
+    for time in ("held", "sampled every 2 ns")
+    for mode in ("upon e", "whenever q")
+    for base in ("(p and (false until q))", "(p or (false until q))")
+]
+
+
+@pytest.mark.law
+def test_windows_over_several_propositions_are_judged_as_the_law_has_it() -> None:
+    """As an `until` of nothing leaves them, which is no formula of the present as it is written."""
+    make = Maker("c")
+    assert [text for case in BASES for text in disagreements(case, make, online=True)] == []
+
+
 @pytest.mark.law
 @pytest.mark.parametrize("form", ["c", "c rows"])
 @pytest.mark.parametrize("name", CASES)
