@@ -373,6 +373,21 @@ def test_values_are_captured_by_one_part_for_each_requirement(check):
         assert check(bytes(changed)) == wrong
 
 
+@pytest.mark.compiler
+def test_a_plan_of_too_many_fields_is_refused(check):
+    """Sizes of what is kept of them stay within 32 bits."""
+    data = packed("spec s\nsignal p : bool\nevent e(k: int)\nrequirement R\n  always p\n").data
+    end = Plan(data).places[Section.FIELD_FIRST][1]
+    place = sections.HEADER.size - 4 * 4
+    assert struct.unpack_from("=i", data, end - 4) == struct.unpack_from("=i", data, place) == (1,)
+    for fields, wrong in ((1 << 20, -1), ((1 << 20) + 1, 0), ((1 << 31) - 1, 0)):
+        changed = bytearray(data)
+        for at in (end - 4, place):
+            struct.pack_into("=i", changed, at, fields)
+        struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
+        assert check(bytes(changed)) == wrong
+
+
 def test_whole_numbers_beyond_64_bits_are_refused_unless_they_are_doubles():
     """A power of two is a double; its neighbour is not."""
     text = "spec s\nsignal n : int\nrequirement R\n  always n < {}\n"
