@@ -1,5 +1,7 @@
 """Cases that random ones seldom meet: each needs a line of the core that little else does."""
 
+import random
+
 import pytest
 from tests.tools.differential import disagreements
 from tests.tools.forms import Maker
@@ -160,6 +162,37 @@ def test_an_episode_goes_on_at_once_while_an_older_one_is_open() -> None:
     """It fails while nothing is said, and again behind that, before the older one is decided."""
     make = Maker("c")
     assert [text for case in RESTARTS for text in disagreements(case, make, online=True)] == []
+
+
+def long_case(time: str, owed: str, seed: int, many: int) -> Case:
+    """A case of many samples in which values change often, and now and then stay for long."""
+    rng = random.Random(seed)
+    actions: list[object] = []
+    t = 0
+    for _ in range(many):
+        values = {name: rng.random() < 0.5 for name in "pq" if rng.random() < 0.7}
+        actions.append((t, {**values, "e": True} if rng.random() < 0.4 else values))
+        t += rng.choice((1, 1, 1, 2, 3, 9))
+    return case_of(time, owed, *actions, end=t)
+
+
+CHAINS = [
+    long_case(time, owed, seed, 60)
+    for seed, time in enumerate(("held", "sampled", "sampled every 2 ns"))
+    for owed in (
+        "upon e then F[0 ns, 4 ns] G[0 ns, 3 ns] p",
+        "whenever q then G[0 ns, 5 ns] F[0 ns, 3 ns] p",
+        "whenever q then F[0 ns, 40 ns] G[0 ns, 2 ns] p\n  at end: strict",
+        "always F[0 ns, 6 ns] F[0 ns, 3 ns] (p and q)",
+    )
+]
+
+
+@pytest.mark.law
+def test_windows_within_windows_are_judged_over_many_changes() -> None:
+    """What is over is dropped from the rings in which changes stand, which go round."""
+    make = Maker("c")
+    assert [text for case in CHAINS for text in disagreements(case, make, online=True)] == []
 
 
 BASES = [
