@@ -80,6 +80,42 @@ CASES = {
 }
 
 CASES |= {
+    "windows that are open at the end of what is kept up": case_of(
+        "held",
+        "whenever q then G[0 ns, 5 ns] F[1 ns, 7 ns] p",
+        (0, {"q": False}),
+        (9, {"p": True, "q": None}),
+        (11, {"q": False}),
+        12,
+        (18, {"q": True}),
+    ),
+    "the same by a clock": case_of(
+        "sampled every 2 ns",
+        "whenever q then F[0 ns, 3 ns] F[2 ns, 5 ns] p",
+        (1, {"p": False}),
+        (3, {"q": True}),
+        (6, {"p": True}),
+        end=11,
+    ),
+    "what is kept up to a sample, which says when all of it is known": case_of(
+        "sampled",
+        "whenever q then F[0 ns, 9 ns] G[0 ns, 3 ns] p",
+        (1, {"p": True, "q": True}),
+        (2, {}),
+        (11, {"q": False}),
+        (16, {}),
+        (28, {}),
+    ),
+    "what is always kept up, to an end that is known": case_of(
+        "held",
+        "always G[0 ns, 0 ns] F[0 ns, 3 ns] p",
+        (1, {"p": False}),
+        (5, {"p": True}),
+        end=8,
+    ),
+}
+
+CASES |= {
     f"instances made anew in another order, {time}, their trigger: {known}": case_of(
         time,
         "upon g and p\n  then F[2 ns, 4 ns] q\n  for each key in g.k",
