@@ -58,10 +58,11 @@ claims: $(VENV)/.dev  ## run what docs/claims.md claims, 3 minutes; LONG=1: all 
 release: $(VENV)/.dev  ## build wheel and sdist into dist, check them, install each extra alone; uploads nothing
 	@$(BIN)/python -m benchmarks.release
 
-fuzz: $(VENV)/.dev  ## feed damaged input to all readers for SECONDS=600, and compare engines
+fuzz: $(VENV)/.dev  ## feed damaged input to all readers, and to the native core, for SECONDS=600 each
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3,<4' \
 	  || echo "rvmon: atheris does not install here"
-	@$(BIN)/python -m fuzz --seconds $(or $(SECONDS),600)
+	@code=0; for one in fuzz fuzz.native; do \
+	  $(BIN)/python -m $$one --seconds $(or $(SECONDS),600) || code=1; done; exit $$code
 
 clean:  ## remove the environment and all output
 	rm -rf $(VENV) out dist .mypy_cache .pytest_cache .ruff_cache .hypothesis src/rvmon/core/_core.*so

@@ -52,7 +52,7 @@ def written(cases: Iterable[Case]) -> bytes:
         if make(case) is None or disagreements(case, make):
             continue
         compiled = compiler(case.spec)
-        planned = planned_core(compiled, tuple(compiled.requirements.values()))
+        planned = planned_core(compiled)
         words = [*_case(planned, case)]
         plan = planned.packed.data if compiled is not last else b""
         last = compiled

@@ -150,23 +150,8 @@ static void note_number(told *x, const rv_number *n)
     add(x, bits);
 }
 
-/* How many values the attempts of a requirement have. */
-static int32_t captured_of(const void *bytes, int32_t requirement)
-{
-    const plan_header *h = bytes;
-    const section *parts = (const section *)(const void *)(h + 1) + SEC_PARTS;
-    const part_plan *one = (const part_plan *)(const void *)((const char *)bytes + parts->offset);
-    int64_t i;
-    for (i = 0; i < parts->count; i++) {
-        if ((one[i].captured > 0) && (one[i].requirement == requirement)) {
-            return one[i].captured;
-        }
-    }
-    return 0;
-}
-
 /* Take the records of a call. `due`: before, time alone decides nothing. */
-static void note_records(told *x, rv_monitor *m, const void *bytes, int64_t due, int64_t t)
+static void note_records(told *x, rv_monitor *m, int64_t due, int64_t t)
 {
     const rv_record *records;
     const int64_t count = rv_records(m, &records);
@@ -174,7 +159,7 @@ static void note_records(told *x, rv_monitor *m, const void *bytes, int64_t due,
     for (i = 0; i < count; i++) {
         const rv_record *one = &records[i];
         const rv_number *captured = rv_captured(m, one);
-        const int32_t most = captured_of(bytes, one->requirement);
+        const int32_t most = rv_captured_of(m, one->requirement);
         int32_t k;
         add(x, one->triggered);
         add(x, (one->decision == RV_OPEN) ? 0 : one->decided);
@@ -211,7 +196,7 @@ static void note_end(told *x, rv_monitor *m, const story *s)
     const int32_t requirements = rv_sizes_of(m).requirements;
     int32_t i;
     demand(x, m, rv_finish(m, s->end));
-    note_records(x, m, s->plan, RV_NO_TIME, 0);
+    note_records(x, m, RV_NO_TIME, 0);
     for (i = 0; i < requirements; i++) {
         const rv_counts counts = rv_count(m, i);
         add(x, rv_verdict(m, i));
@@ -242,7 +227,7 @@ static told by_steps(rv_monitor *m, const story *s, bool asks)
         } else {
             demand(&x, m, rv_advance(m, a->s.t));
         }
-        note_records(&x, m, s->plan, due, a->s.t);
+        note_records(&x, m, due, a->s.t);
         due = (asks && (i % 3 != 0)) ? rv_next_due(m) : RV_NO_TIME;
         if (asks && (i % 2 == 0)) {
             int32_t k;

@@ -145,7 +145,7 @@ def live_in_python(seconds: int, first: int, engine: str, only: Sequence[str]) -
 def program(folder: Path, names: Sequence[str]) -> Path:
     """Compile what feeds the core."""
     compiled = rvmon.loads(SPEC)._compiled
-    planned = planned_core(compiled, compiled.chosen(names))
+    planned = planned_core(compiled, names)
     (folder / "pattern.h").write_text("\n".join(_header(planned)))
     core = Path(native.__file__).parent
     sources = [path for path in core.glob("*.c") if path.name != "module.c"]

@@ -96,6 +96,7 @@ static uint64_t noted_records(rv_monitor *m, uint64_t sum, bool finished)
     const rv_record *records;
     const int64_t count = rv_records(m, &records);
     int64_t i;
+    int32_t k;
     for (i = 0; i < count; i++) {
         const rv_record *one = &records[i];
         const rv_number *captured = rv_captured(m, one);
@@ -103,7 +104,9 @@ static uint64_t noted_records(rv_monitor *m, uint64_t sum, bool finished)
             sum = mixed(mixed(mixed(sum, one->triggered), one->decided), one->number);
         }
         sum = mixed(mixed(mixed(sum, one->requirement), one->verdict), one->in_doubt);
-        sum = mixed(sum, (captured != NULL) ? captured->kind : -1);
+        for (k = 0; (captured != NULL) && (k < rv_captured_of(m, one->requirement)); k++) {
+            sum = mixed(sum, captured[k].kind);
+        }
     }
     rv_forget_records(m);
     return sum;

@@ -91,7 +91,7 @@ class Spec:
     def _compiled(self) -> CompiledSpec:
         from rvmon.monitor.compiled.specification import CompiledSpec
 
-        return CompiledSpec(self.checked)
+        return CompiledSpec(self.checked, is_kept=True)
 
     def engines(self, *, only: Iterable[str] | None = None) -> Mapping[str, EngineChoice]:
         r"""Which engine `auto` takes for each requirement, online and for recordings, and why.
@@ -124,7 +124,7 @@ class Spec:
         Args:
             only: ids of the requirements to judge; default all.
             engine: `auto` or the name of one; `c`, the native core, gives records without reasons
-                and a report without input health.
+                and of input health only what concerns the order of samples.
             settle: `now` judges each sample at once; `next` merges samples with equal stamps and
                 judges each when the next stamp settles it.
             sources: the signals and events that can arrive; the others are unknown throughout.

@@ -94,7 +94,7 @@ class ByRows:
     def __init__(self, compiled: CompiledSpec, case: Case) -> None:
         names = (*compiled.checked.signals, *compiled.checked.events)
         absent = frozenset() if case.names is None else frozenset(names) - case.names
-        self._planned = planned_core(compiled, tuple(compiled.requirements.values()))
+        self._planned = planned_core(compiled)
         self._run = self._planned.monitor(absent)
         self._waiting: list[Sample] = []
 

@@ -109,12 +109,12 @@ class Exported:
         monitor.finish(case.end)
         records, numbers = monitor.records()
         rows = np.frombuffer(records, RECORD)
-        values = np.frombuffer(numbers, NUMBER).reshape(len(rows), max(planned.captured.counts))
+        values = np.frombuffer(numbers, NUMBER).reshape(len(rows), -1 if len(rows) else 0)
         return [_record(*one) for one in zip(rows, values, strict=True)]
 
 
 def _planned(compiled: CompiledSpec) -> PlannedCore:
-    return planned_core(compiled, list(compiled.requirements.values()))
+    return planned_core(compiled)
 
 
 def _plans(names: Sequence[str]) -> str:

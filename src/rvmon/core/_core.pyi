@@ -23,7 +23,7 @@ class Monitor:
         absent: of each name whether it has no source.
         look_closer: take the samples that are not plain values in a `dict`, at seconds, at ticks.
         attempts: the type, the descriptors of its fields, ids of requirements, verdicts, decisions,
-            what gives an attempt its other fields, how many values each requirement captures.
+            what gives an attempt its other fields.
 
     Raises:
         ValueError: the plan is damaged, or all this does not fit it.
@@ -42,7 +42,6 @@ class Monitor:
             tuple[Any, ...],
             tuple[Any, ...],
             Callable[[Attempt, Any], Mapping[str, Any]],
-            tuple[int, ...],
         ],
         /,
     ) -> Monitor: ...

@@ -215,6 +215,7 @@ static inline bool has_attempts(const judge *j)
 }
 
 /* ---- clock.c */
+int64_t tick_of(int64_t gap, int64_t t);
 void clear_run(run *r);
 void clear_judges(run *r);
 void visit(run *r, int64_t t);
@@ -291,6 +292,12 @@ void give(run *r, int64_t t, const incoming *in, int32_t count);
 void keep_updates(home *h, int64_t t);
 void replay(run *r);
 
+/* ---- held.c: samples that wait for the tick that sees them */
+bool holds_back(const home *h);
+void hold_back(home *h, int64_t t);
+void give_held(home *h, int64_t limit);
+void forget_given(home *h);
+
 /* ---- captured.c: attempts with captured values */
 bool starts_here(const run *r, int32_t index);
 void note_turn(run *r, int32_t at, int64_t t);
@@ -327,6 +334,7 @@ bool home_begin(home *h);
 bool home_reserve(home *h, int32_t attempts);
 void home_lack(home *h, bool event, int32_t local);
 void home_sample(home *h, int64_t t);
+void take_inbox(home *h, int64_t t);
 void home_wait(home *h, int64_t t);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);

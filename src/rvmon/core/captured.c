@@ -49,27 +49,66 @@ void note_turn(run *r, int32_t at, int64_t t)
     home *h = r->home;
     const bool sure = attempt_at(h, at)->sure;
     int32_t *ends = sure ? h->sure : h->doubtful;
-    int32_t before = ends[1];
     if (sure) {
         h->turns[at].became = t;
     }
-    if ((before >= 0) && is_earlier(h, at, before, sure)) {
-        int32_t next = ends[0];
-        before = -1;
-        while (!is_earlier(h, at, next, sure)) {
-            before = next;
-            next = *link_of(h, next, sure);
-        }
-        *link_of(h, at, sure) = next;
-    } else {
-        *link_of(h, at, sure) = -1;
-        ends[1] = at;
-    }
-    if (before < 0) {
+    *link_of(h, at, sure) = -1;
+    if (ends[1] < 0) {
         ends[0] = at;
     } else {
-        *link_of(h, before, sure) = at;
+        *link_of(h, ends[1], sure) = at;
     }
+    ends[1] = at;
+}
+
+/* Merge two lists in order, of which what stands in the first was noted before; either may be empty. */
+static int32_t merged(home *h, int32_t one, int32_t other, bool sure)
+{
+    int32_t first = -1;
+    int32_t last = -1;
+    while ((one >= 0) || (other >= 0)) {
+        const bool takes_other = (one < 0) || ((other >= 0) && is_earlier(h, other, one, sure));
+        int32_t *from = takes_other ? &other : &one;
+        if (last < 0) {
+            first = *from;
+        } else {
+            *link_of(h, last, sure) = *from;
+        }
+        last = *from;
+        *from = *link_of(h, last, sure);
+    }
+    return first;
+}
+
+/* The first of what was noted, brought into the order in which it is numbered; mostly it is. */
+static int32_t in_order(home *h, int32_t first, bool sure)
+{
+    int32_t lists[32];         /* one of 2^i attempts, or none; the longer ones were noted before */
+    int32_t at = first;
+    int32_t i;
+    while ((at >= 0) && (*link_of(h, at, sure) >= 0) && !is_earlier(h, *link_of(h, at, sure), at, sure)) {
+        at = *link_of(h, at, sure);
+    }
+    if ((at < 0) || (*link_of(h, at, sure) < 0)) {
+        return first;
+    }
+    for (i = 0; i < 32; i++) {
+        lists[i] = -1;
+    }
+    for (at = first; at >= 0;) {
+        int32_t own = at;
+        at = *link_of(h, at, sure);
+        *link_of(h, own, sure) = -1;
+        for (i = 0; lists[i] >= 0; i++) {
+            own = merged(h, lists[i], own, sure);
+            lists[i] = -1;
+        }
+        lists[i] = own;
+    }
+    for (i = 0; i < 32; i++) {
+        at = merged(h, lists[i], at, sure);
+    }
+    return at;
 }
 
 /* Take it that an attempt was decided. */
@@ -89,11 +128,11 @@ void note_done(run *r, int32_t at)
 void flush_turns(home *h)
 {
     int32_t at;
-    for (at = h->sure[0]; at >= 0; at = h->turns[at].next_sure) {
+    for (at = in_order(h, h->sure[0], true); at >= 0; at = h->turns[at].next_sure) {
         h->count++;
         attempt_at(h, at)->number = h->count;
     }
-    for (at = h->doubtful[0]; at >= 0; at = h->turns[at].next_doubt) {
+    for (at = in_order(h, h->doubtful[0], false); at >= 0; at = h->turns[at].next_doubt) {
         h->doubts++;
         h->turns[at].doubt_number = h->doubts;
     }

@@ -10,6 +10,12 @@ static int64_t position_from(int64_t start, int64_t step, int64_t t)
     return start + (ahead + step - 1) / step * step;
 }
 
+/* The tick of a clock that sees what comes at `t`. */
+int64_t tick_of(int64_t gap, int64_t t)
+{
+    return (t >= 0) ? position_from(0, gap, t) : -((-t) / gap) * gap;
+}
+
 /* Whether the attempt of the episode that runs has failed, and what is owed now does not at once. */
 static bool may_go_on(const run *r, int32_t index)
 {
@@ -340,10 +346,7 @@ void arrive(run *r, int64_t t)
     r->at.after = t;
     if (dirty || (t >= r->at.alarm)) {
         if (gap > 1) {
-            r->at.awaited = position_from(0, gap, (t >= 0) ? t : 0);
-            if (t < 0) {
-                r->at.awaited = -((-t) / gap) * gap;
-            }
+            r->at.awaited = tick_of(gap, t);
             if (r->at.awaited == t) {
                 visit(r, t);
             } else {

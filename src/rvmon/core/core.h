@@ -134,9 +134,12 @@ rv_times rv_times_of(const rv_monitor *m);
  * requirement, then number. Valid until the next call. */
 int64_t rv_records(const rv_monitor *m, const rv_record **records);
 const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
+
+/* How many values each attempt of a requirement has: that of `for each`, then those of `let`. */
+int32_t rv_captured_of(const rv_monitor *m, int32_t requirement);
 void rv_forget_records(rv_monitor *m);
 
-/* Attempts that are open; `take` returns false to end. */
+/* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. */
 typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);
 void rv_each_open(const rv_monitor *m, rv_take take, void *user);
 

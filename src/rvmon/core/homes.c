@@ -94,13 +94,8 @@ static void clear_home(home *h)
     h->doubtful[0] = h->doubtful[1] = -1;
     h->done[0] = h->done[1] = -1;
     h->count = h->doubts = h->passed = h->failed = h->inconclusive = 0;
-    for (i = 0; i < h->past_count; i++) {
-        if (h->past[i].fields != NULL) {
-            arena_give(&h->monitor->memory, (void *)(uintptr_t)h->past[i].fields,
-                       (size_t)h->part->events[h->past[i].local].fields * sizeof(rv_number));
-        }
-    }
-    h->past_count = 0;
+    h->given = h->past_count;
+    forget_given(h);
     h->inbox_count = 0;
     h->alarm = NEVER;
     h->previous = 0;
@@ -181,33 +176,46 @@ static void give_inbox(run *r, int64_t t)
     give(r, t, r->home->inbox, r->home->inbox_count);
 }
 
-/* Judge what the inbox has. */
-void home_sample(home *h, int64_t t)
+/* Judge what the inbox has, of which attempts or instances have values of their own. */
+void take_inbox(home *h, int64_t t)
 {
     const part_plan *p = h->part->plan;
     int32_t count;
     run *one;
+    pass_all(h, t - 1);
+    if (p->each != 0) {
+        open_instances(h, t);
+    }
+    if (holds_back(h)) {
+        h->given += (h->inbox_count > 0) ? h->inbox_count : 1; /* it is kept already */
+    } else if ((p->flags & PART_KEEPS_PAST) != 0) {
+        keep_updates(h, t);
+        h->given = h->past_count;
+    } else {
+        /* Nobody looks at it again. */
+    }
+    count = call_concerned(h, t);
+    if (count >= 0) {
+        for_called(h, count, t, give_inbox);
+    } else {
+        for (one = h->root; one != NULL; one = following(h, one)) {
+            touch_run(one);
+            give_inbox(one, t);
+        }
+    }
+    rest_all(h);
+}
+
+/* Judge what the inbox has. */
+void home_sample(home *h, int64_t t)
+{
     if (!is_apart(h)) {
         give(h->root, t, h->inbox, h->inbox_count);
         h->alarm = h->root->at.alarm;
+    } else if (holds_back(h)) {
+        hold_back(h, t);
     } else {
-        pass_all(h, t - 1);
-        if (p->each != 0) {
-            open_instances(h, t);
-        }
-        if ((p->flags & PART_KEEPS_PAST) != 0) {
-            keep_updates(h, t);
-        }
-        count = call_concerned(h, t);
-        if (count >= 0) {
-            for_called(h, count, t, give_inbox);
-        } else {
-            for (one = h->root; one != NULL; one = following(h, one)) {
-                touch_run(one);
-                give_inbox(one, t);
-            }
-        }
-        rest_all(h);
+        take_inbox(h, t);
     }
     h->inbox_count = 0;
 }
@@ -227,6 +235,7 @@ void home_wait(home *h, int64_t t)
         h->alarm = h->root->at.alarm;
         return;
     }
+    give_held(h, t - 1);
     pass_all(h, t - 1);
     for_called(h, call_due(h, t), t, come_to_instant);
     rest_all(h);
@@ -289,6 +298,7 @@ void home_close(home *h, int64_t end, int64_t reached)
     run *one;
     int32_t i;
     if (is_apart(h)) {
+        give_held(h, end);
         pass_all(h, end);
     } else {
         through(h->root, end, false);

@@ -113,7 +113,7 @@ void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each
     }
     more = (more < 4) ? 4 : more;
     more = (more < wanted) ? wanted : more;
-    if (more >= INT32_MAX / 2) {
+    if ((more >= INT32_MAX / 2) || ((size_t)more > SIZE_MAX / 4 / each)) { /* sizes could wrap */
         m->spoilt = true;
         return NULL;
     }

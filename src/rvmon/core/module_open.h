@@ -54,11 +54,10 @@ static bool find_slots(monitor *c, PyObject *descriptors)
 }
 
 /* Learn how many values each requirement captures; false with an error. */
-static bool find_captured(monitor *c, PyObject *counts)
+static bool find_captured(monitor *c)
 {
     int32_t i;
-    if ((PyTuple_Size(counts) != c->sizes.requirements)
-        || (PyTuple_Size(c->ids) != c->sizes.requirements)) {
+    if (PyTuple_Size(c->ids) != c->sizes.requirements) {
         PyErr_SetString(PyExc_ValueError, "not the requirements of the plan");
         return false;
     }
@@ -68,14 +67,7 @@ static bool find_captured(monitor *c, PyObject *counts)
         return false;
     }
     for (i = 0; i < c->sizes.requirements; i++) {
-        const long count = PyLong_AsLong(PyTuple_GetItem(counts, i));
-        if ((count < 0) || (count > c->sizes.captured)) {
-            if (PyErr_Occurred() == NULL) {
-                PyErr_SetString(PyExc_ValueError, "more captured values than in the plan");
-            }
-            return false;
-        }
-        c->captured[i] = (int32_t)count;
+        c->captured[i] = rv_captured_of(c->m, i);
     }
     return true;
 }
@@ -97,7 +89,7 @@ static bool set_absent(const monitor *c, PyObject *absent)
 }
 
 /* Monitor(plan, (numbers, words, kinds, single), absent, (look_closer, look_closer_ns),
- *         (attempt, descriptors, ids, verdicts, decisions, details, captured)) */
+ *         (attempt, descriptors, ids, verdicts, decisions, details)) */
 static PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
 {
     PyObject *data;
@@ -107,21 +99,20 @@ static PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unuse
     PyObject *single;
     PyObject *absent;
     PyObject *descriptors;
-    PyObject *captured;
     monitor *c = (monitor *)PyType_GenericAlloc(type, 0);
     (void)unused;
     if (c == NULL) {
         return NULL;
     }
-    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O!OO!)", &PyBytes_Type, &data,
+    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O!O)", &PyBytes_Type, &data,
                          &PyDict_Type, &numbers, &PyTuple_Type, &words, &PyBytes_Type, &kinds,
                          &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->look_closer,
                          &c->look_closer_ns, &PyType_Type, &c->attempt, &PyTuple_Type, &descriptors,
                          &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
-                         &c->decisions, &c->details, &PyTuple_Type, &captured)) {
+                         &c->decisions, &c->details)) {
         c->owner = Py_NewRef(args);
         if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
-            && find_slots(c, descriptors) && find_captured(c, captured) && set_absent(c, absent)) {
+            && find_slots(c, descriptors) && find_captured(c) && set_absent(c, absent)) {
             return (PyObject *)c;
         }
     }

@@ -8,7 +8,8 @@ from rvmon.core.atoms import Atom, Atoms
 from rvmon.core.automata import Automata
 from rvmon.core.judges import Judges
 from rvmon.core.nodes import Nodes
-from rvmon.core.programs import Names, Numbering, Programs
+from rvmon.core.packed import Numbering
+from rvmon.core.programs import Names, Programs
 from rvmon.core.sections import Listed, Section, Sections
 from rvmon.core.unit import SHARED, Unit
 from rvmon.plan.instances import keys_of

@@ -124,7 +124,8 @@ static bool check_header(const plan *p)
 {
     const plan_header *h = p->header;
     return (h->gap >= 0) && (h->gap < LIMIT) && (h->signals >= 0) && (h->events >= 0)
-           && (h->fields >= 0) && (h->requirements >= 0) && (h->captured >= 0)
+           && is_within(h->fields, 0, FIELDS_MOST + 1) && (h->requirements >= 0)
+           && is_within(h->captured, 0, CAPTURED_MOST + 1)
            && (h->signals < MOST / 4) && (h->events < MOST / 4)
            && (p->counts[SEC_FIELD_FIRST] == h->events + 1)
            && (p->counts[SEC_SUBSCRIPTION_FIRST] == (int64_t)h->signals + h->events + 1)
@@ -178,7 +179,7 @@ static bool check_part(const plan *p, const part_plan *x)
            && is_within(x->perishable, 0, (int64_t)x->signals.count + 1)
            && is_within(x->clocks, 1, CLOCKS_MOST + 1) && (x->undetermined >= 0) && (x->births >= 0)
            && lists(p, x->stateful, 0, nodes) && lists(p, x->networked, 0, judges)
-           && lists(p, x->dead_timers, 0, nodes) && is_within(x->captured, 0, 1024)
+           && lists(p, x->dead_timers, 0, nodes) && is_within(x->captured, 0, (int64_t)p->header->captured + 1)
            && is_within(x->each, 0, 2) && (x->each <= x->captured)
            && is_within(x->requirement, (x->captured > 0) ? 0 : -1, p->header->requirements)
            && lists(p, x->captures, 0, p->counts[SEC_CODE])
@@ -197,6 +198,22 @@ static bool check_numbers(const plan *p)
     for (i = 0; i < p->counts[SEC_NUMBERS]; i++) {
         if (!is_within(p->numbers[i].kind, RV_WHOLE, RV_REAL + 1)) {
             return false;
+        }
+    }
+    return true;
+}
+
+/* Whether each requirement with captured values has one part, in their order. */
+static bool check_parts(const plan *p)
+{
+    int32_t last = -1;
+    int32_t i;
+    for (i = 0; i < p->part_count; i++) {
+        if (p->parts[i].captured > 0) {
+            if (p->parts[i].requirement <= last) {
+                return false;
+            }
+            last = p->parts[i].requirement;
         }
     }
     return true;
@@ -238,6 +255,9 @@ int32_t rv_plan_check(const void *bytes, size_t size)
     }
     if (!check_numbers(&p)) {
         return SEC_NUMBERS;
+    }
+    if (!check_parts(&p)) {
+        return SEC_PARTS;
     }
     for (i = 0; i < (int32_t)p.counts[SEC_AUTOMATA]; i++) {
         if (!check_automaton(&p, &p.automata[i])) {

@@ -2,37 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 from rvmon.core.automata import Automata
+from rvmon.core.packed import Numbering, Packed, packed
 from rvmon.core.part import Part
-from rvmon.core.programs import Numbering
 from rvmon.core.sections import Section, Sections
 from rvmon.errors import RvmonError
 from rvmon.plan.plan import Plan
-from rvmon.trace.schema import Kind
-
-
-@dataclass(frozen=True, slots=True)
-class Packed:
-    """A plan as bytes, and what its numbers stand for.
-
-    Attributes:
-        data: the bytes.
-        signals: by name, what values they take; in the order of their numbers.
-        events: their names; their numbers are those behind the signals.
-        fields: by event and name, what values they take; in the order of their numbers.
-        labels: by label, the number that it is given to the core as.
-        ids: of the requirements, by number.
-    """
-
-    data: bytes
-    signals: Mapping[str, Kind]
-    events: tuple[str, ...]
-    fields: Mapping[tuple[str, str], Kind]
-    labels: Mapping[str, int]
-    ids: tuple[str, ...]
 
 
 def pack(plan: Plan) -> Packed:
@@ -52,31 +27,15 @@ def pack(plan: Plan) -> Packed:
         for one in (plan, *plan.units)
     ]
     _subscribe(sections, plan, parts)
-    fields = _fields(plan)
     sizes = (
         len(plan.signals),
         len(plan.events),
-        len(fields),
+        sum(len(event.fields) for event in plan.spec.events.values()),
         len(plan.asked),
         max(len(rule.captured) for rule in plan.asked),
     )
-    return Packed(
-        sections.data(plan.gap or 0, sizes),
-        {name: signal.type.kind for name, signal in plan.spec.signals.items()},
-        plan.events,
-        fields,
-        numbering.labels,
-        tuple(rule.requirement.id for rule in plan.asked),
-    )
-
-
-def _fields(plan: Plan) -> dict[tuple[str, str], Kind]:
-    """All fields of all events, with what values they take."""
-    return {
-        (name, field): type_.kind
-        for name, event in plan.spec.events.items()
-        for field, type_ in event.fields.items()
-    }
+    ids = tuple(rule.requirement.id for rule in plan.asked)
+    return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes))
 
 
 def _subscribe(sections: Sections, plan: Plan, parts: list[Part]) -> None:

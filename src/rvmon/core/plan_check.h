@@ -5,6 +5,9 @@
 #include "calls.h"
 
 #define MOST INT32_MAX
+/* Fields that all events have, and values that attempts of a requirement capture: so many at most. */
+#define FIELDS_MOST (1 << 20)
+#define CAPTURED_MOST 1023
 
 static inline bool is_within(int64_t x, int64_t low, int64_t behind)
 {

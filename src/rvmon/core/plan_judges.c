@@ -184,6 +184,7 @@ bool check_judge(const plan *p, const part_plan *x, int32_t number)
         || !is_node(x, j->determined) || !is_node(x, j->running) || !is_node(x, j->blurs)
         || !is_within(j->owner, 0, x->requirements)
         || !is_within(j->requirement, 0, p->header->requirements)
+        || ((x->captured > 0) && (j->requirement != x->requirement))
         || (((j->flags & (JUDGE_EPISODIC | JUDGE_HIDDEN)) == JUDGE_EPISODIC) && (j->running < 0))
         || ((x->captures.count > 0) && (x->captured > 0) && (j->blurs >= 0) && (j->trigger < 0))
         || !lists(p, j->propositions, 0, x->nodes.count)) {

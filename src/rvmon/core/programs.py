@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from enum import IntEnum, auto
 from typing import assert_never
 
+from rvmon.core.packed import Numbering, numbered
 from rvmon.core.sections import Section, Sections
 from rvmon.errors import RvmonError
 from rvmon.plan.plan import Plan
@@ -21,7 +22,6 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec
 
 DEPTH = 32
 """So many numbers the stack of a program has room for."""
@@ -60,22 +60,6 @@ _UPDATES = {
 }
 
 
-class Numbering:
-    """The numbers of what a specification declares.
-
-    Attributes:
-        names: of signals, then events.
-        labels: whatever types they belong to.
-    """
-
-    def __init__(self, spec: CheckedSpec) -> None:
-        self.names = _numbered([*spec.signals, *spec.events])
-        types = [signal.type for signal in spec.signals.values()]
-        for event in spec.events.values():
-            types += event.fields.values()
-        self.labels = _numbered(list(dict.fromkeys(one for type_ in types for one in type_.labels)))
-
-
 class Names:
     """The numbers of the names that a part of a plan reads.
 
@@ -94,20 +78,16 @@ class Names:
         each = [rule.requirement.for_each for rule in plan.rules]
         self.key = next((one.value for one in each if one is not None), None)
         read = {*plan.uses, *([] if self.key is None else [self.key.event])}
-        self.signals = _numbered([name for name in plan.signals if name in read])
-        self.events = _numbered([name for name in plan.events if name in read])
+        self.signals = numbered([name for name in plan.signals if name in read])
+        self.events = numbered([name for name in plan.events if name in read])
         captured = [name for rule in plan.rules for name in rule.captured]
-        self.captured = _numbered(captured)
+        self.captured = numbered(captured)
         self.numbering = numbering
         self._spec = plan.spec
 
     def field(self, event: str, field: str) -> int:
         """The number of a field within its event."""
         return list(self._spec.events[event].fields).index(field)
-
-
-def _numbered(names: Sequence[str]) -> dict[str, int]:
-    return {name: number for number, name in enumerate(names)}
 
 
 class Programs:

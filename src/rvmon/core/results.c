@@ -16,6 +16,18 @@ const rv_number *rv_captured(const rv_monitor *m, const rv_record *record)
     return (record->captured < 0) ? NULL : &m->captured[record->captured];
 }
 
+int32_t rv_captured_of(const rv_monitor *m, int32_t requirement)
+{
+    int32_t i;
+    for (i = 0; i < m->plan.part_count; i++) {
+        const part_plan *p = &m->plan.parts[i];
+        if ((p->captured > 0) && (p->requirement == requirement)) {
+            return p->captured;
+        }
+    }
+    return 0;
+}
+
 void rv_forget_records(rv_monitor *m)
 {
     m->record_count = 0;
@@ -72,7 +84,7 @@ void rv_each_open(const rv_monitor *m, rv_take take, void *user)
                 }
                 for (at = next_open(r, k, -1); at >= 0; at = next_open(r, k, at)) {
                     const rv_record one = open_record(r, k, at);
-                    if (!take(user, &one, r->captured)) {
+                    if (!take(user, &one, (r->part->plan->captured > 0) ? r->captured : NULL)) {
                         return;
                     }
                 }

@@ -399,7 +399,7 @@ void replay(run *r)
             lack(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
         }
     }
-    while (first < h->past_count) {
+    while (first < h->given) {
         const int64_t t = h->past[first].t;
         if ((GAP(r) == 0) && r->at.started) {
             r->at.position = h->previous;
@@ -414,7 +414,7 @@ void replay(run *r)
                 take_update(r, t, &in);
             }
             first++;
-        } while ((first < h->past_count) && !h->past[first - 1].last);
+        } while ((first < h->given) && !h->past[first - 1].last);
         arrive(r, t);
         h->previous = t;
     }

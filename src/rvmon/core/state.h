@@ -308,7 +308,7 @@ typedef struct {
     const rv_update *update;
 } incoming;
 
-/* A sample that is kept for those that look at what was before. */
+/* An update that is kept for those that look at what was before, or until its tick comes. */
 typedef struct {
     int64_t t;
     rv_number value;
@@ -360,6 +360,9 @@ struct home {
     past_update *past;
     int32_t past_count;
     int32_t past_room;
+    int32_t given;             /* so many of them were judged; others wait for their tick */
+    rv_update *held;           /* room for one of those samples */
+    int32_t held_room;
     key *keys;
     int32_t *heads;            /* the first key by hash; -1: none */
     int32_t key_room;

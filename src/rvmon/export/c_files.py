@@ -12,7 +12,9 @@ from rvmon import __version__
 from rvmon.codegen.comment import comment
 from rvmon.core import amalgamate
 from rvmon.core._core import memory_of
-from rvmon.core.plan import Packed, pack
+from rvmon.core.packed import Packed
+from rvmon.core.plan import pack
+from rvmon.errors import RvmonError
 from rvmon.export.c_names import identifiers, prefix_of, string
 from rvmon.plan.plan import Plan
 from rvmon.spec.checked.specification import CheckedSpec, Type
@@ -33,8 +35,14 @@ def c_files(plan: Plan) -> dict[str, str]:
         plan: what is to run without rvmon.
 
     Raises:
-        RvmonError: there is no requirement, or an expression is beyond the core.
+        RvmonError: there is no requirement, an expression is beyond the core, or there is a
+            `max delay`.
     """
+    if plan.spec.max_delay is not None:
+        raise RvmonError(
+            "a monitor in C takes samples in order of time, and holds none back: leave out "
+            "`max delay` and give it samples in order, or use `rvmon run` or `rvmon watch`"
+        )
     return {**core_files(), **plan_files(plan)}
 
 

@@ -143,6 +143,16 @@ class Plan:
         """For each of the latter, whose attempts in doubt it judges: the place of that rule."""
         return tuple(owner for owner, _ in self.judges[len(self.rules) :])
 
+    @property
+    def fillable(self) -> frozenset[str]:
+        """The names of which only the present value matters, not whether there was an update."""
+        if self.units:
+            return frozenset()
+        spec = self.spec
+        counted = {name for name, use in self.uses.items() if use.marked or use.history}
+        stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
+        return frozenset({*spec.signals, *spec.events} - counted - stale)
+
     def readers(self, name: str) -> tuple[int, ...]:
         """The leaves that depend on the value of a signal or event."""
         nodes = self.graph.nodes

@@ -16,16 +16,15 @@ _OF_C = "the engine c is taken by name only: it gives no reasons"
 
 
 def engines_text(choices: Mapping[str, EngineChoice]) -> str:
-    """A line per requirement: what `auto` takes, and what faster engines and `c` refuse.
+    """A line per requirement: what `auto` takes, and what faster engines refuse.
 
-    Below them, if `c` refuses not all, why it is not taken all the same.
+    Below them why `c` is not taken, which refuses nothing.
     """
     rows = [
         (shown_line(name), choice.online, choice.recording, _why(choice))
         for name, choice in choices.items()
     ]
-    note = "" if all("c" in choice.refused for choice in choices.values()) else _OF_C
-    return plain_table([_HEAD, *rows]) + note
+    return plain_table([_HEAD, *rows]) + _OF_C
 
 
 def _why(choice: EngineChoice) -> str:

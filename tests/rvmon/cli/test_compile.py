@@ -65,6 +65,16 @@ def test_c_wants_a_folder(spec, tmp_path, capsys):
     assert not (tmp_path / "made").exists()
 
 
+def test_c_takes_samples_in_order(spec, tmp_path, capsys):
+    """What is to hold late samples back is refused, with what to do."""
+    late = tmp_path / "late.rv"
+    late.write_text(SPEC.replace("\nsignal", "\nmax delay 1 s\nsignal", 1))
+    assert "max delay" in late.read_text()
+    assert main(["compile", str(late), "--to", "c", "-o", str(tmp_path / "made")]) == 2
+    assert "leave out `max delay` and give it samples in order" in capsys.readouterr().err
+    assert not (tmp_path / "made").exists()
+
+
 def test_c_is_the_core_and_a_plan(spec, tmp_path, capsys):
     """The files are named; the core's are the same for each plan, whose requirements are chosen."""
     folder = tmp_path / "made"

@@ -4,6 +4,7 @@ import ctypes
 import os
 import random
 import re
+import struct
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -24,12 +25,14 @@ from tests.tools.plan_reader import (
 
 import rvmon
 from rvmon.automaton.automaton import Automaton
+from rvmon.core import sections
 from rvmon.core.atoms import MOST_EVENTS, AtomOp
 from rvmon.core.forms import Operator
 from rvmon.core.nodes import NodeOp
-from rvmon.core.plan import Packed, pack
+from rvmon.core.packed import Packed
+from rvmon.core.plan import pack
 from rvmon.core.programs import DEPTH, Code
-from rvmon.core.sections import RECORDS, Section
+from rvmon.core.sections import RECORDS, Section, hash_of
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -348,6 +351,41 @@ def test_the_core_takes_what_is_packed(check):
     assert [check(packed(text).data) for text in (EVERYTHING, DIAGRAM, longest)] == [-1] * 3
     plans = [plan for seed in range(100, 160) if (plan := drawn(seed)) is not None]
     assert [check(pack(plan).data) for plan in plans] == [-1] * len(plans)
+
+
+@pytest.mark.compiler
+def test_values_are_captured_by_one_part_for_each_requirement(check):
+    """So who embeds the core can be told how many values an attempt of a requirement has."""
+    text = "spec s\nsignal x : real\nevent e\n" + "".join(
+        f"requirement R{number}\n  upon e then x > v\n  let v = x\n" for number in range(2)
+    )
+    data = packed(text).data
+    first, end = Plan(data).places[Section.PARTS]
+    names = [name for name, _ in layouts()["part_plan"]]
+    before = "".join(form for _, form in layouts()["part_plan"][: names.index("requirement")])
+    last = end - RECORDS[Section.PARTS].size + struct.calcsize(f"={before}")
+    assert first < last < end
+    assert struct.unpack_from("=i", data, last) == (1,)
+    for number, wrong in ((1, -1), (0, Section.PARTS), (2, Section.PARTS)):
+        changed = bytearray(data)
+        struct.pack_into("=i", changed, last, number)
+        struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
+        assert check(bytes(changed)) == wrong
+
+
+@pytest.mark.compiler
+def test_a_plan_of_too_many_fields_is_refused(check):
+    """Sizes of what is kept of them stay within 32 bits."""
+    data = packed("spec s\nsignal p : bool\nevent e(k: int)\nrequirement R\n  always p\n").data
+    end = Plan(data).places[Section.FIELD_FIRST][1]
+    place = sections.HEADER.size - 4 * 4
+    assert struct.unpack_from("=i", data, end - 4) == struct.unpack_from("=i", data, place) == (1,)
+    for fields, wrong in ((1 << 20, -1), ((1 << 20) + 1, 0), ((1 << 31) - 1, 0)):
+        changed = bytearray(data)
+        for at in (end - 4, place):
+            struct.pack_into("=i", changed, at, fields)
+        struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
+        assert check(bytes(changed)) == wrong
 
 
 def test_whole_numbers_beyond_64_bits_are_refused_unless_they_are_doubles():

@@ -37,7 +37,7 @@ static void tell(const rv_monitor *m)
         const rv_number *captured = rv_captured(m, one);
         printf("r %" PRId64 " %" PRId64 " %" PRId32 " %" PRIu32 " %d %d %d", one->triggered,
                one->decided, one->requirement, one->number, one->verdict, one->decision, one->in_doubt);
-        for (k = 0; (captured != NULL) && (k < rv_sizes_of(m).captured); k++) {
+        for (k = 0; (captured != NULL) && (k < rv_captured_of(m, one->requirement)); k++) {
             if (captured[k].kind != RV_UNKNOWN) {
                 printf(" %d:%" PRIx64, (int)captured[k].kind, (uint64_t)captured[k].as.whole);
             }

@@ -19,7 +19,7 @@ from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 
-ENGINES = ("auto", "progression", "network")
+ENGINES = ("auto", "progression", "network", "c")
 DELAY = 9
 
 
@@ -32,7 +32,7 @@ def whole(engine: str, case: Case) -> Report:
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", [*ENGINES, "c"])
+@pytest.mark.parametrize("engine", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(data=st.data())
 def test_the_order_inside_a_batch(engine: str, data: st.DataObject) -> None:
@@ -63,17 +63,24 @@ def test_the_order_within_the_delay(engine: str, data: st.DataObject) -> None:
     late = [(s.t + data.draw(st.integers(0, DELAY)), s) for s in case.samples]
     spec = replace(case.spec, max_delay=DELAY)
     monitor = Spec(spec).monitor(engine=engine, sources=case.names)
-    for _, sample in sorted(late, key=lambda entry: entry[0]):
+    told = [sample for _, sample in sorted(late, key=lambda entry: entry[0])]
+    for sample in told:
         monitor.step_ns(sample.t, sample.values)
     report = monitor.finish_ns(case.end)
-    assert differences(whole(engine, case), report) == []
-    assert report.health == whole(engine, case).health
+    expected = whole(engine, case)
+    assert differences(expected, report) == []
+    assert report.health == expected.health
+    pairs = [(sample.t * 1e-9, sample.values) for sample in told]
+    end = None if case.end is None else case.end * 1e-9
+    found = Spec(spec).evaluate(pairs, engine=engine, sources=case.names, until=end)
+    assert differences(expected, found) == []
 
 
-def test_what_comes_after_the_delay_is_left_out() -> None:
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_what_comes_after_the_delay_is_left_out(engine: str) -> None:
     """A sample below the watermark is not judged; one within it is, whatever came between."""
     spec = replace(spec_of(requirement(e, upon=e)), max_delay=3)
-    monitor = Spec(spec).monitor()
+    monitor = Spec(spec).monitor(engine=engine)
     for t in (10, 6, 7, 20, 17, 16):
         monitor.step_ns(t, {"e": True})
     report = monitor.finish_ns()

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from rvmon.errors import UnknownNameError
 from rvmon.formula.core import Literal
 from rvmon.formula.state import State
-from rvmon.monitor.compiled.refusal import of_c, of_tables, refuse
+from rvmon.monitor.compiled.refusal import of_tables
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan, PlannedRule
@@ -102,13 +102,11 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
-        RvmonError: one of them is beyond the core; which one and why is in the message.
+        RvmonError: one of them is beyond all engines; which one and why is in the message.
     """
     ids = requirements_asked(compiled.checked, only)
     if ids is not None and not ids:
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
-    chosen = compiled.chosen(ids)
-    refuse(chosen, of_c, "the core")
-    rules = [_rule(one, explained=False) for one in chosen]
+    rules = [_rule(one, explained=False) for one in compiled.chosen(ids)]
     return plan_in_units(compiled.checked, rules)

@@ -148,18 +148,6 @@ def of_tables(one: CompiledRequirement) -> Refusal | None:
     return None
 
 
-def of_c(one: CompiledRequirement) -> Refusal | None:
-    """What the core cannot judge."""
-    if one.spec.max_delay is not None:
-        fix = "leave out `max delay`, or use the engine `auto`"
-        return Refusal("has samples that come late (`max delay`)", fix, _by_samples(one))
-    # The core has only the latest values, which may be newer than the last tick.
-    if one.obligation.trigger is None and one.requirement.captures and one.gap not in (None, 1):
-        reason = "captures values `upon end`, which may be newer than the last tick of its clock"
-        return Refusal(reason, _AUTO, _by_samples(one))
-    return None
-
-
 def of_columns(one: CompiledRequirement) -> Refusal | None:
     """What is not judged by arrays: it needs more than one clock, or more than present values."""
     generated = _of_captured(one) or of_tables(one)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -16,11 +16,13 @@ class CompiledSpec:
 
     Attributes:
         checked: as checked.
+        is_kept: whether what is dear to make of it is kept in the user's cache folder.
         forms: what was generated for its monitors, by what it depends on.
     """
 
-    def __init__(self, checked: CheckedSpec) -> None:
+    def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
         self.checked = checked
+        self.is_kept = is_kept
         self.forms: dict[object, object] = {}
 
     @cached_property
@@ -42,7 +44,7 @@ class CompiledSpec:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Compiled again elsewhere: what was generated here, and tables in hand, stay here.
-        return compile_spec, (self.checked,)
+        return partial(CompiledSpec, is_kept=self.is_kept), (self.checked,)
 
 
 def compile_spec(checked: CheckedSpec) -> CompiledSpec:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.formula import (
     Captured,
     FieldValue,
@@ -14,7 +13,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
 
@@ -23,17 +22,14 @@ class CapturedValues:
     """Reads captured values.
 
     Args:
-        plan: of the monitor.
+        spec: the specification.
+        ids: of the requirements, in the order of their numbers.
         labels: by label, its number.
-
-    Attributes:
-        counts: how many values the attempts of each requirement have.
     """
 
-    def __init__(self, plan: Plan, labels: Mapping[str, int]) -> None:
-        self._kinds = [_kinds(plan.spec, rule) for rule in plan.asked]
+    def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
+        self._kinds = [_kinds(spec, spec.requirements[one]) for one in ids]
         self._labels = {number: label for label, number in labels.items()}
-        self.counts = tuple(map(len, self._kinds))
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
         """What an attempt captured, by name.
@@ -56,13 +52,13 @@ class CapturedValues:
         return self._labels[int(number)] if kind is Kind.LABEL else number
 
 
-def _kinds(spec: CheckedSpec, rule: PlannedRule) -> dict[str, Kind | None]:
+def _kinds(spec: CheckedSpec, requirement: Requirement) -> dict[str, Kind | None]:
     """By name, what a requirement captures; `None`: a number, which says itself of what kind."""
     found: dict[str, Kind | None] = {}
-    each = rule.requirement.for_each
+    each = requirement.for_each
     if each is not None:
         found[each.name] = _kind(spec, each.value, found)
-    for capture in rule.requirement.captures:
+    for capture in requirement.captures:
         found[capture.name] = _kind(spec, capture.value, found)
     return found
 

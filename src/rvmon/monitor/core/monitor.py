@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rvmon.errors import SnapshotError
-from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
+from rvmon.monitor.inputs.health import by_name, of_intake
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.online.one_call import overlap
@@ -28,7 +29,6 @@ class CoreMonitor(Monitor):
     Args:
         planned: the plan of the requirements.
         compiled: the specification.
-        requirements: to be judged.
         settle: see `build_monitor`.
         sources: the names that can arrive; `None`: all.
     """
@@ -37,7 +37,6 @@ class CoreMonitor(Monitor):
         self,
         planned: PlannedCore,
         compiled: CompiledSpec,
-        requirements: Sequence[CompiledRequirement],
         settle: str,
         sources: frozenset[str] | None,
     ) -> None:
@@ -46,7 +45,11 @@ class CoreMonitor(Monitor):
         self._core = planned.monitor(
             names - (names if sources is None else sources), self._take_at, self._look_closer
         )
-        super().__init__(compiled, requirements, "c", settle, sources, None)
+        super().__init__(compiled, (), "c", settle, sources, None)
+
+    @property
+    def _single_payloads(self) -> frozenset[str]:
+        return self._planned.single_payloads
 
     def _attend(self) -> None:
         if self._intake is None and not self._listeners:
@@ -110,7 +113,9 @@ class CoreMonitor(Monitor):
         end = self._core.finish(t_ns)
         decided = self._core.flush()
         self._note_times()
-        return report_of_run(self._planned, self._core, self._health.began or 0, end), decided
+        report = report_of_run(self._planned, self._core, self._health.began or 0, end)
+        health = [] if self._intake is None else of_intake(self._intake)
+        return replace(report, health=tuple(sorted(health, key=by_name))), decided
 
     def snapshot(self) -> bytes:
         """Refused: what the core holds is not written down.

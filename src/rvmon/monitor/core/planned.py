@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import rvmon.core._core as native
-from rvmon.core.plan import Packed, pack
+from rvmon.core.packed import packed
 from rvmon.errors import TraceError
-from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.core.captured import CapturedValues
-from rvmon.plan.plan import Plan
-from rvmon.spec.checked.specification import Type
+from rvmon.monitor.core.packed_cache import Kept, Place
+from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks
@@ -20,7 +19,7 @@ from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.core.packed import Packed
     from rvmon.monitor.compiled.specification import CompiledSpec
 
 VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
@@ -50,6 +49,7 @@ class PlannedCore:
         words: of signals, events, fields: a number for each label, or field.
         kinds: of the same; of events they mean nothing.
         single: of each name, whether only one payload of it can be judged at one instant.
+        fillable: see `rvmon.plan.plan.Plan.fillable`.
     """
 
     packed: Packed
@@ -58,6 +58,12 @@ class PlannedCore:
     words: tuple[Mapping[str, int] | None, ...]
     kinds: bytes
     single: bytes
+    fillable: frozenset[str]
+
+    @property
+    def single_payloads(self) -> frozenset[str]:
+        """The events of which only one payload can be judged at one instant."""
+        return frozenset(name for name, only in zip(self.numbers, self.single, strict=True) if only)
 
     def monitor(
         self,
@@ -80,7 +86,6 @@ class PlannedCore:
             VERDICTS,
             DECISIONS,
             self._details,
-            self.captured.counts,
         )
         return native.Monitor(
             self.packed.data,
@@ -124,50 +129,77 @@ class PlannedCore:
         return found
 
 
-def planned_core(
-    compiled: CompiledSpec, requirements: Sequence[CompiledRequirement]
-) -> PlannedCore:
+def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) -> PlannedCore:
     """The packed plan of some requirements; made once for a specification.
 
     Args:
         compiled: the specification.
-        requirements: chosen from it.
+        only: ids of its requirements; default all.
 
     Raises:
         RvmonError: a requirement is beyond the core.
     """
-    ids = tuple(one.requirement.id for one in requirements)
+    spec = compiled.checked
+    ids = tuple(one for one in spec.requirements if only is None or one in only)
     found = compiled.forms.get(("core", ids))
     if not isinstance(found, PlannedCore):
-        single = frozenset().union(*(one.single_payloads for one in requirements))
-        plan = plan_alone(compiled, ids)
-        found = compiled.forms["core", ids] = _planned(plan, single)
+        place = Place(spec, ids) if compiled.is_kept else None
+        found = None if place is None else _checked(spec, ids, place.read())
+        if found is None:
+            made = _made(compiled, ids)
+            found = _planned(spec, ids, made)
+            if place is not None:
+                place.write(made)
+        compiled.forms["core", ids] = found
     return found
 
 
-def _planned(plan: Plan, single: frozenset[str]) -> PlannedCore:
-    packed, spec = pack(plan), plan.spec
+def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
+    # What makes it is imported now: it is seldom made where it is kept.
+    from rvmon.core.plan import pack
+    from rvmon.monitor.compiled.code_plan import plan_alone
+
+    plan = plan_alone(compiled, ids)
+    single = frozenset().union(*(one.single_payloads for one in compiled.chosen(ids)))
+    return Kept(pack(plan).data, single, plan.fillable)
+
+
+def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> PlannedCore | None:
+    """What was kept, made ready; `None` if that is nothing, or no plan of these requirements."""
+    if before is None:
+        return None
+    found = _planned(spec, ids, before)
+    try:
+        found.monitor(frozenset())
+    except ValueError:
+        return None
+    return found
+
+
+def _planned(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore:
+    plan = packed(spec, ids, made.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:
         if type_.kind is not Kind.LABEL:
             return None
-        return {label: packed.labels[label] for label in type_.labels}
+        return {label: plan.labels[label] for label in type_.labels}
 
-    names = (*packed.signals, *packed.events)
-    payloads = [spec.events[name].fields for name in packed.events]
+    names = (*plan.signals, *plan.events)
+    payloads = [spec.events[name].fields for name in plan.events]
     types = [type_ for payload in payloads for type_ in payload.values()]
-    kinds = [*packed.signals.values(), *(Kind.BOOL for _ in payloads), *packed.fields.values()]
+    kinds = [*plan.signals.values(), *(Kind.BOOL for _ in payloads), *plan.fields.values()]
     return PlannedCore(
-        packed,
-        CapturedValues(plan, packed.labels),
+        plan,
+        CapturedValues(spec, ids, plan.labels),
         {name: number for number, name in enumerate(names)},
         (
-            *(labels(spec.signals[name].type) for name in packed.signals),
+            *(labels(spec.signals[name].type) for name in plan.signals),
             *({field: place for place, field in enumerate(payload)} for payload in payloads),
             *map(labels, types),
         ),
         bytes(map(_KINDS.index, kinds)),
-        bytes(name in single for name in names),
+        bytes(name in made.single for name in names),
+        made.fillable,
     )
 
 

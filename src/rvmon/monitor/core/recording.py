@@ -68,16 +68,13 @@ def _column(
     return number, layout, np.ascontiguousarray(values, type_), None
 
 
-def judge_samples(
-    checked: CheckedSpec, planned: PlannedCore, source: Source, single: frozenset[str]
-) -> Report:
+def judge_samples(checked: CheckedSpec, planned: PlannedCore, source: Source) -> Report:
     """Judge a recording by its samples.
 
     Args:
         checked: the specification.
         planned: the plan of its requirements.
         source: the recording.
-        single: events of which only one payload can be judged at one instant.
 
     Raises:
         TimeOrderError: an instant is not after the one before.
@@ -86,7 +83,8 @@ def judge_samples(
     """
     declared = frozenset(planned.numbers)
     names = source.names
-    validator = Validator(checked, None if names is None else names & declared, single)
+    expected = None if names is None else names & declared
+    validator = Validator(checked, expected, planned.single_payloads)
     run = planned.monitor(frozenset() if names is None else declared - names)
     for row, sample in enumerate(source.samples(ordered=True)):
         t = whole_ticks(sample.t)

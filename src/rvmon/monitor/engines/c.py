@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rvmon.monitor.engines import rows
 from rvmon.monitor.engines.registry import Asked, engine_named
-from rvmon.monitor.engines.rows import columns_of
 from rvmon.readers.blocks import NotPlainError
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled.refusal import Refusal
     from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.monitor.compiled.specification import CompiledSpec
     from rvmon.monitor.online.monitor import Monitor
@@ -23,16 +22,12 @@ class C:
 
     name = "c"
 
-    def refuses(self, requirement: CompiledRequirement) -> Refusal | None:
-        """What needs Python beside it."""
-        from rvmon.monitor.compiled.refusal import of_c
-
-        return of_c(requirement)
+    def refuses(self, requirement: CompiledRequirement) -> None:
+        """Nothing."""
 
     def online(self, compiled: CompiledSpec, asked: Asked) -> Monitor:
         """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
-        chosen = compiled.chosen(asked.only)
-        if not chosen:  # nothing to judge
+        if _is_nothing(compiled, asked):
             return engine_named("auto").online(compiled, asked)
         from rvmon.monitor.compiled.refusal import no_dropping
         from rvmon.monitor.core.monitor import CoreMonitor
@@ -40,27 +35,32 @@ class C:
 
         if asked.keep is not None:
             raise no_dropping(self.name)
-        planned = planned_core(compiled, chosen)
-        monitor = CoreMonitor(planned, compiled, chosen, asked.settle, asked.sources)
+        planned = planned_core(compiled, asked.only)
+        monitor = CoreMonitor(planned, compiled, asked.settle, asked.sources)
         monitor.judged_by = self.name
         return monitor
 
     def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
         """By columns, else by samples."""
-        chosen = compiled.chosen(asked.only)
-        if not chosen:
+        if _is_nothing(compiled, asked):
             return engine_named("auto").judge(compiled, source, asked)
+        if compiled.checked.max_delay is not None:  # its samples are put in order first
+            return rows.judge_samples(self, compiled, source, asked)
         from rvmon.monitor.core.planned import planned_core
         from rvmon.monitor.core.recording import judge_columns, judge_samples
 
-        planned = planned_core(compiled, chosen)
+        planned = planned_core(compiled, asked.only)
         try:
-            columns = columns_of(compiled, source, asked)
+            columns = source.columns(lambda: planned.fillable)
             report = judge_columns(planned, columns, source.end)
         except NotPlainError:
-            single = frozenset().union(*(one.single_payloads for one in chosen))
-            report = judge_samples(compiled.checked, planned, source, single)
+            report = judge_samples(compiled.checked, planned, source)
         return replace(report, engine=self.name)
+
+
+def _is_nothing(compiled: CompiledSpec, asked: Asked) -> bool:
+    """Whether there is nothing to judge."""
+    return not (compiled.checked.requirements if asked.only is None else asked.only)
 
 
 ENGINES = {"c": C()}

@@ -28,7 +28,7 @@ class EngineChoice:
 def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineChoice]:
     """What `auto` takes, by id.
 
-    Never `c`, which gives no reasons: what refuses it is reported for those who may ask for it.
+    Never `c`, which gives no reasons.
 
     Args:
         requirements: that are judged together.
@@ -38,8 +38,8 @@ def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineC
 
 def _choice(one: CompiledRequirement, count: int) -> EngineChoice:
     online, refused = _online(one, count)
-    of_columns, of_c = refusal.of_columns(one), refusal.of_c(one)
-    refusals = {"columns": of_columns, **refused, "c": of_c}
+    of_columns = refusal.of_columns(one)
+    refusals = {"columns": of_columns, **refused}
     return EngineChoice(
         online,
         "columns" if of_columns is None else online,

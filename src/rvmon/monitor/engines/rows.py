@@ -26,14 +26,10 @@ def fillable(compiled: CompiledSpec, only: tuple[str, ...] | None) -> frozenset[
     """The names of which only the present value matters, not whether there was an update."""
     from rvmon.monitor.compiled.code_plan import plan_requirements
 
-    spec = compiled.checked
     chosen = compiled.chosen(only)
     if not all(one.is_fed for one in chosen):
         return frozenset()
-    uses = plan_requirements(compiled, chosen).uses
-    counted = {name for name, use in uses.items() if use.marked or use.history}
-    stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
-    return frozenset({*spec.signals, *spec.events} - counted - stale)
+    return plan_requirements(compiled, chosen).fillable
 
 
 def judge_rows(engine: Engine, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:

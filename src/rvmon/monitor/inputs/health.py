@@ -110,16 +110,8 @@ class HealthLog:
         ]
         if intake is not None:
             found += [
-                replace(one, requirements=readers.get(one.name, ()))
-                for one in intake.conflicts.health()
+                replace(one, requirements=readers.get(one.name, ())) for one in of_intake(intake)
             ]
-            if intake.late is not None:
-                count, first = intake.late
-                found.append(Health(HealthKind.LATE, "samples", count, first, remark="left out"))
-            if intake.crowded is not None:
-                count, first = intake.crowded
-                early = f"evaluated before the delay was over: {MOST_HELD:,} samples were waiting"
-                found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
         return sorted(found, key=by_name)
 
     def seen(self, requirements: Sequence[CompiledRequirement]) -> list[Health]:
@@ -141,6 +133,19 @@ class HealthLog:
                 since = "no value" if first is None else f"first value at {format_ticks(first)}"
                 found.append(Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since))
         return found
+
+
+def of_intake(intake: Intake) -> list[Health]:
+    """What was found of samples that were held back, whoever reads them."""
+    found = intake.conflicts.health()
+    if intake.late is not None:
+        count, first = intake.late
+        found.append(Health(HealthKind.LATE, "samples", count, first, remark="left out"))
+    if intake.crowded is not None:
+        count, first = intake.crowded
+        early = f"evaluated before the delay was over: {MOST_HELD:,} samples were waiting"
+        found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
+    return found
 
 
 def holds_nan(column: NDArray[Any]) -> bool:

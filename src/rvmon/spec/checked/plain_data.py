@@ -1,10 +1,11 @@
-"""Checked specifications as plain data, and back.
+"""Checked specifications as plain data, and back; and as a text that tells them apart.
 
 Nothing but the classes of a checked specification is made of it, and nothing is executed.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -13,7 +14,7 @@ from types import ModuleType
 from typing import Any
 
 from rvmon.diagnostics import diagnostic, span
-from rvmon.diagnostics.span import Source
+from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.checked import formula, specification
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.operators import BinaryOp, Interval, UnaryOp
@@ -70,10 +71,12 @@ def _to_plain(value: Any, sources: dict[int, int]) -> Any:
     name = type(value).__name__
     if isinstance(value, Enum) and _class_named(name) is type(value):
         return [name, value.name]
-    if is_dataclass(value) and _class_named(name) is type(value):
-        return [name, *(_to_plain(getattr(value, one.name), sources) for one in fields(value))]
+    own: Any = type(value)
+    names = _attributes(own)
+    if names is not None:
+        return [name, *[_to_plain(getattr(value, one), sources) for one in names]]
     if isinstance(value, Mapping):
-        pairs = ([_to_plain(key, sources), _to_plain(own, sources)] for key, own in value.items())
+        pairs = ([_to_plain(key, sources), _to_plain(one, sources)] for key, one in value.items())
         return ["dict", *pairs]
     if type(value) in (tuple, frozenset):
         return [name, *(_to_plain(one, sources) for one in value)]
@@ -111,3 +114,32 @@ def _from_plain(data: Any, sources: list[Source]) -> Any:
     if isinstance(made, Source):
         sources.append(made)
     return made
+
+
+def told_apart(spec: specification.CheckedSpec) -> str:
+    """A text that two specifications share if they are equal but for where things stand in files.
+
+    It is the same in all processes.
+    """
+    return json.dumps(spec, default=_parts, separators=(",", ":"))
+
+
+def _parts(value: Any) -> Any:
+    """What something is made of, for a JSON text: one level, which is gone when it is written."""
+    own: Any = type(value)
+    if own in (Source, Span):
+        return None
+    names = _attributes(own)
+    if names is not None:
+        return {own.__name__: [getattr(value, name) for name in names]}
+    if own is frozenset:
+        return sorted(value)
+    raise TypeError(f"a {own.__name__} is no part of a specification")
+
+
+@cache
+def _attributes(class_: type) -> tuple[str, ...] | None:
+    """The attributes of objects of a class of a specification; `None`: it is no such class."""
+    if is_dataclass(class_) and _class_named(class_.__name__) is class_:
+        return tuple(one.name for one in fields(class_))
+    return None

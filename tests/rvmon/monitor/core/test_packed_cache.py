@@ -1,0 +1,162 @@
+"""Plans that were packed before are read from the cache: the same, or not at all."""
+
+import hashlib
+import os
+import subprocess
+import sys
+
+import pytest
+
+import rvmon
+import rvmon.core.plan
+
+TEXT = """
+const T = 2 s
+signal x : real
+event e, f
+event g(k: int, s: {a, b})
+requirement R
+  upon e then within T x > 1
+requirement S
+  upon g.k > 1 and g.s = b
+  then F[1 s, 2 s] f
+  let v = x
+coverpoint far = x {low: [0, 1), high: [1, inf)}
+coverpoint near = x {none: [0, 2), much: [2, 3), most: [3, inf)}
+cross both = far, near
+  ignore far == high
+"""
+SAMPLES = [
+    (0, {"x": 3, "e": True, "g": {"k": 2, "s": "b"}}),
+    (1, {"x": 0, "e": True, "f": True, "g": {"k": 2, "s": "a"}}),
+    (5, {"x": 2}),
+]
+"""R passes at 0 s and fails at 3 s, S passes at 1 s."""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("RVMON_CACHE", raising=False)
+    return tmp_path / "rvmon"
+
+
+@pytest.fixture
+def packs_nothing(monkeypatch):
+    """From now on who packs a plan fails."""
+
+    def forbid():
+        monkeypatch.setattr(rvmon.core.plan, "pack", lambda _: pytest.fail("it is packed"))
+
+    return forbid
+
+
+def kept_in(folder):
+    return sorted(folder.glob("plan-*.bin"))
+
+
+def judged(text=TEXT, **how):
+    """What a monitor that is made anew says of the samples, online and afterwards."""
+    spec = rvmon.loads(text)
+    monitor = spec.monitor(engine="c", **how)
+    decided = [list(monitor.step(t, values)) for t, values in SAMPLES]
+    return decided, monitor.finish(9).to_json(), spec
+
+
+def test_the_second_time_it_is_read(folder, packs_nothing):
+    """Nothing is compiled or packed then, for streams and for recordings, and the same is said."""
+    decided, report, spec = judged()
+    evaluated = spec.evaluate(SAMPLES, engine="c").to_json()
+    assert [path.stat().st_mode & 0o077 for path in kept_in(folder)] == [0]
+    packs_nothing()
+    again, same, spec = judged()
+    assert (again, same) == (decided, report)
+    assert [one.requirement for call in decided for one in call] == ["R", "S", "R"]
+    assert spec.evaluate(SAMPLES, engine="c").to_json() == evaluated
+    assert "requirements" not in vars(spec._compiled)
+    assert len(kept_in(folder)) == 1
+
+
+def test_other_plans_are_told_apart(folder):
+    """Other requirements, constants or texts are other plans."""
+    judged()
+    judged(only=["R"])
+    judged(TEXT.replace("T = 2 s", "T = 3 s"))
+    judged(TEXT.replace("x > 1\n", "x > 1.5\n"))
+    assert len(kept_in(folder)) == 4
+
+
+def whole(body):
+    return hashlib.sha256(body).hexdigest().encode() + b"\n" + body
+
+
+def damages(path, other):
+    """What may stand in the file instead: torn, of another plan, none, changed."""
+    content = path.read_bytes()
+    body = content.partition(b"\n")[2]
+    key, names, data = body.split(b"\n", 2)
+    for size in (0, 1, 64, 65, 66, 130, 200, len(content) // 2, len(content) - 1):
+        yield content[:size]
+        yield whole(body[:size])
+    yield other.read_bytes()
+    for wrong in (b"", b"[]", b"5", b"[5,[]]", b"[[[]],[]]", b"[" * 100_000, b"\xff"):
+        yield whole(b"\n".join([key, wrong, data]))
+    for wrong in (b"", b"x" * 4096, data + bytes(8), data[:-8]):
+        yield whole(b"\n".join([key, names, wrong]))
+    for place in range(0, len(data), 97):
+        changed = bytearray(data)
+        changed[place] ^= 0x40
+        yield whole(b"\n".join([key, names, bytes(changed)]))
+        yield content[: len(content) - len(data)] + changed
+
+
+def test_a_damaged_file_is_of_no_account(folder):
+    """Whatever stands there, with a right checksum or without, the plan is made anew."""
+    decided, report, _ = judged()
+    [path] = kept_in(folder)
+    judged(TEXT.replace("x > 1\n", "x > 2\n").replace("requirement S", "requirement Q"))
+    [other] = {*kept_in(folder)} - {path}
+    right = path.read_bytes()
+    for damage in damages(path, other):
+        path.write_bytes(damage)
+        assert judged()[:2] == (decided, report)
+        assert path.read_bytes() == right
+
+
+def test_what_is_refused_is_not_kept(folder):
+    """It is told anew each time."""
+    deep = "(x - " * 40 + "x" + ")" * 40
+    for _ in range(2):
+        with pytest.raises(rvmon.RvmonError, match="deep"):
+            judged(TEXT.replace("x > 1\n", f"{deep} > 1\n"))
+    assert not kept_in(folder)
+
+
+def test_only_what_was_loaded_is_kept(folder):
+    """Not each of the specifications that programs make up, of which there may be thousands."""
+    from rvmon.monitor import build_monitor, compile_spec
+
+    build_monitor(compile_spec(rvmon.loads(TEXT).checked), engine="c")
+    assert not kept_in(folder)
+
+
+def test_it_can_be_switched_off(folder, monkeypatch):
+    """Then nothing is written."""
+    decided, report, _ = judged()
+    [path] = kept_in(folder)
+    path.unlink()
+    monkeypatch.setenv("RVMON_CACHE", "off")
+    assert judged()[:2] == (decided, report)
+    assert not kept_in(folder)
+
+
+def test_all_processes_share_it(folder, tmp_path):
+    """Whatever the order of their sets is."""
+    spec = tmp_path / "spec.rv"
+    spec.write_text(TEXT)
+    program = f"import rvmon; rvmon.load({str(spec)!r}).monitor(engine='c')"
+    for seed in "123":
+        env = {**os.environ, "PYTHONHASHSEED": seed}
+        command = [sys.executable, "-c", program]
+        subprocess.run(command, env=env, check=True)  # noqa: S603
+    assert len(kept_in(folder)) == 1
