@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rvmon.verdict.attempt import Attempt
@@ -64,6 +64,16 @@ class Monitor:
         """
 
     def advance(self, t: int, /) -> None: ...
+    def lose(self, names: Iterable[str], since: int, /) -> bool:
+        """See `rv_lose`; false, and nothing happened, if what is there was judged already.
+
+        Raises:
+            ValueError: the plan is of a law by which nothing is lost.
+        """
+
+    def found(self, names: Iterable[str], at: int, /) -> bool:
+        """See `rv_found`; else as `lose`."""
+
     def finish(self, until: int | None, /) -> int | None:
         """End the run; gives the last instant of the trace."""
 

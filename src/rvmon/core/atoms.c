@@ -81,14 +81,19 @@ static uint8_t atom_now(const run *r, const atom_plan *a)
     case ATOM_REAL: return compare_real(a->compare, &r->value[a->input], a->constant);
     case ATOM_COMPARE: return compare_at(r, a, NULL);
     case ATOM_PAYLOAD: return over_occurrences(r, a);
-    case ATOM_EVENT: return r->occurs[a->input];
-    case ATOM_KNOWN_SIGNAL: return truth_if(r->value[a->input].kind != RV_UNKNOWN);
+    case ATOM_EVENT:
+        return (r->absent[signals + a->input] != 0U) ? IS_UNKNOWN : r->occurs[a->input];
+    case ATOM_KNOWN_SIGNAL:
+        if ((r->at.lost_count > 0) && (r->lost[a->input] != NOT_LOST)) {
+            return IS_UNKNOWN;
+        }
+        return truth_if(r->value[a->input].kind != RV_UNKNOWN);
     case ATOM_KNOWN_EVENT: return truth_if(r->occurs[a->input] != IS_UNKNOWN);
     case ATOM_UPDATED_SIGNAL:
-        return (r->absent[a->input] != 0U) ? IS_UNKNOWN : truth_if(r->updated[a->input] != 0U);
+        return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->updated[a->input];
     case ATOM_UPDATED_EVENT:
         return (r->absent[signals + a->input] != 0U)
-            ? IS_UNKNOWN : truth_if(r->updated[signals + a->input] != 0U);
+            ? IS_UNKNOWN : r->updated[signals + a->input];
     case ATOM_CHANGED: return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->changed[a->input];
     default: return truth_if(r->at.starting);
     }

@@ -77,10 +77,25 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at);
 rv_number number_of_double(double x);
 
 /* ---- values.c: samples, held values, what occurred */
+void mark(run *r, int32_t name);
+uint8_t remember(history *h, int64_t t, const rv_number *value);
+void come_to_birth(run *r, int32_t local, bool known);
+void set_stale(run *r, int32_t local, int64_t t);
+void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
 void take_update(run *r, int64_t t, const incoming *in);
 void forget(run *r);
 void go_stale(run *r, int32_t perishable);
 void lack(run *r, bool event, int32_t local);
+
+/* ---- outages.c: names that may have said anything */
+void begin_unlost(run *r);
+bool take_amid(run *r, int64_t t, const incoming *in);
+void come_back(run *r, int64_t t);
+void stay_unknown(run *r, int32_t local);
+bool has_no_source(const run *r, int32_t name);
+bool is_lost_at(const run *r, int32_t name, int64_t t);
+void give_loss(run *r, int64_t t, const incoming *in, int32_t count);
+int32_t names_to_lose(const run *r);
 
 /* ---- atoms.c */
 void recheck(run *r, int32_t atom);
@@ -173,6 +188,9 @@ static inline bool has_attempts(const judge *j)
     return (j->first >= 0) || ((j->queue != NULL) && (j->queue->count > 0));
 }
 
+/* ---- core.c */
+bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
+
 /* ---- clock.c */
 void clear_run(run *r);
 void clear_judges(run *r);
@@ -181,6 +199,7 @@ void reach(run *r, int64_t t);
 void through(run *r, int64_t limit, bool comes);
 void approach(run *r, int64_t t);
 void arrive(run *r, int64_t t);
+int64_t tick_from(int64_t gap, int64_t t);
 void set_alarm(run *r, int64_t position);
 int64_t next_position(const run *r);
 int64_t next_decision(run *r);
@@ -268,6 +287,7 @@ void close_instance(run *r);
 bool is_over(const run *r);
 run *instance_of(const home *h, const rv_number *value);
 void open_at(run *r, int64_t t);
+bool was_swallowed(run *r, int64_t t);
 int32_t concerning(const run *r, const rv_update *u);
 
 /* ---- crowd.c: which runs a part has, and which of them a call concerns */
@@ -286,6 +306,7 @@ bool home_reserve(home *h, int32_t attempts);
 void home_lack(home *h, bool event, int32_t local);
 void home_sample(home *h, int64_t t);
 void home_wait(home *h, int64_t t);
+void home_lose(home *h, int64_t t);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
 run *following(const home *h, const run *r);

@@ -10,6 +10,12 @@ static int64_t position_from(int64_t start, int64_t step, int64_t t)
     return start + (ahead + step - 1) / step * step;
 }
 
+/* The first tick of a clock from `t` on; in between two samples every instant is one. */
+int64_t tick_from(int64_t gap, int64_t t)
+{
+    return (t >= 0) ? position_from(0, gap, t) : -((-t) / gap) * gap;
+}
+
 /* Whether the attempt of the episode that runs has failed, and what is owed now does not at once. */
 static bool may_go_on(const run *r, int32_t index)
 {
@@ -54,7 +60,7 @@ static int64_t next_start(const run *r)
 int64_t next_position(const run *r)
 {
     const int64_t gap = GAP(r);
-    int64_t found = (gap > 1) ? r->at.awaited : NEVER;
+    int64_t found = (gap > 0) ? least(r->at.awaited, r->at.ends_at) : NEVER;
     if ((gap > 0) && r->at.started) {
         int64_t change = timers_next(&r->wake);
         if ((r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy) {
@@ -243,13 +249,18 @@ void visit(run *r, int64_t t)
     if (t >= r->cut) {
         soil_lapsed(r);
     }
+    if (t >= r->at.ends_at) {
+        come_back(r, t);
+    }
     ring(r, t); /* before what fades: an atom that it reads anew may speak of this position only */
     if (r->at.fading_count + r->at.fresh_count > 0) {
         recheck_fading(r);
     }
     if (r->opening && (t >= r->opens_at)) {
         r->opening = false;
-        touch_all(r, TOUCHED_TRIGGER);
+        if (!was_swallowed(r, t)) {
+            touch_all(r, TOUCHED_TRIGGER);
+        }
     }
     call_up(r, t);
     work_out(r, t);
@@ -340,10 +351,7 @@ void arrive(run *r, int64_t t)
     r->at.after = t;
     if (dirty || (t >= r->at.alarm)) {
         if (gap > 1) {
-            r->at.awaited = position_from(0, gap, (t >= 0) ? t : 0);
-            if (t < 0) {
-                r->at.awaited = -((-t) / gap) * gap;
-            }
+            r->at.awaited = tick_from(gap, t);
             if (r->at.awaited == t) {
                 visit(r, t);
             } else {

@@ -83,6 +83,7 @@ static bool begin_run(rv_monitor *m)
     m->last = RV_NO_TIME;
     m->after = -LIMIT;
     m->reached = RV_NO_TIME;
+    m->heard = RV_NO_TIME;
     m->finished = false;
     m->spoilt = false;
     for (i = 0; i < p->part_count; i++) {
@@ -185,7 +186,7 @@ static bool is_in_range(int64_t t)
 }
 
 /* Put the updates of a sample into the inboxes of those that read them. */
-static bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
+bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
 {
     int32_t i;
     int32_t k;
@@ -313,7 +314,7 @@ int rv_advance(rv_monitor *m, int64_t t)
 
 int64_t rv_end(const rv_monitor *m, int64_t t)
 {
-    int64_t end = m->last;
+    int64_t end = (m->heard > m->last) ? m->heard : m->last;
     if (end != RV_NO_TIME) {
         end = (t > end) ? t : end;
         if ((m->plan.header->gap > 0) && (m->reached - 1 > end)) {
@@ -335,7 +336,8 @@ int rv_finish(rv_monitor *m, int64_t t)
     }
     m->finished = true;
     if ((end != RV_NO_TIME) && !m->spoilt) {
-        const int64_t reached = (m->reached > end) ? m->reached : end;
+        const int64_t least_reached = ((m->plan.header->flags & PLAN_NEXT_LAW) != 0) ? end + 1 : end;
+        const int64_t reached = (m->reached > end) ? m->reached : least_reached;
         for (i = 0; i < m->plan.part_count; i++) {
             home_close(&m->homes[i], end, reached);
         }

@@ -232,6 +232,30 @@ void home_wait(home *h, int64_t t)
     rest_all(h);
 }
 
+/* Have names be lost, or found, as the inbox has it; time has come to `t`. */
+void home_lose(home *h, int64_t t)
+{
+    const part_plan *p = h->part->plan;
+    run *one;
+    if (!is_apart(h)) {
+        give_loss(h->root, t, h->inbox, h->inbox_count);
+        h->alarm = h->root->at.alarm;
+    } else {
+        if (p->each != 0) {
+            open_instances(h, t);
+        }
+        if ((p->flags & PART_KEEPS_PAST) != 0) {
+            keep_updates(h, t);
+        }
+        for (one = h->root; one != NULL; one = following(h, one)) {
+            touch_run(one);
+            give_loss(one, t, h->inbox, h->inbox_count);
+        }
+        rest_all(h);
+    }
+    h->inbox_count = 0;
+}
+
 /* The last position of a run, to which it is taken for what is judged at the end. */
 static void come_to_end(run *r, int64_t end)
 {

@@ -125,6 +125,7 @@ static bool check_header(const plan *p)
     const plan_header *h = p->header;
     return (h->gap >= 0) && (h->gap < LIMIT) && (h->signals >= 0) && (h->events >= 0)
            && (h->fields >= 0) && (h->requirements >= 0) && (h->captured >= 0)
+           && ((h->flags & ~PLAN_NEXT_LAW) == 0)
            && (h->signals < MOST / 4) && (h->events < MOST / 4)
            && (p->counts[SEC_FIELD_FIRST] == h->events + 1)
            && (p->counts[SEC_SUBSCRIPTION_FIRST] == (int64_t)h->signals + h->events + 1)

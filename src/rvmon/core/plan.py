@@ -35,8 +35,12 @@ class Packed:
     ids: tuple[str, ...]
 
 
-def pack(plan: Plan) -> Packed:
+def pack(plan: Plan, *, next_law: bool = False) -> Packed:
     """Pack a plan: all requirements without captured values together, each of the others apart.
+
+    Args:
+        plan: of the requirements.
+        next_law: whether they are judged by the law to come.
 
     Raises:
         RvmonError: there is no requirement, or an expression is beyond the core.
@@ -61,7 +65,7 @@ def pack(plan: Plan) -> Packed:
         max(len(rule.captured) for rule in plan.asked),
     )
     return Packed(
-        sections.data(plan.gap or 0, sizes),
+        sections.data(plan.gap or 0, sizes, next_law=next_law),
         {name: signal.type.kind for name, signal in plan.spec.signals.items()},
         plan.events,
         fields,

@@ -59,6 +59,11 @@ static size_t cut_block(cutter *c, run *r)
     r->silent = piece(c, events, 1);
     r->absent = piece(c, names, 1);
     r->seen = piece(c, p->seen, 1);
+    r->lost = piece(c, names_to_lose(r), 1);
+    r->until = piece(c, names_to_lose(r), sizeof *r->until);
+    r->kept = piece(c, names_to_lose(r), sizeof *r->kept);
+    r->has_kept = piece(c, names_to_lose(r), 1);
+    r->keeps = piece(c, names_to_lose(r), 1);
     copied = c->used;
     r->payloads = piece(c, events, sizeof *r->payloads);
     r->chosen = piece(c, events, sizeof *r->chosen);
@@ -213,6 +218,7 @@ void clear_run(run *r)
         s->growing = false;
         s->apart = false;
     }
+    begin_unlost(r);
     clear_judges(r);
 }
 
@@ -393,7 +399,7 @@ void replay(run *r)
     clear_run(r);
     r->over = false;
     for (i = 0; i < p->signals.count + p->events.count; i++) {
-        if (h->root->absent[i] != 0U) {
+        if (has_no_source(h->root, i)) {
             lack(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
         }
     }
@@ -402,19 +408,26 @@ void replay(run *r)
         if ((GAP(r) == 0) && r->at.started) {
             r->at.position = h->previous;
         }
+        const bool loss = h->past[first].says > RV_SAYS_YES;
         approach(r, t);
         forget_last(r);
         do {
             const past_update *one = &h->past[first];
             const rv_update update = {0, one->says, one->value, one->fields};
             const incoming in = {one->local, one->event, &update};
-            if (one->local >= 0) {
+            if (loss) {
+                give_loss(r, t, &in, 1);
+            } else if (one->local >= 0) {
                 take_update(r, t, &in);
+            } else {
+                /* It says nothing. */
             }
             first++;
         } while ((first < h->past_count) && !h->past[first - 1].last);
-        arrive(r, t);
-        h->previous = t;
+        if (!loss) {
+            arrive(r, t);
+            h->previous = t;
+        }
     }
     h->previous = previous;
 }

@@ -140,6 +140,12 @@ typedef struct {
     int64_t end;
 } stretch;
 
+/* How a name is: not lost; lost; lost up to an instant that is known; lost till its next update. */
+enum { NOT_LOST = 0, LOST_ON = 1, LOST_UNTIL = 2, LOST_SINCE = 3 };
+
+/* What is said of a name in place of an update: see `rv_lose` and `rv_found`. */
+enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND };
+
 /* Stretches of instants at which a `since` in bounds holds, as a ring. */
 typedef struct {
     stretch *at;
@@ -261,6 +267,13 @@ struct run {
     uint8_t *silent;
     uint8_t *absent;
     uint8_t *seen;
+    /* Of a plan by which names can be lost, else empty. */
+    uint8_t *lost;             /* by name, how it is */
+    int64_t *until;            /* by name, the last instant at which it is lost; till that is known
+                                * the first one */
+    rv_number *kept;           /* by signal, what came at that instant */
+    uint8_t *has_kept;
+    uint8_t *keeps;            /* whether what comes at that instant counts behind it */
     /* What is copied with them. */
     struct progress {
         int64_t origin;
@@ -268,7 +281,10 @@ struct run {
         int64_t before;
         int64_t alarm;         /* before that nothing happens without a change */
         int64_t after;         /* the last sample that was taken */
-        int64_t awaited;       /* the tick of a clock that what was taken belongs to */
+        int64_t awaited;       /* the tick of a clock that what was taken belongs to; or the position
+                                * at which names are lost */
+        int64_t ends_at;       /* a position behind which some are known to be found */
+        int32_t lost_count;    /* names of which something is lost */
         int32_t fading_count;
         int32_t fresh_count;
         int32_t marks_count;
@@ -380,6 +396,7 @@ struct rv_monitor {
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    int64_t heard;             /* how far names are known to have been lost; RV_NO_TIME: none was */
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;

@@ -30,16 +30,23 @@ class Lowering:
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         favour: whether what is not born counts in favour of what is owed.
         measured: see `rvmon.formula.four.Reader`.
+        next_law: see there.
 
     Attributes:
         origins: where what was made comes from.
     """
 
     def __init__(
-        self, factory: Factory, period: int | None, favour: bool, *, measured: bool = False
+        self,
+        factory: Factory,
+        period: int | None,
+        favour: bool,
+        *,
+        measured: bool = False,
+        next_law: bool = False,
     ) -> None:
         self.factory = factory
-        self.reader = Reader(factory, period, measured=measured)
+        self.reader = Reader(factory, period, measured=measured, next_law=next_law)
         self.favour = favour
         self.origins: dict[Core, Origin] = {}
         self._made_up: dict[int, Formula] = {}

@@ -141,12 +141,12 @@ def planned_core(
     if not isinstance(found, PlannedCore):
         single = frozenset().union(*(one.single_payloads for one in requirements))
         plan = plan_alone(compiled, ids)
-        found = compiled.forms["core", ids] = _planned(plan, single)
+        found = compiled.forms["core", ids] = _planned(plan, single, next_law=compiled.next_law)
     return found
 
 
-def _planned(plan: Plan, single: frozenset[str]) -> PlannedCore:
-    packed, spec = pack(plan), plan.spec
+def _planned(plan: Plan, single: frozenset[str], *, next_law: bool) -> PlannedCore:
+    packed, spec = pack(plan, next_law=next_law), plan.spec
 
     def labels(type_: Type) -> Mapping[str, int] | None:
         if type_.kind is not Kind.LABEL:
