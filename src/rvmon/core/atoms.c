@@ -95,7 +95,7 @@ static uint8_t atom_now(const run *r, const atom_plan *a)
         return (r->absent[signals + a->input] != 0U)
             ? IS_UNKNOWN : r->updated[signals + a->input];
     case ATOM_CHANGED: return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->changed[a->input];
-    default: return truth_if(r->at.starting);
+    default: return r->at.starting;
     }
 }
 

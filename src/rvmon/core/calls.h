@@ -97,6 +97,12 @@ bool is_lost_at(const run *r, int32_t name, int64_t t);
 void give_loss(run *r, int64_t t, const incoming *in, int32_t count);
 int32_t names_to_lose(const run *r);
 
+/* ---- blank.c: positions that may not be there */
+void may_begin(run *r, int64_t t);
+void begin_blank(run *r, int64_t t);
+void end_blank(run *r, int64_t t);
+void revive_all(run *r, int64_t t);
+
 /* ---- atoms.c */
 void recheck(run *r, int32_t atom);
 void recheck_list(run *r, list l);
@@ -113,6 +119,7 @@ void soil(run *r, int32_t node);
 void soil_all(run *r);
 void work_out(run *r, int64_t t);
 bool is_soiled(const run *r);
+void remember_unknown(run *r, int64_t t);
 void vary(run *r, int64_t t, bool pending);
 void settle_phase(run *r);
 
@@ -165,6 +172,7 @@ void pass_to(run *r, int32_t index, int64_t t);
 void visit_judge(run *r, int32_t index, int64_t t);
 void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
 void begin(run *r, int32_t index, int64_t t, int64_t triggered);
+void enter(run *r, int32_t index, int32_t at, int64_t t);
 void reach_judge(run *r, int32_t index, int64_t t);
 bool starts(run *r, int32_t index, uint8_t truth);
 bool watches(const run *r, int32_t index);
@@ -194,6 +202,8 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 /* ---- clock.c */
 void clear_run(run *r);
 void clear_judges(run *r);
+int32_t followed(const run *r, int32_t index);
+void look_at_all(run *r);
 void visit(run *r, int64_t t);
 void reach(run *r, int64_t t);
 void through(run *r, int64_t limit, bool comes);
@@ -307,6 +317,7 @@ void home_lack(home *h, bool event, int32_t local);
 void home_sample(home *h, int64_t t);
 void home_wait(home *h, int64_t t);
 void home_lose(home *h, int64_t t);
+void home_begin_blank(home *h, int64_t t);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
 run *following(const home *h, const run *r);

@@ -231,8 +231,10 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     if ((r->part->plan->flags & PART_REPLAYS) != 0) {
         replay(made);
         through(made, t, false);
-    } else {
+    } else if (made->at.presence == ARE_THERE) {
         vary(made, t, false);
+    } else {
+        /* Everything is unknown there. */
     }
     adopt(r, made);
     enlist(made, true);

@@ -61,6 +61,9 @@ int64_t next_position(const run *r)
 {
     const int64_t gap = GAP(r);
     int64_t found = (gap > 0) ? least(r->at.awaited, r->at.ends_at) : NEVER;
+    if (r->at.presence != ARE_THERE) {
+        return (r->at.started && (r->at.presence == MAY_BE_THERE)) ? NEVER : r->at.awaited;
+    }
     if ((gap > 0) && r->at.started) {
         int64_t change = timers_next(&r->wake);
         if ((r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy) {
@@ -123,7 +126,7 @@ static void ring(run *r, int64_t t)
 
 /* Whether the truth of its trigger may start attempts of a judge here, or end its episode; the
  * formula that says so, or -1. */
-static int32_t followed(const run *r, int32_t index)
+int32_t followed(const run *r, int32_t index)
 {
     const judge_plan *j = &r->part->judges[index];
     if (r->part->plan->captured == 0) {
@@ -175,10 +178,16 @@ static void call_up(run *r, int64_t t)
 /* The first position: everything is looked at. */
 static void start(run *r, int64_t t)
 {
-    int32_t i;
     r->at.started = true;
-    r->at.starting = true;
+    r->at.starting = IS_TRUE;
     r->at.origin = t;
+    r->at.begun = t;
+    look_at_all(r);
+}
+
+void look_at_all(run *r)
+{
+    int32_t i;
     for (i = 0; i < r->part->plan->atoms.count; i++) {
         recheck(r, i);
     }
@@ -202,6 +211,9 @@ static void have_judged(run *r, int64_t t)
             && (has_attempts(&r->judges[index]) || watches(r, index))) {
             visit_judge(r, index, t);
         }
+    }
+    if (r->at.presence == ARE_THERE_NEXT) {
+        revive_all(r, t);
     }
     for (i = 0; i < r->touched_count; i++) {
         const int32_t index = r->touched[i];
@@ -234,10 +246,16 @@ void visit(run *r, int64_t t)
         forget_last(r);
     }
     r->at.before = (gap > 0) ? t - gap : r->at.position;
-    if (!r->at.started) {
+    if (r->at.presence == MAY_BE_THERE) {
+        begin_blank(r, t);
+        return;
+    }
+    if (r->at.presence == ARE_THERE_NEXT) {
+        end_blank(r, t);
+    } else if (!r->at.started) {
         start(r, t);
     } else {
-        r->at.starting = false;
+        r->at.starting = IS_FALSE;
         if (gap == 0) {
             const int32_t *nodes = LIST(PLAN(r), r->part->plan->stateful);
             int32_t i;
@@ -346,7 +364,10 @@ void approach(run *r, int64_t t)
 void arrive(run *r, int64_t t)
 {
     const int64_t gap = GAP(r);
-    const bool dirty = r->at.dirty || is_soiled(r);
+    const bool dirty = r->at.dirty || is_soiled(r) || (r->at.presence != ARE_THERE);
+    if (r->at.presence == MAY_BE_THERE) {
+        r->at.presence = r->at.started ? ARE_THERE_NEXT : ARE_THERE;
+    }
     r->at.dirty = false;
     r->at.after = t;
     if (dirty || (t >= r->at.alarm)) {

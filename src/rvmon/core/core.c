@@ -246,6 +246,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
     for (i = 0; i < m->plan.part_count; i++) {
         home *h = &m->homes[i];
         if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started
+            || (h->root->at.presence != ARE_THERE)
             || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
             h->previous = m->last;
             home_sample(h, t);

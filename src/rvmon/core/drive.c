@@ -256,10 +256,10 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     judge *j = &r->judges[index];
     attempt *x;
     int32_t at;
-    if (!has_attempts(j) || (j->position < t)) {
+    if ((r->at.presence != MAY_BE_THERE) && (!has_attempts(j) || (j->position < t))) {
         visit_judge(r, index, t);
     }
-    if (is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
+    if ((r->at.presence != MAY_BE_THERE) && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
         (void)queue_begin(r, index, t);
         return;
     }
@@ -289,6 +289,23 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         leave_episode(r, index);
         j->current = at;
     }
+    if (r->at.presence == MAY_BE_THERE) {
+        x->hollow = true; /* what it owes here will not be known */
+        x->parted = true;
+        x->location = FAILED;
+        x->better = PASSED;
+        x->next = j->moot;
+        j->moot = at;
+    } else {
+        enter(r, index, at, t);
+    }
+}
+
+/* Judge an attempt that is in no list from the position at `t` on. */
+void enter(run *r, int32_t index, int32_t at, int64_t t)
+{
+    judge *j = &r->judges[index];
+    attempt *x = attempt_at(r->home, at);
     if (remains(r, index, at, t)) {
         set_rule_due(r, index, least(r->rules.due[index], x->due));
         if (j->last < 0) {

@@ -48,9 +48,10 @@ static uint8_t combined(const run *r, const node_plan *n)
 
 static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
 {
-    const int64_t due = sum(r->at.origin, n->low);
-    timers_set(&r->wake, n->timer, (t < due) ? due : NEVER);
-    return truth_if(t >= due);
+    const int64_t due = sum(r->at.begun, n->low);
+    const int64_t may_be_due = sum(r->at.origin, n->low);
+    timers_set(&r->wake, n->timer, (t < may_be_due) ? may_be_due : ((t < due) ? due : NEVER));
+    return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }
 
 static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
@@ -69,6 +70,23 @@ static uint8_t ever(run *r, const node_plan *n, uint8_t left, uint8_t right)
     value = (right > value) ? right : value;
     r->seen[n->slot] = value;
     return value;
+}
+
+/* Have what remembers know that its operands are unknown from the position `t` on. */
+void remember_unknown(run *r, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->nodes.count; i++) {
+        const node_plan *n = &r->part->nodes[i];
+        switch (n->op) {
+        case NODE_DOUBT: (void)node_doubt(r, n, i, t, IS_UNKNOWN); break;
+        case NODE_PREVIOUS: (void)previous(r, n, t, IS_UNKNOWN); break;
+        case NODE_EVER: (void)ever(r, n, IS_UNKNOWN, IS_UNKNOWN); break;
+        case NODE_EDGE:
+        case NODE_STRETCH: (void)node_since(r, n, t, IS_UNKNOWN, IS_UNKNOWN); break;
+        default: break;
+        }
+    }
 }
 
 static uint8_t evaluated(run *r, int32_t place, int64_t t)

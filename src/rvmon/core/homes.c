@@ -256,6 +256,26 @@ void home_lose(home *h, int64_t t)
     h->inbox_count = 0;
 }
 
+/* The trace may begin at `t`. */
+void home_begin_blank(home *h, int64_t t)
+{
+    const bool keeps = (h->part->plan->flags & PART_KEEPS_PAST) != 0;
+    if (keeps) {
+        keep_updates(h, t);
+        if (h->past_count > 0) {
+            h->past[h->past_count - 1].says = SAYS_AHEAD;
+        }
+    }
+    touch_run(h->root);
+    may_begin(h->root, t);
+    if (is_apart(h)) {
+        rest_all(h);
+    } else {
+        untouch_all(h);
+        h->alarm = t;
+    }
+}
+
 /* The last position of a run, to which it is taken for what is judged at the end. */
 static void come_to_end(run *r, int64_t end)
 {

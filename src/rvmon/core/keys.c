@@ -188,7 +188,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         /* What came since the last tick of a clock belongs to the next one. */
         made->over = h->root->over;
         made->at.gathered = h->root->at.gathered;
-        if (made->at.started) {
+        if (made->at.started && (made->at.presence == ARE_THERE)) {
             vary(made, made->at.position, made->at.gathered);
         }
     } else {

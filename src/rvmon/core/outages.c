@@ -304,6 +304,9 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
     if (code != RV_OK) {
         return code;
     }
+    for (i = 0; (m->last == RV_NO_TIME) && (m->heard == RV_NO_TIME) && (i < m->plan.part_count); i++) {
+        home_begin_blank(&m->homes[i], t);
+    }
     m->heard = (t > m->heard) ? t : m->heard;
     updates = arena_take(&m->memory, size);
     if (updates == NULL) {

@@ -415,7 +415,9 @@ void replay(run *r)
             const past_update *one = &h->past[first];
             const rv_update update = {0, one->says, one->value, one->fields};
             const incoming in = {one->local, one->event, &update};
-            if (loss) {
+            if (one->says == SAYS_AHEAD) {
+                may_begin(r, t);
+            } else if (loss) {
                 give_loss(r, t, &in, 1);
             } else if (one->local >= 0) {
                 take_update(r, t, &in);

@@ -143,8 +143,12 @@ typedef struct {
 /* How a name is: not lost; lost; lost up to an instant that is known; lost till its next update. */
 enum { NOT_LOST = 0, LOST_ON = 1, LOST_UNTIL = 2, LOST_SINCE = 3 };
 
-/* What is said of a name in place of an update: see `rv_lose` and `rv_found`. */
-enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND };
+/* What is said of a name in place of an update: see `rv_lose` and `rv_found`. AHEAD is said of none:
+ * before the first sample something was lost. */
+enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD };
+
+/* Whether there are positions: surely; nobody knows; from the next one on. */
+enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
 
 /* Stretches of instants at which a `since` in bounds holds, as a ring. */
 typedef struct {
@@ -277,6 +281,7 @@ struct run {
     /* What is copied with them. */
     struct progress {
         int64_t origin;
+        int64_t begun;         /* the first position that is surely there */
         int64_t position;
         int64_t before;
         int64_t alarm;         /* before that nothing happens without a change */
@@ -292,7 +297,8 @@ struct run {
         int32_t undetermined_left;
         int32_t phase;         /* 1: all is born and determined */
         bool started;
-        bool starting;         /* at the first position */
+        uint8_t starting;      /* a truth: whether this is the first position */
+        uint8_t presence;      /* whether there are positions now */
         bool gathered;
         bool dirty;            /* a position is to be looked at though no node is dirty */
     } at;
