@@ -144,6 +144,27 @@ void recheck_list(run *r, list l)
     }
 }
 
+/* Have an atom be read again at the next position, if it speaks of this one only. */
+static void fade(run *r, int32_t atom)
+{
+    if (is_momentary(r, atom) && (r->is_fading[atom] == 0U)) {
+        r->is_fading[atom] = 1;
+        r->fading[r->at.fading_count] = atom;
+        r->at.fading_count++;
+    }
+}
+
+/* Read atoms again while what occurred at the last position is still there. */
+void recheck_amid(run *r, list l)
+{
+    const int32_t *atoms = LIST(PLAN(r), l);
+    int32_t i;
+    recheck_list(r, l);
+    for (i = 0; r->over && (i < l.count); i++) {
+        fade(r, atoms[i]);
+    }
+}
+
 /* Read again what spoke of the last position only; what was read since speaks of this one. */
 void recheck_fading(run *r)
 {
@@ -159,11 +180,7 @@ void recheck_fading(run *r)
     for (i = 0; i < r->at.fresh_count; i++) {
         const int32_t atom = r->fresh[i];
         r->is_fresh[atom] = 0;
-        if (is_momentary(r, atom) && (r->is_fading[atom] == 0U)) {
-            r->is_fading[atom] = 1;
-            r->fading[r->at.fading_count] = atom;
-            r->at.fading_count++;
-        }
+        fade(r, atom);
     }
     r->at.fresh_count = 0;
 }
@@ -178,12 +195,8 @@ void reread(run *r, int32_t atom, bool pending)
     }
     if (pending) {
         list_fresh(r, atom);
-    } else if (r->is_fading[atom] == 0U) {
-        r->is_fading[atom] = 1;
-        r->fading[r->at.fading_count] = atom;
-        r->at.fading_count++;
     } else {
-        /* It is listed. */
+        fade(r, atom);
     }
 }
 

@@ -106,6 +106,7 @@ void revive_all(run *r, int64_t t);
 /* ---- atoms.c */
 void recheck(run *r, int32_t atom);
 void recheck_list(run *r, list l);
+void recheck_amid(run *r, list l);
 void recheck_fading(run *r);
 void reread(run *r, int32_t atom, bool pending);
 uint8_t leaf_truth(const run *r, const node_plan *n);

@@ -256,10 +256,10 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     judge *j = &r->judges[index];
     attempt *x;
     int32_t at;
-    if ((r->at.presence != MAY_BE_THERE) && (!has_attempts(j) || (j->position < t))) {
+    if ((r->at.presence == ARE_THERE) && (!has_attempts(j) || (j->position < t))) {
         visit_judge(r, index, t);
     }
-    if ((r->at.presence != MAY_BE_THERE) && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
+    if ((r->at.presence == ARE_THERE) && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
         (void)queue_begin(r, index, t);
         return;
     }
@@ -289,7 +289,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         leave_episode(r, index);
         j->current = at;
     }
-    if (r->at.presence == MAY_BE_THERE) {
+    if (r->at.presence != ARE_THERE) {
         x->hollow = true; /* what it owes here will not be known */
         x->parted = true;
         x->location = FAILED;

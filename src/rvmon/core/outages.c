@@ -65,10 +65,10 @@ static void recheck_name(run *r, int32_t name)
 {
     const int32_t signals = r->part->plan->signals.count;
     if (name < signals) {
-        recheck_list(r, r->part->signals[name].on_change[r->at.phase]);
-        recheck_list(r, r->part->signals[name].on_update[r->at.phase]);
+        recheck_amid(r, r->part->signals[name].on_change[r->at.phase]);
+        recheck_amid(r, r->part->signals[name].on_update[r->at.phase]);
     } else {
-        recheck_list(r, r->part->events[name - signals].on_occurrence[r->at.phase]);
+        recheck_amid(r, r->part->events[name - signals].on_occurrence[r->at.phase]);
     }
     r->at.dirty = true;
 }
@@ -184,9 +184,9 @@ static void leave_for_tick(run *r, int32_t name)
     recheck_name(r, name);
 }
 
-static void leave_name(run *r, int32_t name)
+static void leave_name(run *r, int32_t name, int64_t t)
 {
-    if (ends_at_position(r, name)) {
+    if (tick_from(GAP(r), r->until[name]) < tick_from(GAP(r), t)) {
         leave_wholly(r, name);
     } else {
         leave_for_tick(r, name);
@@ -219,7 +219,7 @@ void come_back(run *r, int64_t t)
     for (i = 0; i < names; i++) {
         if (r->lost[i] == LOST_UNTIL) {
             if (r->until[i] < t) {
-                leave_name(r, i);
+                leave_name(r, i, t);
             } else {
                 r->at.ends_at = least(r->at.ends_at, position_behind(r, i));
             }
@@ -247,7 +247,7 @@ bool take_amid(run *r, int64_t t, const incoming *in)
         return true;
     }
     if (r->lost[name] == LOST_UNTIL) {
-        leave_name(r, name);
+        leave_name(r, name, t);
     }
     if (r->lost[name] == LOST_SINCE) {
         end_loss(r, name);
@@ -272,8 +272,8 @@ void give_loss(run *r, int64_t t, const incoming *in, int32_t count)
     const int32_t signals = r->part->plan->signals.count;
     int32_t i;
     approach(r, t);
-    if (r->part->plan->captured > 0) {
-        forget_last(r);
+    if ((r->part->plan->captured > 0) && (r->at.position < tick_from(GAP(r), t) - GAP(r))) {
+        forget_last(r); /* else what occurred there is still looked at by what begins at `t` */
     }
     for (i = 0; i < count; i++) {
         const int32_t name = in[i].event ? signals + in[i].local : in[i].local;
@@ -294,7 +294,7 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
     rv_update *updates;
     int32_t i;
     int code;
-    if ((m->plan.header->flags & PLAN_NEXT_LAW) == 0) {
+    if (((m->plan.header->flags & PLAN_NEXT_LAW) == 0) || (m->plan.header->gap == 0)) {
         return RV_OTHER_LAW;
     }
     if (!m->finished && !m->spoilt && (t > -LIMIT) && (t <= m->after)) {

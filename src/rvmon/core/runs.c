@@ -410,7 +410,9 @@ void replay(run *r)
         }
         const bool loss = h->past[first].says > RV_SAYS_YES;
         approach(r, t);
-        forget_last(r);
+        if (!loss) {
+            forget_last(r);
+        }
         do {
             const past_update *one = &h->past[first];
             const rv_update update = {0, one->says, one->value, one->fields};

@@ -259,12 +259,14 @@ class Reader(Reading[Four]):
         if high is not None and low > high:
             return self.constant(False)
         value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
-        if self.next_law and not (low == 0 and (right.fades or not right.mortal)):
+        if self.next_law and (low > 0 or right.mortal):
             value = self._or_lost(value, left, right, low, high)
         if not right.mortal:
             return Four(factory, _same(value), mortal=False)
         if right.fades and low == 0:
             unborn = right.unborn
+            if self.next_law:  # in an outage before the first sample it may be, or not
+                unborn = factory.state_all([unborn, factory.sure(factory.negation(value))])
         else:
             born = factory.since(factory.state_true, factory.negation(right.unborn), low, high)
             some = factory.since(factory.state_true, factory.state_true, low, high)
