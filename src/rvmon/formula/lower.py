@@ -33,6 +33,7 @@ def lower(
     *,
     measured: bool = False,
     next_law: bool = False,
+    sampled: bool = False,
 ) -> Obligation:
     """Bring a requirement into core form.
 
@@ -42,12 +43,15 @@ def lower(
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         measured: see `rvmon.formula.four.Reader`.
         next_law: whether for the law to come, by which anything may be lost.
+        sampled: whether only samples are positions.
 
     Raises:
         UnmonitorableError: the trigger speaks of the future.
     """
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
-    lowering = Lowering(factory, period, favour, measured=measured, next_law=next_law)
+    lowering = Lowering(
+        factory, period, favour, measured=measured, next_law=next_law, sampled=sampled
+    )
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
             return Obligation(None, lowering.core(requirement.consequent, True), lowering.origins)

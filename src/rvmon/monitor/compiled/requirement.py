@@ -377,7 +377,13 @@ def compiled_requirements(
     made = {}
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
         try:
-            obligation = lower(requirement, factory, checked.period, next_law=next_law)
+            obligation = lower(
+                requirement,
+                factory,
+                checked.period,
+                next_law=next_law,
+                sampled=checked.gap is None,
+            )
         except UnmonitorableError as error:
             span = requirement.span
             place = "" if span is None else f"{span.source.name}:{span.line}: "
