@@ -69,12 +69,15 @@ class Stepped:
     def lose(self, names: Iterable[str], since: int, /) -> bool:
         """Lose some names."""
         self._asked = False
-        return self._monitor._core.lose(names, since)
+        return self._monitor._core.lose(self._numbers(names), since)
 
     def found(self, names: Iterable[str], at: int, /) -> bool:
         """Find them again."""
         self._asked = False
-        return self._monitor._core.found(names, at)
+        return self._monitor._core.found(self._numbers(names), at)
+
+    def _numbers(self, names: Iterable[str]) -> list[int]:
+        return [self._monitor._planned.numbers[name] for name in names]
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         """End the trace."""
@@ -130,12 +133,12 @@ class ByRows:
     def lose(self, names: Iterable[str], since: int, /) -> bool:
         """Lose some names."""
         self._feed()
-        return self._run.lose(names, since)
+        return self._run.lose([self._planned.numbers[name] for name in names], since)
 
     def found(self, names: Iterable[str], at: int, /) -> bool:
         """Find them again."""
         self._feed()
-        return self._run.found(names, at)
+        return self._run.found([self._planned.numbers[name] for name in names], at)
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         """End the trace."""

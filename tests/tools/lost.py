@@ -65,23 +65,24 @@ def open_at_end(case: Case) -> int | None:
 def _calls(case: Case) -> list[Lost | Found]:
     """In order; of stretches of one name that overlap nothing is told in between."""
     found: list[tuple[int, int, bool, str]] = []
-    for name in (*case.spec.signals, *case.spec.events):
+    for name in (*case.spec.signals, *case.spec.events, ""):
         for number, (first, last) in enumerate(_stretches(case, name)):
             found += [(first, 2 * number, True, name), (last, 2 * number + 1, False, name)]
-    empty = [outage for outage in case.outages if not outage.names]
-    found += [(outage.first, 0, True, "") for outage in empty]
-    found += [(outage.last, 1, False, "") for outage in empty]
     calls: list[Lost | Found] = []
-    for (t, _, lost), group in groupby(sorted(found), key=lambda one: one[:3]):
+    for (t, _, lost, _), group in groupby(sorted(found), key=lambda one: (*one[:3], one[3] > "")):
         names = tuple(name for *_, name in group if name)
         calls.append(Lost(names, t) if lost else Found(names, t))
     return calls
 
 
 def _stretches(case: Case, name: str) -> Sequence[tuple[int, int]]:
-    """The outages of a name, those that overlap in more than an instant as one."""
+    """The outages of a name, those that overlap in more than an instant as one.
+
+    Those of nothing are of the name "".
+    """
     found: list[tuple[int, int]] = []
-    for first, last in sorted((o.first, o.last) for o in case.outages if name in o.names):
+    own = [one for one in case.outages if name in one.names or not (name or one.names)]
+    for first, last in sorted((one.first, one.last) for one in own):
         if found and first < found[-1][1]:
             found[-1] = (found[-1][0], max(found[-1][1], last))
         else:

@@ -64,14 +64,14 @@ class Monitor:
         """
 
     def advance(self, t: int, /) -> None: ...
-    def lose(self, names: Iterable[str], since: int, /) -> bool:
+    def lose(self, names: Iterable[int], since: int, /) -> bool:
         """See `rv_lose`; false, and nothing happened, if what is there was judged already.
 
         Raises:
-            ValueError: the plan is of a law by which nothing is lost.
+            ValueError: the plan is of a law by which nothing is lost, or has no such name.
         """
 
-    def found(self, names: Iterable[str], at: int, /) -> bool:
+    def found(self, names: Iterable[int], at: int, /) -> bool:
         """See `rv_found`; else as `lose`."""
 
     def finish(self, until: int | None, /) -> int | None:

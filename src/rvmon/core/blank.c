@@ -21,6 +21,7 @@ void begin_blank(run *r, int64_t t)
     int32_t i;
     r->at.started = true;
     r->at.origin = t;
+    r->at.begun = NEVER;
     r->at.position = t;
     r->at.awaited = NEVER;
     r->opening = false;
@@ -28,6 +29,7 @@ void begin_blank(run *r, int64_t t)
         r->opens_at = -LIMIT; /* whatever occurs is unknown */
     }
     remember_unknown(r, t);
+    blank_out(r, t);
     for (i = 0; i < r->part->plan->judges.count; i++) {
         const int32_t trigger = followed(r, i);
         if (watches(r, i)) {
@@ -45,8 +47,11 @@ void begin_blank(run *r, int64_t t)
 /* Come to the first position that is surely there. */
 void end_blank(run *r, int64_t t)
 {
-    r->at.starting = IS_UNKNOWN;
-    r->at.begun = t;
+    r->at.starting = IS_FALSE;
+    if (r->at.begun == NEVER) {
+        r->at.starting = IS_UNKNOWN;
+        r->at.begun = t;
+    }
     look_at_all(r);
 }
 
@@ -75,7 +80,7 @@ static void revive(run *r, int32_t index, int64_t t)
 void revive_all(run *r, int64_t t)
 {
     int32_t i;
-    for (i = 0; i < r->part->plan->judges.count; i++) {
+    for (i = 0; (GAP(r) > 0) && (i < r->part->plan->judges.count); i++) {
         if (runs_on(r, i) && (r->judges[i].current >= 0)) {
             revive(r, i, t);
         }

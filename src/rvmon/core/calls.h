@@ -121,6 +121,7 @@ void soil_all(run *r);
 void work_out(run *r, int64_t t);
 bool is_soiled(const run *r);
 void remember_unknown(run *r, int64_t t);
+void blank_out(run *r, int64_t t);
 void vary(run *r, int64_t t, bool pending);
 void settle_phase(run *r);
 
@@ -170,6 +171,7 @@ void sort_records(rv_monitor *m);
 void set_rule_due(run *r, int32_t index, int64_t due);
 void set_restless(run *r, int32_t index);
 void pass_to(run *r, int32_t index, int64_t t);
+void pass_ticks(run *r, int32_t index, int64_t t);
 void visit_judge(run *r, int32_t index, int64_t t);
 void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
 void begin(run *r, int32_t index, int64_t t, int64_t triggered);
@@ -197,6 +199,18 @@ static inline bool has_attempts(const judge *j)
     return (j->first >= 0) || ((j->queue != NULL) && (j->queue->count > 0));
 }
 
+/* ---- dense.c: outages where only samples are positions */
+bool begin_dense(rv_monitor *m, int64_t t);
+void pass_dense(rv_monitor *m, int64_t limit);
+void end_dense(rv_monitor *m);
+bool is_amid_dense(rv_monitor *m, int64_t t);
+void run_begin_dense(run *r, int64_t t);
+void run_pass_dense(run *r, int64_t limit);
+void run_end_dense(run *r, int64_t until);
+void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count);
+void home_take_amid(home *h, int64_t t);
+int64_t last_position(const rv_monitor *m);
+
 /* ---- core.c */
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 
@@ -205,6 +219,8 @@ void clear_run(run *r);
 void clear_judges(run *r);
 int32_t followed(const run *r, int32_t index);
 void look_at_all(run *r);
+void touch_all(run *r, uint8_t what);
+void have_judged(run *r, int64_t t);
 void visit(run *r, int64_t t);
 void reach(run *r, int64_t t);
 void through(run *r, int64_t limit, bool comes);
@@ -294,6 +310,7 @@ void let_go(run *r);
 /* ---- keys.c: instances of a `for each` */
 bool begin_keys(home *h);
 void open_instances(home *h, int64_t t);
+void open_unknown(home *h, int64_t t);
 void close_instance(run *r);
 bool is_over(const run *r);
 run *instance_of(const home *h, const rv_number *value);
@@ -319,6 +336,8 @@ void home_sample(home *h, int64_t t);
 void home_wait(home *h, int64_t t);
 void home_lose(home *h, int64_t t);
 void home_begin_blank(home *h, int64_t t);
+void rest_all(home *h);
+void untouch_all(home *h);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
 run *following(const home *h, const run *r);

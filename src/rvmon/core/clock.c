@@ -138,7 +138,7 @@ int32_t followed(const run *r, int32_t index)
     return (((r->judging >> index) & 1) != 0) ? j->running : -1;
 }
 
-static void touch_all(run *r, uint8_t what)
+void touch_all(run *r, uint8_t what)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->judges.count; i++) {
@@ -196,7 +196,7 @@ void look_at_all(run *r)
 }
 
 /* What those that were touched do, each kind of thing for all of them before the next. */
-static void have_judged(run *r, int64_t t)
+void have_judged(run *r, int64_t t)
 {
     int32_t i;
     for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {

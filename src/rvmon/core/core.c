@@ -48,7 +48,8 @@ static bool prepare(rv_monitor *m)
     m->parts = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->parts);
     m->homes = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->homes);
     m->absent = arena_take(&m->memory, (size_t)names + 1);
-    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL)) {
+    m->losing = arena_take(&m->memory, (size_t)names + 1);
+    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL) || (m->losing == NULL)) {
         return false;
     }
     for (i = 0; i < p->part_count; i++) {
@@ -84,6 +85,10 @@ static bool begin_run(rv_monitor *m)
     m->after = -LIMIT;
     m->reached = RV_NO_TIME;
     m->heard = RV_NO_TIME;
+    m->losing_count = 0;
+    m->dense_until = RV_NO_TIME;
+    m->dense_end = RV_NO_TIME;
+    (void)memset(m->losing, 0, (size_t)names + 1);
     m->finished = false;
     m->spoilt = false;
     for (i = 0; i < p->part_count; i++) {
@@ -219,7 +224,7 @@ static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32
     run *r = m->homes[0].root;
     int32_t i;
     if ((m->plan.header->gap == 0) && r->at.started) {
-        r->at.position = m->last;
+        r->at.position = last_position(m);
     }
     approach(r, t);
     for (i = 0; i < count; i++) {
@@ -248,7 +253,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
         if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started
             || (h->root->at.presence != ARE_THERE)
             || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
-            h->previous = m->last;
+            h->previous = last_position(m);
             home_sample(h, t);
         }
     }
@@ -257,6 +262,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
 
 int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
+    int32_t i;
     if (m->finished) {
         return RV_FINISHED;
     }
@@ -269,7 +275,14 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     if (t <= m->after) {
         return RV_TOO_EARLY;
     }
-    if (m->is_alone) {
+    if ((m->dense_until != RV_NO_TIME) && is_amid_dense(m, t)) {
+        if (!distribute(m, updates, count)) {
+            return RV_NO_MEMORY;
+        }
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_take_amid(&m->homes[i], t);
+        }
+    } else if (m->is_alone) {
         step_alone(m, t, updates, count);
     } else if (!step_parts(m, t, updates, count)) {
         return RV_NO_MEMORY;
@@ -301,6 +314,9 @@ int rv_advance(rv_monitor *m, int64_t t)
         return RV_OUT_OF_RANGE;
     }
     if (t > m->reached) {
+        if (m->dense_until != RV_NO_TIME) {
+            pass_dense(m, t - 1);
+        }
         for (i = 0; i < m->plan.part_count; i++) {
             home_wait(&m->homes[i], t);
         }
@@ -334,6 +350,10 @@ int rv_finish(rv_monitor *m, int64_t t)
     }
     if ((t != RV_NO_TIME) && !is_in_range(t)) {
         return RV_OUT_OF_RANGE;
+    }
+    if ((m->dense_until != RV_NO_TIME) && !m->finished && !m->spoilt) {
+        m->dense_until = least(m->dense_until, end);
+        end_dense(m);
     }
     m->finished = true;
     if ((end != RV_NO_TIME) && !m->spoilt) {

@@ -178,6 +178,20 @@ void pass_to(run *r, int32_t index, int64_t t)
     }
 }
 
+/* Step the attempts of an automaton at each tick up to `t`, the letter being as it was. */
+void pass_ticks(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    if (!queue_is_empty(j)) {
+        loosen_queue(r, index);
+    }
+    if (has_attempts(j)) {
+        drive_all(r, index, BY_RUN, j->position + 1, t, false);
+        set_restless(r, index);
+    }
+    j->position = t;
+}
+
 /* Step what is queued, if something is. */
 static void step_or_rest(run *r, int32_t index, int64_t t)
 {

@@ -40,7 +40,7 @@ static void drop_gone(home *h)
     h->touched_count = kept;
 }
 
-static void untouch_all(home *h)
+void untouch_all(home *h)
 {
     int32_t i;
     for (i = 0; i < h->touched_count; i++) {
@@ -50,7 +50,7 @@ static void untouch_all(home *h)
 }
 
 /* End a call: let go of attempts and instances that are over, and set the alarms of what was touched. */
-static void rest_all(home *h)
+void rest_all(home *h)
 {
     int32_t i;
     flush_turns(h);
@@ -290,10 +290,10 @@ static void come_to_end(run *r, int64_t end)
             r->at.before = last - gap;
         }
     } else {
-        if (is_apart(r->home) && (r->home->monitor->last > r->at.position)) {
+        if (is_apart(r->home) && (last_position(r->home->monitor) > r->at.position)) {
             forget_last(r); /* a sample that this part does not read is a position, too */
         }
-        r->at.position = r->home->monitor->last;
+        r->at.position = last_position(r->home->monitor);
     }
 }
 

@@ -232,10 +232,18 @@ void open_instances(home *h, int64_t t)
             unknown = true;
         }
     }
-    while (unknown && (h->oldest >= 0) && !h->monitor->spoilt) {
+    if (unknown) {
+        open_unknown(h, t);
+    }
+}
+
+/* What occurs at `t` may be of any value. */
+void open_unknown(home *h, int64_t t)
+{
+    while ((h->oldest >= 0) && !h->monitor->spoilt) {
         open_instance(h, h->oldest, t, true);
     }
-    if (unknown && (h->root->opens_at == NEVER)) {
+    if (h->root->opens_at == NEVER) {
         open_at(h->root, t);
     }
 }
@@ -301,7 +309,8 @@ bool is_over(const run *r)
     const int32_t *varying = LIST(PLAN(r), p->varying);
     int32_t next = 0;
     int32_t i;
-    if (!is_quiet(r) || (r->at.lost_count > 0) || (r->occurred == NEVER)) {
+    if (!is_quiet(r) || (r->at.lost_count > 0) || (r->occurred == NEVER) || r->at.dense
+        || (r->at.presence != ARE_THERE)) {
         return false;
     }
     for (i = 0; i < p->nodes.count; i++) {

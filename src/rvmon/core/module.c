@@ -2,6 +2,7 @@
  * columns, and gives out attempts. The only file of the core that knows of Python. */
 #include "module_attempts.h"
 #include "module_open.h"
+#include "module_outages.h"
 #include "module_rows.h"
 
 #ifndef RVMON_SOURCE_HASH
@@ -162,64 +163,6 @@ static PyObject *advance_of(monitor *c, PyObject *until)
     code = rv_advance(c->m, (int64_t)t);
     /* Time that has come already changes nothing. */
     return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
-}
-
-/* The numbers of names, for PyMem_Free; names that cannot come are left out. NULL: it is no iterable of
- * names. */
-static int32_t *numbers_of(const monitor *c, PyObject *names, int32_t *count)
-{
-    PyObject *all = PySequence_Tuple(names);
-    int32_t *made = (all == NULL) ? NULL
-                                  : PyMem_Calloc((size_t)PyTuple_Size(all) + 1U, sizeof *made);
-    Py_ssize_t i;
-    *count = 0;
-    for (i = 0; (made != NULL) && (i < PyTuple_Size(all)); i++) {
-        PyObject *found = PyDict_GetItemWithError(c->in.numbers, PyTuple_GetItem(all, i));
-        if (found != NULL) {
-            made[*count] = (int32_t)PyLong_AsLong(found);
-            (*count)++;
-        } else if (PyErr_Occurred() != NULL) {
-            PyMem_Free(made);
-            made = NULL;
-        } else {
-            /* It has no source: it is unknown anyway. */
-        }
-    }
-    Py_XDECREF(all);
-    return made;
-}
-
-static PyObject *told(monitor *c, PyObject *args, int (*tell)(rv_monitor *, int64_t, const int32_t *, int32_t))
-{
-    PyObject *names;
-    long long t;
-    int32_t count;
-    int32_t *numbers;
-    int code;
-    if (!PyArg_ParseTuple(args, "OL", &names, &t)) {
-        return NULL;
-    }
-    numbers = numbers_of(c, names, &count);
-    if (numbers == NULL) {
-        return (PyErr_Occurred() != NULL) ? NULL : PyErr_NoMemory();
-    }
-    code = tell(c->m, (int64_t)t, numbers, count);
-    PyMem_Free(numbers);
-    if (code == RV_TOO_EARLY) {
-        return Py_NewRef(Py_False);
-    }
-    return is_done(code) ? Py_NewRef(Py_True) : NULL;
-}
-
-/* lose(names, since), found(names, at): false if what is there was judged already. */
-static PyObject *lose_of(monitor *c, PyObject *args)
-{
-    return told(c, args, rv_lose);
-}
-
-static PyObject *found_of(monitor *c, PyObject *args)
-{
-    return told(c, args, rv_found);
 }
 
 static PyObject *instant(int64_t t, int64_t none)

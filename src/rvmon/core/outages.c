@@ -30,7 +30,7 @@ void begin_unlost(run *r)
 /* Whether the last instant of what was lost of a name is a position, which that hides. */
 static bool ends_at_position(const run *r, int32_t name)
 {
-    return tick_from(GAP(r), r->until[name]) == r->until[name];
+    return tick_from(step_of(r), r->until[name]) == r->until[name];
 }
 
 bool is_lost_at(const run *r, int32_t name, int64_t t)
@@ -186,7 +186,7 @@ static void leave_for_tick(run *r, int32_t name)
 
 static void leave_name(run *r, int32_t name, int64_t t)
 {
-    if (tick_from(GAP(r), r->until[name]) < tick_from(GAP(r), t)) {
+    if (tick_from(step_of(r), r->until[name]) < tick_from(step_of(r), t)) {
         leave_wholly(r, name);
     } else {
         leave_for_tick(r, name);
@@ -196,7 +196,8 @@ static void leave_name(run *r, int32_t name, int64_t t)
 /* The first position that may find a name known again. */
 static int64_t position_behind(const run *r, int32_t name)
 {
-    return ends_at_position(r, name) ? r->until[name] + GAP(r) : tick_from(GAP(r), r->until[name]);
+    return ends_at_position(r, name) ? r->until[name] + step_of(r)
+                                     : tick_from(step_of(r), r->until[name]);
 }
 
 static void find_name(run *r, int32_t name, int64_t at)
@@ -271,8 +272,11 @@ void give_loss(run *r, int64_t t, const incoming *in, int32_t count)
 {
     const int32_t signals = r->part->plan->signals.count;
     int32_t i;
-    approach(r, t);
-    if ((r->part->plan->captured > 0) && (r->at.position < tick_from(GAP(r), t) - GAP(r))) {
+    const int64_t gap = GAP(r);
+    if (gap > 0) {
+        approach(r, t);
+    }
+    if ((gap > 0) && (r->part->plan->captured > 0) && (r->at.position < tick_from(gap, t) - gap)) {
         forget_last(r); /* else what occurred there is still looked at by what begins at `t` */
     }
     for (i = 0; i < count; i++) {
@@ -283,8 +287,38 @@ void give_loss(run *r, int64_t t, const incoming *in, int32_t count)
             find_name(r, name, t);
         }
     }
-    r->at.awaited = least(r->at.awaited, tick_from(GAP(r), t));
-    set_alarm(r, next_position(r));
+    if (gap > 0) {
+        r->at.awaited = least(r->at.awaited, tick_from(gap, t));
+        set_alarm(r, next_position(r));
+    }
+}
+
+static void note_one(rv_monitor *m, int32_t name, bool lost)
+{
+    if ((m->losing[name] != 0U) != lost) {
+        m->losing[name] = lost ? 1 : 0;
+        m->losing_count += lost ? 1 : -1;
+    }
+}
+
+/* Where only samples are positions, each tick may be one while anything is lost, be it nothing. */
+static bool note_losing(rv_monitor *m, int64_t t, const int32_t *names, int32_t count, int32_t says)
+{
+    const bool lost = says == SAYS_LOST;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        note_one(m, names[i], lost);
+    }
+    if (count == 0) {
+        note_one(m, m->plan.header->signals + m->plan.header->events, lost);
+    }
+    if (lost && (m->dense_until == RV_NO_TIME)) {
+        return begin_dense(m, t);
+    }
+    if (m->dense_until != RV_NO_TIME) {
+        m->dense_until = (m->losing_count > 0) ? NEVER : t;
+    }
+    return true;
 }
 
 /* Have some names be lost, or found, at `t`. */
@@ -294,7 +328,7 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
     rv_update *updates;
     int32_t i;
     int code;
-    if (((m->plan.header->flags & PLAN_NEXT_LAW) == 0) || (m->plan.header->gap == 0)) {
+    if ((m->plan.header->flags & PLAN_NEXT_LAW) == 0) {
         return RV_OTHER_LAW;
     }
     if (!m->finished && !m->spoilt && (t > -LIMIT) && (t <= m->after)) {
@@ -304,7 +338,12 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
     if (code != RV_OK) {
         return code;
     }
-    for (i = 0; (m->last == RV_NO_TIME) && (m->heard == RV_NO_TIME) && (i < m->plan.part_count); i++) {
+    if (m->plan.header->gap == 0) {
+        if (!note_losing(m, t, names, count, says)) {
+            return RV_NO_MEMORY;
+        }
+    }
+    for (i = 0; (m->plan.header->gap > 0) && (m->last == RV_NO_TIME) && (m->heard == RV_NO_TIME) && (i < m->plan.part_count); i++) {
         home_begin_blank(&m->homes[i], t);
     }
     m->heard = (t > m->heard) ? t : m->heard;

@@ -409,8 +409,11 @@ void replay(run *r)
             r->at.position = h->previous;
         }
         const bool loss = h->past[first].says > RV_SAYS_YES;
-        approach(r, t);
-        if (!loss) {
+        const bool amid = r->at.dense;
+        if (!amid) {
+            approach(r, t);
+        }
+        if (!loss && !amid) {
             forget_last(r);
         }
         do {
@@ -419,8 +422,14 @@ void replay(run *r)
             const incoming in = {one->local, one->event, &update};
             if (one->says == SAYS_AHEAD) {
                 may_begin(r, t);
+            } else if (one->says == SAYS_DENSE) {
+                run_begin_dense(r, t);
+            } else if (one->says == SAYS_SPARSE) {
+                run_end_dense(r, t);
             } else if (loss) {
                 give_loss(r, t, &in, 1);
+            } else if (r->at.dense) {
+                run_take_amid(r, t, &in, (one->local >= 0) ? 1 : 0);
             } else if (one->local >= 0) {
                 take_update(r, t, &in);
             } else {
@@ -428,10 +437,10 @@ void replay(run *r)
             }
             first++;
         } while ((first < h->past_count) && !h->past[first - 1].last);
-        if (!loss) {
+        if (!loss && !amid) {
             arrive(r, t);
-            h->previous = t;
         }
+        h->previous = (loss && (h->past[first - 1].says != SAYS_SPARSE)) ? h->previous : t;
     }
     h->previous = previous;
 }

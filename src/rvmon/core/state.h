@@ -143,9 +143,10 @@ typedef struct {
 /* How a name is: not lost; lost; lost up to an instant that is known; lost till its next update. */
 enum { NOT_LOST = 0, LOST_ON = 1, LOST_UNTIL = 2, LOST_SINCE = 3 };
 
-/* What is said of a name in place of an update: see `rv_lose` and `rv_found`. AHEAD is said of none:
- * before the first sample something was lost. */
-enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD };
+/* What is said of a name in place of an update: see `rv_lose` and `rv_found`. What is said of none:
+ * AHEAD, before the first sample something was lost; DENSE, from here on every tick may be a position;
+ * SPARSE, only samples are behind here. */
+enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD, SAYS_DENSE, SAYS_SPARSE };
 
 /* Whether there are positions: surely; nobody knows; from the next one on. */
 enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
@@ -281,6 +282,7 @@ struct run {
     /* What is copied with them. */
     struct progress {
         int64_t origin;
+        int64_t dense_from;    /* the first such tick */
         int64_t begun;         /* the first position that is surely there */
         int64_t position;
         int64_t before;
@@ -299,6 +301,7 @@ struct run {
         bool started;
         uint8_t starting;      /* a truth: whether this is the first position */
         uint8_t presence;      /* whether there are positions now */
+        bool dense;            /* whether every tick may be one, where only samples are */
         bool gathered;
         bool dirty;            /* a position is to be looked at though no node is dirty */
     } at;
@@ -368,6 +371,7 @@ struct home {
     uint32_t failed;
     uint32_t inconclusive;
     rv_number *room;           /* for values that are captured to be compared */
+    rv_number *nothing;        /* the values of its signals where all are unknown; NULL till then */
     int32_t sure[2];           /* what became so and is not numbered: first and last */
     int32_t doubtful[2];
     int32_t done[2];           /* what was decided and is not told */
@@ -402,6 +406,12 @@ struct rv_monitor {
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    /* Where only samples are positions. */
+    uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */
+    int32_t losing_count;
+    int64_t dense_until;       /* the last tick that may be one; NEVER: it goes on; RV_NO_TIME: none
+                                * may be now */
+    int64_t dense_end;         /* that of the last such stretch */
     int64_t heard;             /* how far names are known to have been lost; RV_NO_TIME: none was */
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;

@@ -53,9 +53,17 @@ class Run:
 
     def lost(self, names: str, first: int, last: int) -> Run:
         """Lose names, and find them again."""
-        assert self.core.lose(names.split(), first)
-        assert self.core.found(names.split(), last)
+        assert self.lose(names, first)
+        assert self.found(names, last)
         return self
+
+    def lose(self, names: str, since: int) -> bool:
+        """Lose names; whether they can be."""
+        return self.core.lose([self._planned.numbers[name] for name in names.split()], since)
+
+    def found(self, names: str, at: int) -> bool:
+        """Find them again; whether they can be."""
+        return self.core.found([self._planned.numbers[name] for name in names.split()], at)
 
     def report(self, end: int | None = None) -> Report:
         """End the run."""
@@ -104,9 +112,9 @@ def marks(report: Report, count: int) -> str:
 def test_within_it_at_every_tick_all_is_unknown(condition, expected):
     """From the tick behind it on, what bore the last instant counts."""
     run = Run(at_each(condition, 6)).sample(0, p=True, q=True)
-    assert run.core.lose(["p", "e"], 2)
+    assert run.lose("p e", 2)
     run.sample(3, p=False, e=True)
-    assert run.core.found(["p", "e"], 4)
+    assert run.found("p e", 4)
     assert marks(run.sample(4, p=True, e=True).report(5), 6) == expected
 
 
@@ -122,13 +130,13 @@ def test_within_it_at_every_tick_all_is_unknown(condition, expected):
 def test_a_signal_is_known_from_its_first_update_on(told, expected):
     """One that was read within may have been followed by one that was lost."""
     run = Run(at_each("p", 7)).sample(0, p=True)
-    assert run.core.lose(["p"], 2)
+    assert run.lose("p", 2)
     found = False
     for t, value in told:
         if t >= 4 and not found:
-            found = run.core.found(["p"], 4)
+            found = run.found("p", 4)
         run.sample(t, p=value)
-    assert found or run.core.found(["p"], 4)
+    assert found or run.found("p", 4)
     assert marks(run.report(6), 7) == expected
 
 
@@ -141,7 +149,7 @@ def test_of_one_instant_nobody_knows_what_came_last():
 def test_another_update_ends_nothing():
     """It is a state of names, entered and left by whoever opens the door."""
     run = Run(at_each("p", 5)).sample(0, p=True)
-    assert run.core.lose(["p"], 1)
+    assert run.lose("p", 1)
     run.sample(2, q=True).sample(3, p=True)
     assert marks(run.report(4), 5) == "+????"
 
@@ -224,7 +232,7 @@ def test_a_trace_reaches_to_the_last_instant():
 def test_what_is_lost_at_the_end_is_lost_up_to_there():
     """Nobody has to say that it was found."""
     run = Run("requirement R\n  always p").sample(0, p=True)
-    assert run.core.lose(["p"], 3)
+    assert run.lose("p", 3)
     assert run.said(7) == ["0 I"]
 
 
@@ -256,8 +264,8 @@ def test_of_a_clock_an_event_that_was_lost_counts_at_the_next_tick():
 def test_what_was_judged_cannot_be_lost_any_more():
     """It is refused, and nothing happens."""
     run = Run(at_each("p", 4)).sample(0, p=True).sample(2, p=True)
-    assert not run.core.lose(["p"], 2)
-    assert not run.core.lose(["p"], -1)
+    assert not run.lose("p", 2)
+    assert not run.lose("p", -1)
     assert marks(run.report(3), 4) == "++++"
 
 
@@ -272,17 +280,26 @@ def test_a_plan_of_the_law_of_today_loses_nothing():
     """The law is one flag of the plan."""
     run = planned("requirement R\n  always p", next_law=False).monitor(frozenset())
     with pytest.raises(ValueError, match="refused"):
-        run.lose(["p"], 0)
+        run.lose([0], 0)
 
 
-def test_what_is_no_name_is_left_out():
-    """It has no source, so it is unknown anyway; what is no iterable is an error."""
+@pytest.mark.parametrize("names", [[99], [-1]])
+def test_what_is_no_name_cannot_be_lost(names):
+    """Names are told by their numbers in the plan."""
     run = planned("requirement R\n  always p").monitor(frozenset({"q"}))
-    assert run.lose(["q", "nobody"], 0)
+    with pytest.raises(ValueError, match="no such name"):
+        run.lose(names, 0)
+
+
+def test_names_come_as_numbers():
+    """Whatever can be gone through will do; of names without a source nothing is lost."""
+    run = planned("requirement R\n  always p").monitor(frozenset({"q"}))
+    assert run.lose(iter([1]), 0)
+    assert run.found((), 0)
     with pytest.raises(TypeError):
         run.lose(3, 1)
     with pytest.raises(TypeError):
-        run.lose(["p", []], 1)
+        run.lose(["p"], 1)
 
 
 @pytest.mark.law
