@@ -11,37 +11,48 @@
 #include <string.h>
 
 /* Ticks of one stretch that networks are taken through one by one. */
-#define TICKS_MOST 4096
+#define TICKS_MOST 1000
 
 int64_t last_position(const rv_monitor *m)
 {
     return (m->dense_end > m->last) ? m->dense_end : m->last;
 }
 
-/* Whether some judge has to see each position, one by one. */
+/* Whether a judge has to see each position, one by one. */
+static bool is_slow(const run *r, int32_t index)
+{
+    return is_networked(r, index) && !r->judges[index].blind
+           && (has_attempts(&r->judges[index]) || watches(r, index));
+}
+
 static bool goes_slowly(const run *r)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->judges.count; i++) {
-        if (is_networked(r, i) && (has_attempts(&r->judges[i]) || watches(r, i))) {
+        if (is_slow(r, i)) {
             return true;
         }
     }
     return false;
 }
 
-/* Have nothing more be said of the attempts of networks: none was decided. */
+/* Have nothing more be said of what networks judge now; one that looks back will have missed what it
+ * is asked for. */
 static void give_up_networks(run *r)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->judges.count; i++) {
         judge *j = &r->judges[i];
-        while (is_networked(r, i) && (j->first >= 0)) {
-            attempt *x = attempt_at(r->home, j->first);
-            x->parted = true;
-            x->location = FAILED;
-            x->better = PASSED;
-            lay_aside(r, i, -1, j->first);
+        if (is_slow(r, i)) {
+            while (j->first >= 0) {
+                attempt *x = attempt_at(r->home, j->first);
+                x->parted = true;
+                x->location = FAILED;
+                x->better = PASSED;
+                lay_aside(r, i, -1, j->first);
+            }
+            j->blind = r->part->forms[r->part->judges[i].form].looks_back != 0;
+            set_rule_due(r, i, NEVER);
         }
     }
 }
@@ -73,6 +84,17 @@ void run_begin_dense(run *r, int64_t t)
     }
 }
 
+/* The tick that a run is to be taken to: the next one that may matter, or `limit`. */
+static int64_t next_tick(const run *r, int64_t limit)
+{
+    const int64_t next = r->at.position + 1;
+    const int64_t due = timers_next(&r->rules);
+    if ((r->at.position == r->at.dense_from) || (r->failing_count > 0) || goes_slowly(r)) {
+        return next; /* what is hidden may be so there, what failed may go on */
+    }
+    return (due < limit) ? ((due > next) ? due : next) : limit;
+}
+
 /* Take a run through the ticks up to one. */
 void run_pass_dense(run *r, int64_t limit)
 {
@@ -80,37 +102,27 @@ void run_pass_dense(run *r, int64_t limit)
     int32_t i;
     while ((r->at.position < limit) && !r->home->monitor->spoilt) {
         const bool second = r->at.position == r->at.dense_from;
-        bool slowly = goes_slowly(r);
-        int64_t next = limit;
-        if (slowly && (r->at.position - r->at.dense_from >= TICKS_MOST)) {
+        int64_t next;
+        if ((r->at.position - r->at.dense_from >= TICKS_MOST) && goes_slowly(r)) {
             give_up_networks(r);
-            slowly = false;
         }
-        if (second || slowly || (r->failing_count > 0)) {
-            next = r->at.position + 1;
-        } else if (timers_next(&r->rules) > r->at.position) {
-            next = least(limit, timers_next(&r->rules));
-        } else {
-            next = r->at.position + 1;
-        }
-        for (i = 0; i < judges; i++) {
-            if (!is_networked(r, i)) {
-                pass_ticks(r, i, next);
-            } else {
-                touch(r, i, TOUCHED_LETTER);
-            }
-        }
-        r->at.before = next - 1;
-        r->at.position = next;
+        next = next_tick(r, limit);
         if (second) {
             blank_out(r, next);
             touch_all(r, TOUCHED_TRIGGER);
         }
         for (i = 0; i < judges; i++) {
             if (!is_networked(r, i)) {
-                r->judges[i].touched &= (uint8_t)~TOUCHED_LETTER; /* it was stepped there */
+                r->judges[i].touched &= (uint8_t)~TOUCHED_LETTER;
+                pass_ticks(r, i, next);
+            } else if (is_slow(r, i)) {
+                touch(r, i, TOUCHED_LETTER);
+            } else {
+                /* None of its attempts is open. */
             }
         }
+        r->at.before = next - 1;
+        r->at.position = next;
         have_judged(r, next);
         if (second && (r->part->plan->captured > 0)) {
             look_after(r, next);

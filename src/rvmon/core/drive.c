@@ -268,12 +268,13 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
 {
     const judge_plan *judged = &r->part->judges[index];
     judge *j = &r->judges[index];
+    const bool judged_here = (r->at.presence == ARE_THERE) && !j->blind;
     attempt *x;
     int32_t at;
-    if ((r->at.presence == ARE_THERE) && (!has_attempts(j) || (j->position < t))) {
+    if (judged_here && (!has_attempts(j) || (j->position < t))) {
         visit_judge(r, index, t);
     }
-    if ((r->at.presence == ARE_THERE) && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
+    if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
         (void)queue_begin(r, index, t);
         return;
     }
@@ -303,7 +304,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         leave_episode(r, index);
         j->current = at;
     }
-    if (r->at.presence != ARE_THERE) {
+    if (!judged_here) {
         x->hollow = true; /* what it owes here will not be known */
         x->parted = true;
         x->location = FAILED;

@@ -201,6 +201,8 @@ typedef struct {
     bool sorted;               /* whether no attempt is due before an older one */
     bool is_restless_listed;
     bool is_failing_listed;
+    bool blind;                /* whether its network, which looks back, missed positions: nothing more
+                                * is said of attempts */
 } judge;
 
 /* The state of a part: of all requirements without values of their own, of an instance, or of an
