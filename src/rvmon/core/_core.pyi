@@ -74,6 +74,13 @@ class Monitor:
     def found(self, names: Iterable[int], at: int, /) -> bool:
         """See `rv_found`; else as `lose`."""
 
+    def late(self, names: Iterable[int] | None, t: int, /) -> bool:
+        """See `rv_late`; `None`: what came cannot be read.
+
+        Raises:
+            ValueError: the plan has no such name.
+        """
+
     def finish(self, until: int | None, /) -> int | None:
         """End the run; gives the last instant of the trace."""
 
@@ -90,7 +97,7 @@ class Monitor:
     def counts(self) -> list[tuple[int, int, int, int]]:
         """Of each requirement how many attempts failed, passed, stayed open.
 
-        The last number is 1 if its trigger was ever true or false.
+        The last number is 1 if its trigger was ever true or false, and nothing came too late.
         """
 
     def times(self) -> tuple[int | None, int | None, int | None]:

@@ -49,7 +49,9 @@ static bool prepare(rv_monitor *m)
     m->homes = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->homes);
     m->absent = arena_take(&m->memory, (size_t)names + 1);
     m->losing = arena_take(&m->memory, (size_t)names + 1);
-    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL) || (m->losing == NULL)) {
+    m->late = arena_take(&m->memory, (size_t)p->header->requirements + 1);
+    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL) || (m->losing == NULL)
+        || (m->late == NULL)) {
         return false;
     }
     for (i = 0; i < p->part_count; i++) {
@@ -89,6 +91,7 @@ static bool begin_run(rv_monitor *m)
     m->dense_until = RV_NO_TIME;
     m->dense_end = RV_NO_TIME;
     (void)memset(m->losing, 0, (size_t)names + 1);
+    (void)memset(m->late, 0, (size_t)p->header->requirements + 1);
     m->finished = false;
     m->spoilt = false;
     for (i = 0; i < p->part_count; i++) {
@@ -164,7 +167,7 @@ int rv_reset(rv_monitor *m)
 }
 
 /* The homes that read a name, one after the other. */
-static const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count)
+const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count)
 {
     const int32_t first = m->plan.subscription_first[name];
     *count = m->plan.subscription_first[name + 1] - first;

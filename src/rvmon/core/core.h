@@ -122,6 +122,10 @@ int rv_lose(rv_monitor *m, int64_t since, const int32_t *names, int32_t count);
  * behind it, a signal at its first update there or at `at` itself. */
 int rv_found(rv_monitor *m, int64_t at, const int32_t *names, int32_t count);
 
+/* A sample at `t` with these names came behind what was judged: it is not judged. No verdict of a
+ * requirement that it would have touched is green any more; `count` -1: of any, as it cannot be read. */
+int rv_late(rv_monitor *m, int64_t t, const int32_t *names, int32_t count);
+
 /* End the run, at `t` if that is later than all so far (RV_NO_TIME: where it is). */
 int rv_finish(rv_monitor *m, int64_t t);
 
@@ -158,11 +162,13 @@ typedef struct {
     int64_t inconclusive;
     bool heard;
     bool open;                 /* an attempt is undecided now */
+    bool late;                 /* something came too late that it would have been judged by */
 } rv_counts;
 
 rv_counts rv_count(const rv_monitor *m, int32_t requirement);
 
-/* The verdict so far: final once the run is finished; never PASS or NOT_TRIGGERED if it is spoilt. */
+/* The verdict so far: final once the run is finished; never PASS or NOT_TRIGGERED if it is spoilt, or
+ * something came too late. */
 int rv_verdict(const rv_monitor *m, int32_t requirement);
 
 /* Whether memory was short in this run. */

@@ -1,4 +1,4 @@
-/* How module.c is told that names are lost, and found. Included there alone. */
+/* How module.c is told that names are lost, and found, or came too late. Included there alone. */
 #ifndef RVMON_MODULE_OUTAGES_H
 #define RVMON_MODULE_OUTAGES_H
 
@@ -67,6 +67,20 @@ static PyObject *lose_of(monitor *c, PyObject *args)
 static PyObject *found_of(monitor *c, PyObject *args)
 {
     return told(c, args, rv_found);
+}
+
+/* late(names, t); of what cannot be read names is None. */
+static PyObject *late_of(monitor *c, PyObject *args)
+{
+    PyObject *names;
+    long long t;
+    if (!PyArg_ParseTuple(args, "OL", &names, &t)) {
+        return NULL;
+    }
+    if (names == Py_None) {
+        return is_done(rv_late(c->m, (int64_t)t, NULL, -1)) ? Py_NewRef(Py_True) : NULL;
+    }
+    return told(c, args, rv_late);
 }
 
 #endif

@@ -408,6 +408,7 @@ struct rv_monitor {
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    uint8_t *late;             /* by requirement, whether something came too late for it */
     /* Where only samples are positions. */
     uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */
     int32_t losing_count;

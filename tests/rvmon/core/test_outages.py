@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import random
+from dataclasses import replace
 from typing import Any
 
 import pytest
-from tests.tools.differential import campaign_of
+from tests.tools.differential import campaign_of, case_of
 from tests.tools.forms import Compiler, Maker
+from tests.tools.late import after_late
+from tests.tools.law import judge
 
 import rvmon
 import rvmon.core._core as native
@@ -64,6 +68,11 @@ class Run:
     def found(self, names: str, at: int) -> bool:
         """Find them again; whether they can be."""
         return self.core.found([self._planned.numbers[name] for name in names.split()], at)
+
+    def late(self, names: str | None, t: int) -> None:
+        """Tell of a sample that came too late; `None`: it cannot be read."""
+        numbers = None if names is None else [self._planned.numbers[one] for one in names.split()]
+        assert self.core.late(numbers, t)
 
     def report(self, end: int | None = None) -> Report:
         """End the run."""
@@ -361,15 +370,78 @@ def test_of_many_ticks_a_network_says_nothing():
         assert found == [f"{7 * scale} I", f"{2 * scale}? I"]
 
 
+TWO = "requirement A1\n  always p\nrequirement B1\n  upon e\n  then q"
+
+
+@pytest.mark.parametrize(
+    ("names", "t", "expected"),
+    [
+        ("p", 1, "I P"),
+        ("q", 1, "P I"),
+        ("e", 1, "P I"),
+        ("x s", 1, "P P"),
+        ("", 1, "P P"),
+        (None, 1, "I I"),
+        ("x", -1, "I I"),
+    ],
+)
+def test_what_comes_too_late_leaves_nothing_green_that_it_would_have_touched(names, t, expected):
+    """What reads one of its names, or all if it cannot be read, or the trace would begin there."""
+    run = Run(TWO).sample(0, p=True, q=True).sample(2, e=True)
+    run.late(names, t)
+    verdicts = run.report().verdicts
+    assert " ".join(verdicts[name].value for name in ("A1", "B1")) == expected
+
+
+def test_what_comes_too_late_takes_back_no_alarm():
+    """An attempt that begins behind it fails as ever, and the next run knows nothing of it."""
+    run = Run(TWO).sample(0, p=True, q=False)
+    run.late("p q", 0)
+    report = run.sample(2, e=True).report()
+    assert [report.verdicts[name].value for name in ("A1", "B1")] == ["I", "F"]
+    run.core.reset()
+    assert run.sample(0, p=True, q=True).report().verdicts["A1"].value == "P"
+
+
+@pytest.mark.law
+def test_random_samples_too_late_leave_what_the_law_leaves():
+    """Of each requirement the verdict."""
+    traces = TraceProfile(unknowns=False, advances=False, fewest=3)
+    changed = 0
+    for number in range(150):
+        case = case_of(f"late/{number}", Profile(captures=False), traces)
+        rng = random.Random(number)
+        if len(case.samples) < 3:
+            continue
+        late = rng.choice(case.samples[:-1])
+        kept = replace(case, actions=tuple(one for one in case.samples if one is not late))
+        compiled = compile_spec(case.spec, next_law=True)
+        plan = planned_core(compiled, tuple(compiled.requirements.values()))
+        run = plan.monitor(frozenset())
+        for sample in kept.samples:
+            assert run.judge(sample.t, plan.plain(sample.t, sample.values), True)
+        without = judge(kept, next_law=True).verdicts
+        assert run.late([plan.numbers[name] for name in late.values], late.t)
+        verdicts = report_of_run(plan, run, 0, run.finish(kept.end)).verdicts
+        expected = after_late(case.spec, without, kept.samples, [late])
+        first = case.spec.time is TimeModel.SAMPLED or late.t < kept.samples[0].t
+        for name, one in compiled.requirements.items():
+            if not first and one.reads.isdisjoint(late.values):
+                expected[name] = without[name]  # what a formula does not depend on is not read
+        assert verdicts == expected
+        changed += verdicts != without
+    assert changed > 20
+
+
 @pytest.mark.law
 @pytest.mark.parametrize("time", TimeModel)
 def test_random_outages_are_judged_as_the_law_has_it(time):
     """Step by step and by rows; what looks back at the future is tried elsewhere."""
-    seeds = [f"outages/{time.name}/{number}" for number in range(25)]
+    seeds = [f"outages/{time.name}/{number}" for number in range(20)]
     profile = Profile(time=time, crowded=5, mixed=False)
     compiler = Compiler(next_law=True)
     makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
     traces = TraceProfile(sparse=10, outages=80)
     found = campaign_of(makers, seeds, profile, traces, each=5, next_law=True)
     assert not found.disagreements, found.disagreements[0]
-    assert found.mix.kinds["outage"] > 80
+    assert found.mix.kinds["outage"] > 60
