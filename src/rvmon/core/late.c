@@ -47,8 +47,8 @@ static void mark_above(const run *r, uint8_t *reads)
             reads[i] |= reads[operands[k]];
         }
         for (k = 0; (reads[i] != 0U) && (k < n->links.count); k++) {
-            const int32_t judge = PLAN(r)->links[n->links.first + k].judge;
-            m->late[r->part->judges[judge].requirement] = 1;
+            const int32_t index = PLAN(r)->links[n->links.first + k].judge;
+            m->late[r->part->judges[index].requirement] = 1;
         }
     }
 }
