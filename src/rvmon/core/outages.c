@@ -338,13 +338,16 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
     if (code != RV_OK) {
         return code;
     }
-    if (m->plan.header->gap == 0) {
-        if (!note_losing(m, t, names, count, says)) {
-            return RV_NO_MEMORY;
-        }
+    if ((says == SAYS_FOUND) && (m->heard == RV_NO_TIME)) {
+        return RV_OK; /* nothing was lost so far */
     }
-    for (i = 0; (m->plan.header->gap > 0) && (m->last == RV_NO_TIME) && (m->heard == RV_NO_TIME) && (i < m->plan.part_count); i++) {
-        home_begin_blank(&m->homes[i], t);
+    if ((m->plan.header->gap == 0) && !note_losing(m, t, names, count, says)) {
+        return RV_NO_MEMORY;
+    }
+    if ((m->plan.header->gap > 0) && (m->last == RV_NO_TIME) && (m->heard == RV_NO_TIME)) {
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_begin_blank(&m->homes[i], t);
+        }
     }
     m->heard = (t > m->heard) ? t : m->heard;
     updates = arena_take(&m->memory, size);
