@@ -44,7 +44,7 @@ def judging(
     options: argparse.Namespace, profile: Profile, traces: TraceProfile
 ) -> Callable[[list[str]], Campaign]:
     """What judges the cases of some seeds; runs in a worker."""
-    compiler = Compiler()
+    compiler = Compiler(next_law=options.outages > 0)
     makers = {name: Maker(name, compiler) for name in options.engine}
     return lambda seeds: campaign_of(
         makers,
@@ -56,6 +56,7 @@ def judging(
         shrunk=0 if options.fail_fast else options.show,
         windows=options.windows,
         letters=options.letters,
+        next_law=options.outages > 0,
     )
 
 
@@ -92,6 +93,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--sparse", type=int, default=0, metavar="PERCENT", help="traces of some dozens of samples"
+    )
+    parser.add_argument(
+        "--outages",
+        type=int,
+        default=0,
+        metavar="PERCENT",
+        help="traces in which names are lost, by the law to come; of engines `c` and `c rows`",
     )
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
@@ -130,7 +138,12 @@ def main(argv: list[str]) -> int:
     """Run the campaign and print its figures."""
     options = parse(argv)
     profile = profile_of(options)
-    traces = TraceProfile(unknowns=not options.known, long=options.long, sparse=options.sparse)
+    traces = TraceProfile(
+        unknowns=not options.known,
+        long=options.long,
+        sparse=options.sparse,
+        outages=options.outages,
+    )
     numbers = range(
         options.first // options.traces, (options.first + options.pairs) // options.traces
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rvmon.errors import TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor
+from rvmon.monitor.core.monitor import CoreMonitor
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.monitor.core.recorded import report_of_run
 from rvmon.testing.case import Case
@@ -38,7 +39,9 @@ class Stepped:
     """It says nothing of what an attempt owes, and of its inputs."""
 
     def __init__(self, compiled: CompiledSpec, case: Case) -> None:
-        self._monitor = build_monitor(compiled, engine="c", sources=case.names)
+        monitor = build_monitor(compiled, engine="c", sources=case.names)
+        assert isinstance(monitor, CoreMonitor)
+        self._monitor = monitor
         self._rng = random.Random(len(case.actions))
         self._due: int | None = None
         self._asked = False
@@ -62,6 +65,19 @@ class Stepped:
         """Let time pass."""
         self._asked = False
         return self._monitor.advance_ns(t_ns)
+
+    def lose(self, names: Iterable[str], since: int, /) -> bool:
+        """Lose some names."""
+        self._asked = False
+        return self._monitor._core.lose(self._numbers(names), since)
+
+    def found(self, names: Iterable[str], at: int, /) -> bool:
+        """Find them again."""
+        self._asked = False
+        return self._monitor._core.found(self._numbers(names), at)
+
+    def _numbers(self, names: Iterable[str]) -> list[int]:
+        return [self._monitor._planned.numbers[name] for name in names]
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         """End the trace."""
@@ -113,6 +129,16 @@ class ByRows:
         self._feed()
         self._run.advance(t_ns)
         return ()
+
+    def lose(self, names: Iterable[str], since: int, /) -> bool:
+        """Lose some names."""
+        self._feed()
+        return self._run.lose([self._planned.numbers[name] for name in names], since)
+
+    def found(self, names: Iterable[str], at: int, /) -> bool:
+        """Find them again."""
+        self._feed()
+        return self._run.found([self._planned.numbers[name] for name in names], at)
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         """End the trace."""

@@ -6,6 +6,7 @@ import random
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import CheckedSpec
@@ -165,15 +166,18 @@ def case_of(seed: object, profile: Profile, traces: TraceProfile) -> Case:
     return next(cases_of(seed, profile, traces))
 
 
-def disagreements(case: Case, make: MakeMonitor, *, online: bool = False) -> list[str]:
+def disagreements(
+    case: Case, make: MakeMonitor, *, online: bool = False, next_law: bool = False
+) -> list[str]:
     """How a monitor departs from the oracle on a case; empty if it does not.
 
     Args:
         case: what to judge.
         make: gives a fresh monitor.
         online: whether to check as well what it says at each action.
+        next_law: whether by the law to come.
     """
-    return _found(Judgement(case), make, online) or []
+    return _found(Judgement(case, next_law=next_law), make, online) or []
 
 
 def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] | None:
@@ -192,7 +196,7 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
             provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)
             found += judgement.seen.differences(actual) if not found else ()
-        asked = online and not found and not is_silent(monitor)
+        asked = online and not (found or case.outages or is_silent(monitor))
         again = make(case) if asked else None
         if again is not None:
             found = online_differences(judgement, again)
@@ -229,6 +233,7 @@ def campaign_of(
     shrunk: int = 3,
     windows: int = 0,
     letters: int = 0,
+    next_law: bool = False,
 ) -> Campaign:
     """Judge the cases of each seed with the oracle, once, and with some engines.
 
@@ -243,6 +248,7 @@ def campaign_of(
         shrunk: so many disagreements of an engine are shrunk and shown, the others only named.
         windows: see `cases_of`.
         letters: see there, too.
+        next_law: whether by the law to come, which the engines were made for.
     """
     campaign = Campaign(Mix(), {name: Tally() for name in engines})
     cases = (
@@ -252,7 +258,7 @@ def campaign_of(
     )
     for index, (seed, case) in enumerate(cases):
         asked = online_every > 0 and index % online_every == 0
-        judgement = Judgement(case)
+        judgement = Judgement(case, next_law=next_law)
         campaign.mix.count(judgement)
         for name, make in engines.items():
             tally = campaign.tallies[name]
@@ -262,20 +268,22 @@ def campaign_of(
             if found:
                 lines = [f"{name} seed {seed}".lstrip(), *found]
                 if len(tally.disagreements) < shrunk:
-                    lines.append(_shrunk(case, make, asked))
+                    lines.append(_shrunk(case, make, asked, next_law))
                 tally.disagreements.append("\n".join(lines))
     return campaign
 
 
-def _shrunk(case: Case, make: MakeMonitor, online: bool) -> str:
+def _shrunk(case: Case, make: MakeMonitor, online: bool, next_law: bool) -> str:
+    judged = partial(disagreements, make=make, online=online, next_law=next_law)
+
     def disagree(smaller: Case) -> bool:
         try:
-            return bool(disagreements(smaller, make, online=online))
+            return bool(judged(smaller))
         except RvmonError:  # the smaller case is none that the law speaks of
             return False
 
     small = shrink(case, disagree)
-    return "\n".join(["shrunk:", *disagreements(small, make, online=online), show_case(small)])
+    return "\n".join(["shrunk:", *judged(small), show_case(small)])
 
 
 def decided_on_bound(spec: CheckedSpec, attempt: Attempt) -> bool:

@@ -21,9 +21,14 @@ FORMS = (*EXPLAINING, "c", "c rows")
 
 
 class Compiler:
-    """Compiles specifications; that of one case serves the next case and all makers too."""
+    """Compiles specifications; that of one case serves the next case and all makers too.
 
-    def __init__(self) -> None:
+    Args:
+        next_law: whether for the law to come.
+    """
+
+    def __init__(self, *, next_law: bool = False) -> None:
+        self._next_law = next_law
         self._spec: CheckedSpec | None = None
         self._compiled: CompiledSpec | None = None
 
@@ -34,7 +39,8 @@ class Compiler:
             RvmonError: no engine judges it.
         """
         if self._compiled is None or spec is not self._spec:
-            self._compiled, self._spec = compile_spec(spec), spec
+            self._compiled = compile_spec(spec, next_law=self._next_law)
+            self._spec = spec
         return self._compiled
 
 

@@ -26,6 +26,7 @@ class Judgement:
 
     Args:
         case: what to judge.
+        next_law: whether by the law to come.
 
     Attributes:
         case: the same.
@@ -33,9 +34,9 @@ class Judgement:
         followings: by requirement, its attempts as the prefix alone decides them.
     """
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, *, next_law: bool = False) -> None:
         self.case = case
-        self.word = word(case)
+        self.word = word(case, next_law=next_law)
         self.followings: Mapping[str, Followings] = judge_views(case.spec, self.word, case.samples)
 
     @cached_property

@@ -15,7 +15,7 @@ from tests.tools.health import names_in
 KINDS = (
     *("held", "sampled", "sampled every"),
     *("late birth", "doubt", "for each", "let", "many", "wide"),
-    *("many samples", "long silence", "unknown values", "no source", "stale", "advance"),
+    *("many samples", "long silence", "unknown values", "no source", "stale", "advance", "outage"),
 )
 """All of them, the models of time first."""
 
@@ -45,6 +45,7 @@ def kinds_of(case: Case, report: Report) -> Iterator[str]:
         "no source": case.names is not None and not names <= case.names,
         "stale": any(spec.signals[name].stale_after for name in names & spec.signals.keys()),
         "advance": bool(case.advances),
+        "outage": bool(case.outages),
     }
     yield spec.time.value
     yield from (kind for kind, is_of in found.items() if is_of)

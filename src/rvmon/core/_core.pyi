@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rvmon.verdict.attempt import Attempt
@@ -63,6 +63,23 @@ class Monitor:
         """
 
     def advance(self, t: int, /) -> None: ...
+    def lose(self, names: Iterable[int], since: int, /) -> bool:
+        """See `rv_lose`; false, and nothing happened, if what is there was judged already.
+
+        Raises:
+            ValueError: the plan is of a law by which nothing is lost, or has no such name.
+        """
+
+    def found(self, names: Iterable[int], at: int, /) -> bool:
+        """See `rv_found`; else as `lose`."""
+
+    def late(self, names: Iterable[int] | None, t: int, /) -> bool:
+        """See `rv_late`; `None`: what came cannot be read.
+
+        Raises:
+            ValueError: the plan has no such name.
+        """
+
     def finish(self, until: int | None, /) -> int | None:
         """End the run; gives the last instant of the trace."""
 
@@ -79,7 +96,7 @@ class Monitor:
     def counts(self) -> list[tuple[int, int, int, int]]:
         """Of each requirement how many attempts failed, passed, stayed open.
 
-        The last number is 1 if its trigger was ever true or false.
+        The last number is 1 if its trigger was ever true or false, and nothing came too late.
         """
 
     def times(self) -> tuple[int | None, int | None, int | None]:

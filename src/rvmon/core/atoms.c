@@ -84,16 +84,21 @@ static uint8_t atom_now(const run *r, const atom_plan *a)
     case ATOM_REAL: return compare_real(a->compare, &r->value[a->input], a->constant);
     case ATOM_COMPARE: return compare_at(r, a, NULL);
     case ATOM_PAYLOAD: return over_occurrences(r, a);
-    case ATOM_EVENT: return r->occurs[a->input];
-    case ATOM_KNOWN_SIGNAL: return truth_if(r->value[a->input].kind != RV_UNKNOWN);
+    case ATOM_EVENT:
+        return (r->absent[signals + a->input] != 0U) ? IS_UNKNOWN : r->occurs[a->input];
+    case ATOM_KNOWN_SIGNAL:
+        if ((r->at.lost_count > 0) && (r->lost[a->input] != NOT_LOST)) {
+            return IS_UNKNOWN;
+        }
+        return truth_if(r->value[a->input].kind != RV_UNKNOWN);
     case ATOM_KNOWN_EVENT: return truth_if(r->occurs[a->input] != IS_UNKNOWN);
     case ATOM_UPDATED_SIGNAL:
-        return (r->absent[a->input] != 0U) ? IS_UNKNOWN : truth_if(r->updated[a->input] != 0U);
+        return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->updated[a->input];
     case ATOM_UPDATED_EVENT:
         return (r->absent[signals + a->input] != 0U)
-            ? IS_UNKNOWN : truth_if(r->updated[signals + a->input] != 0U);
+            ? IS_UNKNOWN : r->updated[signals + a->input];
     case ATOM_CHANGED: return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->changed[a->input];
-    default: return truth_if(r->at.starting);
+    default: return r->at.starting;
     }
 }
 
@@ -146,6 +151,27 @@ bool recheck_list(run *r, list l)
     return changed;
 }
 
+/* Have an atom be read again at the next position, if it speaks of this one only. */
+static void fade(run *r, int32_t atom)
+{
+    if (is_momentary(r, atom) && (r->is_fading[atom] == 0U)) {
+        r->is_fading[atom] = 1;
+        r->fading[r->at.fading_count] = atom;
+        r->at.fading_count++;
+    }
+}
+
+/* Read atoms again while what occurred at the last position is still there. */
+void recheck_amid(run *r, list l)
+{
+    const int32_t *atoms = LIST(PLAN(r), l);
+    int32_t i;
+    recheck_list(r, l);
+    for (i = 0; r->over && (i < l.count); i++) {
+        fade(r, atoms[i]);
+    }
+}
+
 /* Read again what spoke of the last position only; what was read since speaks of this one. */
 void recheck_fading(run *r)
 {
@@ -161,11 +187,7 @@ void recheck_fading(run *r)
     for (i = 0; i < r->at.fresh_count; i++) {
         const int32_t atom = r->fresh[i];
         r->is_fresh[atom] = 0;
-        if (is_momentary(r, atom) && (r->is_fading[atom] == 0U)) {
-            r->is_fading[atom] = 1;
-            r->fading[r->at.fading_count] = atom;
-            r->at.fading_count++;
-        }
+        fade(r, atom);
     }
     r->at.fresh_count = 0;
 }
@@ -180,12 +202,8 @@ void reread(run *r, int32_t atom, bool pending)
     }
     if (pending) {
         list_fresh(r, atom);
-    } else if (r->is_fading[atom] == 0U) {
-        r->is_fading[atom] = 1;
-        r->fading[r->at.fading_count] = atom;
-        r->at.fading_count++;
     } else {
-        /* It is listed. */
+        fade(r, atom);
     }
 }
 

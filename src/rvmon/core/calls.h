@@ -99,6 +99,11 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at);
 rv_number number_of_double(double x);
 
 /* ---- values.c: samples, held values, what occurred */
+void mark(run *r, int32_t name);
+uint8_t remember(history *h, int64_t t, const rv_number *value);
+void come_to_birth(run *r, int32_t local, bool known);
+void set_stale(run *r, int32_t local, int64_t t);
+void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
 void take_news(run *r, int64_t t, const incoming *in);
 
 /* Whether a signal can take a value and nothing else is to be done. */
@@ -123,9 +128,26 @@ void forget(run *r);
 void go_stale(run *r, int32_t perishable);
 void lack(run *r, bool event, int32_t local);
 
+/* ---- outages.c: names that may have said anything */
+void begin_unlost(run *r);
+bool take_amid(run *r, int64_t t, const incoming *in);
+void come_back(run *r, int64_t t);
+void stay_unknown(run *r, int32_t local);
+bool has_no_source(const run *r, int32_t name);
+bool is_lost_at(const run *r, int32_t name, int64_t t);
+void give_loss(run *r, int64_t t, const incoming *in, int32_t count);
+int32_t names_to_lose(const run *r);
+
+/* ---- blank.c: positions that may not be there */
+void may_begin(run *r, int64_t t);
+void begin_blank(run *r, int64_t t);
+void end_blank(run *r, int64_t t);
+void revive_all(run *r, int64_t t);
+
 /* ---- atoms.c */
 bool recheck(run *r, int32_t atom);     /* whether it is another truth */
 bool recheck_list(run *r, list l);      /* whether one of them is */
+void recheck_amid(run *r, list l);
 void recheck_fading(run *r);
 void reread(run *r, int32_t atom, bool pending);
 uint8_t leaf_truth(const run *r, const node_plan *n);
@@ -139,6 +161,8 @@ void soil(run *r, int32_t node);
 void soil_all(run *r);
 void work_out(run *r, int64_t t);
 bool is_soiled(const run *r);
+void remember_unknown(run *r, int64_t t);
+void blank_out(run *r, int64_t t);
 void vary(run *r, int64_t t, bool pending);
 void settle_phase(run *r);
 
@@ -188,9 +212,11 @@ void sort_records(rv_monitor *m);
 void set_rule_due(run *r, int32_t index, int64_t due);
 void set_restless(run *r, int32_t index);
 void pass_to(run *r, int32_t index, int64_t t);
+void pass_ticks(run *r, int32_t index, int64_t t);
 void visit_judge(run *r, int32_t index, int64_t t);
 void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
 void begin(run *r, int32_t index, int64_t t, int64_t triggered);
+void enter(run *r, int32_t index, int32_t at, int64_t t);
 void reach_judge(run *r, int32_t index, int64_t t);
 bool starts(run *r, int32_t index, uint8_t truth);
 bool watches(const run *r, int32_t index);
@@ -214,15 +240,35 @@ static inline bool has_attempts(const judge *j)
     return (j->first >= 0) || ((j->queue != NULL) && (j->queue->count > 0));
 }
 
+/* ---- dense.c: outages where only samples are positions */
+bool begin_dense(rv_monitor *m, int64_t t);
+void pass_dense(rv_monitor *m, int64_t limit);
+void end_dense(rv_monitor *m);
+bool is_amid_dense(rv_monitor *m, int64_t t);
+void run_begin_dense(run *r, int64_t t);
+void run_pass_dense(run *r, int64_t limit);
+void run_end_dense(run *r, int64_t until);
+void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count);
+void home_take_amid(home *h, int64_t t);
+int64_t last_position(const rv_monitor *m);
+
+/* ---- core.c */
+const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
+bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
+
 /* ---- clock.c */
-int64_t tick_of(int64_t gap, int64_t t);
 void clear_run(run *r);
 void clear_judges(run *r);
+int32_t followed(const run *r, int32_t index);
+void look_at_all(run *r);
+void touch_all(run *r, uint8_t what);
+void have_judged(run *r, int64_t t);
 void visit(run *r, int64_t t);
 void reach(run *r, int64_t t);
 void through(run *r, int64_t limit, bool comes);
 void approach(run *r, int64_t t);
 void arrive(run *r, int64_t t);
+int64_t tick_from(int64_t gap, int64_t t);
 void set_alarm(run *r, int64_t position);
 int64_t next_position(const run *r);
 int64_t next_decision(run *r);
@@ -290,6 +336,7 @@ run *forked(const run *r);
 void set_aside(home *h, run *r);
 void give(run *r, int64_t t, const incoming *in, int32_t count);
 void keep_updates(home *h, int64_t t);
+void keep_given(home *h, int64_t t);
 void replay(run *r);
 
 /* ---- held.c: samples that wait for the tick that sees them */
@@ -313,10 +360,12 @@ void let_go(run *r);
 /* ---- keys.c: instances of a `for each` */
 bool begin_keys(home *h);
 void open_instances(home *h, int64_t t);
+void open_unknown(home *h, int64_t t);
 void close_instance(run *r);
 bool is_over(const run *r);
 run *instance_of(const home *h, const rv_number *value);
 void open_at(run *r, int64_t t);
+bool was_swallowed(run *r, int64_t t);
 int32_t concerning(const run *r, const rv_update *u);
 
 /* ---- crowd.c: which runs a part has, and which of them a call concerns */
@@ -335,7 +384,12 @@ bool home_reserve(home *h, int32_t attempts);
 void home_lack(home *h, bool event, int32_t local);
 void home_sample(home *h, int64_t t);
 void take_inbox(home *h, int64_t t);
+void lose_inbox(home *h, int64_t t);
 void home_wait(home *h, int64_t t);
+void home_lose(home *h, int64_t t);
+void home_begin_blank(home *h, int64_t t);
+void rest_all(home *h);
+void untouch_all(home *h);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
 run *following(const home *h, const run *r);

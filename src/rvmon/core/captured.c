@@ -159,12 +159,17 @@ static void capture(run *r, rv_number *values)
     const int32_t *programs = LIST(PLAN(r), captures);
     const int32_t first = r->part->plan->each;
     rv_number *own = r->captured;
+    rv_number *now = r->value;
     int32_t i;
+    if ((r->home->nothing != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
+        r->value = r->home->nothing;
+    }
     r->captured = values; /* one may be made of those before it */
     for (i = 0; i < captures.count; i++) {
         values[first + i] = program_value(r, programs[i], NULL);
     }
     r->captured = own;
+    r->value = now;
 }
 
 /* Whether an attempt may have begun at this position with other values than it captured. */
@@ -269,9 +274,15 @@ void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
     }
     if ((r->part->plan->flags & PART_REPLAYS) != 0) {
         replay(made);
-        through(made, t, false);
-    } else {
+        if (made->at.dense) {
+            run_pass_dense(made, t);
+        } else {
+            through(made, t, false);
+        }
+    } else if ((made->at.presence == ARE_THERE) && !made->at.dense) {
         vary(made, t, false);
+    } else {
+        /* Everything is unknown there. */
     }
     adopt(r, made);
     enlist(made, true);

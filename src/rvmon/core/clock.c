@@ -10,8 +10,8 @@ static int64_t position_from(int64_t start, int64_t step, int64_t t)
     return start + (ahead + step - 1) / step * step;
 }
 
-/* The tick of a clock that sees what comes at `t`. */
-int64_t tick_of(int64_t gap, int64_t t)
+/* The first tick of a clock from `t` on; in between two samples every instant is one. */
+int64_t tick_from(int64_t gap, int64_t t)
 {
     return (t >= 0) ? position_from(0, gap, t) : -((-t) / gap) * gap;
 }
@@ -60,7 +60,10 @@ static int64_t next_start(const run *r)
 int64_t next_position(const run *r)
 {
     const int64_t gap = GAP(r);
-    int64_t found = (gap > 1) ? r->at.awaited : NEVER;
+    int64_t found = (gap > 0) ? least(r->at.awaited, r->at.ends_at) : NEVER;
+    if (r->at.presence != ARE_THERE) {
+        return (r->at.started && (r->at.presence == MAY_BE_THERE)) ? NEVER : r->at.awaited;
+    }
     if ((gap > 0) && r->at.started) {
         int64_t change = timers_next(&r->wake);
         if ((r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy) {
@@ -123,7 +126,7 @@ static void ring(run *r, int64_t t)
 
 /* Whether the truth of its trigger may start attempts of a judge here, or end its episode; the
  * formula that says so, or -1. */
-static int32_t followed(const run *r, int32_t index)
+int32_t followed(const run *r, int32_t index)
 {
     const judge_plan *j = &r->part->judges[index];
     if (r->part->plan->captured == 0) {
@@ -135,7 +138,7 @@ static int32_t followed(const run *r, int32_t index)
     return (((r->judging >> index) & 1) != 0) ? j->running : -1;
 }
 
-static void touch_all(run *r, uint8_t what)
+void touch_all(run *r, uint8_t what)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->judges.count; i++) {
@@ -175,10 +178,16 @@ static void call_up(run *r, int64_t t)
 /* The first position: everything is looked at. */
 static void start(run *r, int64_t t)
 {
-    int32_t i;
     r->at.started = true;
-    r->at.starting = true;
+    r->at.starting = IS_TRUE;
     r->at.origin = t;
+    r->at.begun = t;
+    look_at_all(r);
+}
+
+void look_at_all(run *r)
+{
+    int32_t i;
     for (i = 0; i < r->part->plan->atoms.count; i++) {
         (void)recheck(r, i);
     }
@@ -187,7 +196,7 @@ static void start(run *r, int64_t t)
 }
 
 /* What those that were touched do, each kind of thing for all of them before the next. */
-static void have_judged(run *r, int64_t t)
+void have_judged(run *r, int64_t t)
 {
     int32_t i;
     for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {
@@ -202,6 +211,9 @@ static void have_judged(run *r, int64_t t)
             && (has_attempts(&r->judges[index]) || watches(r, index))) {
             visit_judge(r, index, t);
         }
+    }
+    if (r->at.presence == ARE_THERE_NEXT) {
+        revive_all(r, t);
     }
     for (i = 0; i < r->touched_count; i++) {
         const int32_t index = r->touched[i];
@@ -234,10 +246,16 @@ void visit(run *r, int64_t t)
         forget_last(r);
     }
     r->at.before = (gap > 0) ? t - gap : r->at.position;
-    if (!r->at.started) {
+    if (r->at.presence == MAY_BE_THERE) {
+        begin_blank(r, t);
+        return;
+    }
+    if (r->at.presence == ARE_THERE_NEXT) {
+        end_blank(r, t);
+    } else if (!r->at.started) {
         start(r, t);
     } else {
-        r->at.starting = false;
+        r->at.starting = IS_FALSE;
         if (gap == 0) {
             const int32_t *nodes = LIST(PLAN(r), r->part->plan->stateful);
             int32_t i;
@@ -249,13 +267,18 @@ void visit(run *r, int64_t t)
     if (t >= r->cut) {
         soil_lapsed(r);
     }
+    if (t >= r->at.ends_at) {
+        come_back(r, t);
+    }
     ring(r, t); /* before what fades: an atom that it reads anew may speak of this position only */
     if (r->at.fading_count + r->at.fresh_count > 0) {
         recheck_fading(r);
     }
     if (r->opening && (t >= r->opens_at)) {
         r->opening = false;
-        touch_all(r, TOUCHED_TRIGGER);
+        if (!was_swallowed(r, t)) {
+            touch_all(r, TOUCHED_TRIGGER);
+        }
     }
     call_up(r, t);
     work_out(r, t);
@@ -341,12 +364,15 @@ void approach(run *r, int64_t t)
 void arrive(run *r, int64_t t)
 {
     const int64_t gap = GAP(r);
-    const bool dirty = r->at.dirty || is_soiled(r);
+    const bool dirty = r->at.dirty || is_soiled(r) || (r->at.presence != ARE_THERE);
+    if (r->at.presence == MAY_BE_THERE) {
+        r->at.presence = r->at.started ? ARE_THERE_NEXT : ARE_THERE;
+    }
     r->at.dirty = false;
     r->at.after = t;
     if (dirty || (t >= r->at.alarm)) {
         if (gap > 1) {
-            r->at.awaited = tick_of(gap, t);
+            r->at.awaited = tick_from(gap, t);
             if (r->at.awaited == t) {
                 visit(r, t);
             } else {

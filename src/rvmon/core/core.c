@@ -48,7 +48,10 @@ static bool prepare(rv_monitor *m)
     m->parts = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->parts);
     m->homes = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->homes);
     m->absent = arena_take(&m->memory, (size_t)names + 1);
-    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL)) {
+    m->losing = arena_take(&m->memory, (size_t)names + 1);
+    m->late = arena_take(&m->memory, (size_t)p->header->requirements + 1);
+    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL) || (m->losing == NULL)
+        || (m->late == NULL)) {
         return false;
     }
     for (i = 0; i < p->part_count; i++) {
@@ -84,6 +87,12 @@ static bool begin_run(rv_monitor *m)
     m->last = RV_NO_TIME;
     m->after = -LIMIT;
     m->reached = RV_NO_TIME;
+    m->heard = RV_NO_TIME;
+    m->losing_count = 0;
+    m->dense_until = RV_NO_TIME;
+    m->dense_end = RV_NO_TIME;
+    (void)memset(m->losing, 0, (size_t)names + 1);
+    (void)memset(m->late, 0, (size_t)p->header->requirements + 1);
     m->finished = false;
     m->spoilt = false;
     for (i = 0; i < p->part_count; i++) {
@@ -159,7 +168,7 @@ int rv_reset(rv_monitor *m)
 }
 
 /* The homes that read a name, one after the other. */
-static const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count)
+const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count)
 {
     const int32_t first = m->plan.subscription_first[name];
     *count = m->plan.subscription_first[name + 1] - first;
@@ -186,7 +195,7 @@ static bool is_in_range(int64_t t)
 }
 
 /* Put the updates of a sample into the inboxes of those that read them. */
-static bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
+bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
 {
     int32_t i;
     int32_t k;
@@ -219,7 +228,7 @@ static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32
     run *r = m->homes[0].root;
     int32_t i;
     if ((m->plan.header->gap == 0) && r->at.started) {
-        r->at.position = m->last;
+        r->at.position = last_position(m);
     }
     approach(r, t);
     for (i = 0; i < count; i++) {
@@ -246,8 +255,9 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
     for (i = 0; i < m->plan.part_count; i++) {
         home *h = &m->homes[i];
         if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started
+            || (h->root->at.presence != ARE_THERE)
             || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
-            h->previous = m->last;
+            h->previous = last_position(m);
             home_sample(h, t);
         }
     }
@@ -256,6 +266,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
 
 int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
+    int32_t i;
     if (m->finished) {
         return RV_FINISHED;
     }
@@ -268,7 +279,14 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     if (t <= m->after) {
         return RV_TOO_EARLY;
     }
-    if (m->is_alone) {
+    if ((m->dense_until != RV_NO_TIME) && is_amid_dense(m, t)) {
+        if (!distribute(m, updates, count)) {
+            return RV_NO_MEMORY;
+        }
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_take_amid(&m->homes[i], t);
+        }
+    } else if (m->is_alone) {
         step_alone(m, t, updates, count);
     } else if (!step_parts(m, t, updates, count)) {
         return RV_NO_MEMORY;
@@ -300,6 +318,9 @@ int rv_advance(rv_monitor *m, int64_t t)
         return RV_OUT_OF_RANGE;
     }
     if (t > m->reached) {
+        if (m->dense_until != RV_NO_TIME) {
+            pass_dense(m, t - 1);
+        }
         for (i = 0; i < m->plan.part_count; i++) {
             home_wait(&m->homes[i], t);
         }
@@ -314,7 +335,7 @@ int rv_advance(rv_monitor *m, int64_t t)
 
 int64_t rv_end(const rv_monitor *m, int64_t t)
 {
-    int64_t end = m->last;
+    int64_t end = (m->heard > m->last) ? m->heard : m->last;
     if (end != RV_NO_TIME) {
         end = (t > end) ? t : end;
         if ((m->plan.header->gap > 0) && (m->reached - 1 > end)) {
@@ -334,9 +355,14 @@ int rv_finish(rv_monitor *m, int64_t t)
     if ((t != RV_NO_TIME) && !is_in_range(t)) {
         return RV_OUT_OF_RANGE;
     }
+    if ((m->dense_until != RV_NO_TIME) && !m->finished && !m->spoilt) {
+        m->dense_until = least(m->dense_until, end);
+        end_dense(m);
+    }
     m->finished = true;
     if ((end != RV_NO_TIME) && !m->spoilt) {
-        const int64_t reached = (m->reached > end) ? m->reached : end;
+        const int64_t least_reached = ((m->plan.header->flags & PLAN_NEXT_LAW) != 0) ? end + 1 : end;
+        const int64_t reached = (m->reached > end) ? m->reached : least_reached;
         for (i = 0; i < m->plan.part_count; i++) {
             home_close(&m->homes[i], end, reached);
         }

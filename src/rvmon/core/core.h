@@ -80,7 +80,8 @@ enum {
     RV_NO_MEMORY = 2,
     RV_TOO_EARLY = 3,          /* the sample is not later than all before */
     RV_OUT_OF_RANGE = 4,       /* an instant beyond 2^62 */
-    RV_FINISHED = 5
+    RV_FINISHED = 5,
+    RV_OTHER_LAW = 6           /* the plan is of a law by which nothing is lost */
 };
 
 /* Check a plan: the place of the first section found wrong, -1 if all is well. The bytes are not
@@ -111,6 +112,19 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count);
 
 /* No sample before `t` will come. */
 int rv_advance(rv_monitor *m, int64_t t);
+
+/* From `since` on these names may say anything: they are unknown, and so is whether they are updated.
+ * What comes of them meanwhile is left out. It is `rv_advance(since)` too; RV_TOO_EARLY, and nothing is
+ * done, if that was judged already. Names without a source are unknown anyway; there may be none. */
+int rv_lose(rv_monitor *m, int64_t since, const int32_t *names, int32_t count);
+
+/* `at` is the last instant at which these names are lost, and time has come to it: an event is known
+ * behind it, a signal at its first update there or at `at` itself. */
+int rv_found(rv_monitor *m, int64_t at, const int32_t *names, int32_t count);
+
+/* A sample at `t` with these names came behind what was judged: it is not judged. No verdict of a
+ * requirement that it would have touched is green any more; `count` -1: of any, as it cannot be read. */
+int rv_late(rv_monitor *m, int64_t t, const int32_t *names, int32_t count);
 
 /* End the run, at `t` if that is later than all so far (RV_NO_TIME: where it is). */
 int rv_finish(rv_monitor *m, int64_t t);
@@ -151,11 +165,13 @@ typedef struct {
     int64_t inconclusive;
     bool heard;
     bool open;                 /* an attempt is undecided now */
+    bool late;                 /* something came too late that it would have been judged by */
 } rv_counts;
 
 rv_counts rv_count(const rv_monitor *m, int32_t requirement);
 
-/* The verdict so far: final once the run is finished; never PASS or NOT_TRIGGERED if it is spoilt. */
+/* The verdict so far: final once the run is finished; never PASS or NOT_TRIGGERED if it is spoilt, or
+ * something came too late. */
 int rv_verdict(const rv_monitor *m, int32_t requirement);
 
 /* Whether memory was short in this run. */

@@ -75,6 +75,16 @@ public:
     }
 
     int advance(std::int64_t t) { return rv_advance(monitor_, t); }
+    int lose(std::int64_t since, std::initializer_list<std::int32_t> names)
+    {
+        return rv_lose(monitor_, since, names.begin(), static_cast<std::int32_t>(names.size()));
+    }
+
+    int found(std::int64_t at, std::initializer_list<std::int32_t> names)
+    {
+        return rv_found(monitor_, at, names.begin(), static_cast<std::int32_t>(names.size()));
+    }
+
     int finish(std::int64_t t = RV_NO_TIME) { return rv_finish(monitor_, t); }
     int reset() { return rv_reset(monitor_); }
 

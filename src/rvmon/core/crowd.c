@@ -107,7 +107,7 @@ run *following(const home *h, const run *r)
 /* An instant before which nothing happens in a run, no sample being taken. */
 static int64_t alarm_of(const run *r)
 {
-    return r->at.started ? r->at.alarm : ((GAP(r) > 1) ? r->at.awaited : NEVER);
+    return r->at.started ? r->at.alarm : ((GAP(r) > 0) ? r->at.awaited : NEVER);
 }
 
 /* Set the alarms of what was touched. */

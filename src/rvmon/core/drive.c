@@ -199,6 +199,20 @@ void pass_to(run *r, int32_t index, int64_t t)
     }
 }
 
+/* Step the attempts of an automaton at each tick up to `t`, the letter being as it was. */
+void pass_ticks(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    if (!queue_is_empty(j)) {
+        loosen_queue(r, index);
+    }
+    if (has_attempts(j)) {
+        drive_all(r, index, BY_RUN, j->position + 1, t, false);
+        set_restless(r, index);
+    }
+    j->position = t;
+}
+
 /* Step what is queued, if something is. */
 static void step_or_rest(run *r, int32_t index, int64_t t)
 {
@@ -276,12 +290,13 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
 {
     const judge_plan *judged = &r->part->judges[index];
     judge *j = &r->judges[index];
+    const bool judged_here = (r->at.presence == ARE_THERE) && !j->blind;
     attempt *x;
     int32_t at;
-    if (!has_attempts(j) || (j->position < t)) {
+    if (judged_here && (!has_attempts(j) || (j->position < t))) {
         visit_judge(r, index, t);
     }
-    if (is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
+    if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
         (void)queue_begin(r, index, t);
         return;
     }
@@ -311,6 +326,23 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         leave_episode(r, index);
         j->current = at;
     }
+    if (!judged_here) {
+        x->hollow = true; /* what it owes here will not be known */
+        x->parted = true;
+        x->location = FAILED;
+        x->better = PASSED;
+        x->next = j->moot;
+        j->moot = at;
+    } else {
+        enter(r, index, at, t);
+    }
+}
+
+/* Judge an attempt that is in no list from the position at `t` on. */
+void enter(run *r, int32_t index, int32_t at, int64_t t)
+{
+    judge *j = &r->judges[index];
+    attempt *x = attempt_at(r->home, at);
     if (remains(r, index, at, t)) {
         set_rule_due(r, index, least(r->rules.due[index], x->due));
         if (j->last < 0) {

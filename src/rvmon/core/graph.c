@@ -48,9 +48,10 @@ static uint8_t combined(const run *r, const node_plan *n)
 
 static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
 {
-    const int64_t due = sum(r->at.origin, n->low);
-    timers_set(&r->wake, n->timer, (t < due) ? due : NEVER);
-    return truth_if(t >= due);
+    const int64_t due = sum(r->at.begun, n->low);
+    const int64_t may_be_due = sum(r->at.origin, n->low);
+    timers_set(&r->wake, n->timer, (t < may_be_due) ? may_be_due : ((t < due) ? due : NEVER));
+    return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
 }
 
 static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
@@ -69,6 +70,29 @@ static uint8_t ever(run *r, const node_plan *n, uint8_t left, uint8_t right)
     value = (right > value) ? right : value;
     r->seen[n->slot] = value;
     return value;
+}
+
+/* The left side of a `since` where all is unknown: what has to last for ever asks for no position. */
+static uint8_t left_there(const run *r, const node_plan *n)
+{
+    const node_plan *left = &r->part->nodes[LIST(PLAN(r), n->operands)[0]];
+    return ((left->op == NODE_CONSTANT) && (left->a == IS_TRUE)) ? IS_TRUE : IS_UNKNOWN;
+}
+
+/* Have what remembers know that its operands are unknown from the position `t` on. */
+void remember_unknown(run *r, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->nodes.count; i++) {
+        const node_plan *n = &r->part->nodes[i];
+        switch (n->op) {
+        case NODE_PREVIOUS: (void)previous(r, n, t, IS_UNKNOWN); break;
+        case NODE_EVER: (void)ever(r, n, left_there(r, n), IS_UNKNOWN); break;
+        case NODE_EDGE:
+        case NODE_STRETCH: (void)node_since(r, n, t, left_there(r, n), IS_UNKNOWN); break;
+        default: break;
+        }
+    }
 }
 
 static uint8_t evaluated(run *r, int32_t place, int64_t t)
@@ -112,6 +136,42 @@ static void store(run *r, int32_t place, uint8_t value)
         }
         if (((l->kind & LINK_DETERMINED) != 0) && (value == IS_TRUE)) {
             r->at.undetermined_left--;
+        }
+    }
+}
+
+static bool tells_of_trigger(const run *r, const node_plan *n)
+{
+    return (n->links.count > 0) && ((PLAN(r)->links[n->links.first].kind & LINK_DETERMINED) != 0);
+}
+
+/* What a node is where all that formulas read is unknown. */
+static uint8_t blank_value(run *r, int32_t place, int64_t t)
+{
+    const node_plan *n = &r->part->nodes[place];
+    const int32_t *operands = LIST(PLAN(r), n->operands);
+    switch (n->op) {
+    case NODE_LAPSED: return truth_if(t >= r->cut);
+    case NODE_DOUBT: return node_doubt(r, n, place, t, IS_UNKNOWN);
+    case NODE_NOT: return (uint8_t)(IS_TRUE - r->truth[operands[0]]);
+    case NODE_AND:
+    case NODE_OR: return combined(r, n);
+    case NODE_SURE: return (r->truth[operands[0]] == IS_TRUE) ? IS_TRUE : IS_UNKNOWN;
+    default: return IS_UNKNOWN;
+    }
+}
+
+/* Have every formula be unknown at the position `t`; that a trigger was ever known stays so, and what
+ * may be hidden, or was captured, is known all the same. */
+void blank_out(run *r, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->nodes.count; i++) {
+        if (!tells_of_trigger(r, &r->part->nodes[i])) {
+            const uint8_t value = blank_value(r, i, t);
+            if (value != r->truth[i]) {
+                store(r, i, value);
+            }
         }
     }
 }

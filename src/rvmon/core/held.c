@@ -67,9 +67,14 @@ static bool recall(home *h, int32_t first)
 static void give_until(home *h, int64_t limit, int32_t end)
 {
     const int64_t gap = h->monitor->plan.header->gap;
-    if ((end > h->given) && (tick_of(gap, h->past[end - 1].t) <= limit)) {
+    if ((end > h->given) && (tick_from(gap, h->past[end - 1].t) <= limit)) {
         while ((h->given < end) && recall(h, h->given)) {
-            take_inbox(h, h->past[h->given].t);
+            const past_update *one = &h->past[h->given];
+            if (one->says > RV_SAYS_YES) {
+                lose_inbox(h, one->t);
+            } else {
+                take_inbox(h, one->t);
+            }
         }
         if ((h->part->plan->flags & PART_KEEPS_PAST) == 0) {
             forget_given(h);

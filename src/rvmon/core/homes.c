@@ -40,7 +40,7 @@ static void drop_gone(home *h)
     h->touched_count = kept;
 }
 
-static void untouch_all(home *h)
+void untouch_all(home *h)
 {
     int32_t i;
     for (i = 0; i < h->touched_count; i++) {
@@ -50,7 +50,7 @@ static void untouch_all(home *h)
 }
 
 /* End a call: let go of attempts and instances that are over, and set the alarms of what was touched. */
-static void rest_all(home *h)
+void rest_all(home *h)
 {
     int32_t i;
     flush_turns(h);
@@ -186,14 +186,7 @@ void take_inbox(home *h, int64_t t)
     if (p->each != 0) {
         open_instances(h, t);
     }
-    if (holds_back(h)) {
-        h->given += (h->inbox_count > 0) ? h->inbox_count : 1; /* it is kept already */
-    } else if ((p->flags & PART_KEEPS_PAST) != 0) {
-        keep_updates(h, t);
-        h->given = h->past_count;
-    } else {
-        /* Nobody looks at it again. */
-    }
+    keep_given(h, t);
     count = call_concerned(h, t);
     if (count >= 0) {
         for_called(h, count, t, give_inbox);
@@ -241,6 +234,58 @@ void home_wait(home *h, int64_t t)
     rest_all(h);
 }
 
+/* Have names be lost, or found, as the inbox has it, of which attempts or instances have values of their
+ * own. */
+void lose_inbox(home *h, int64_t t)
+{
+    run *one;
+    pass_all(h, t - 1);
+    if (h->part->plan->each != 0) {
+        open_instances(h, t);
+    }
+    keep_given(h, t);
+    for (one = h->root; one != NULL; one = following(h, one)) {
+        touch_run(one);
+        give_loss(one, t, h->inbox, h->inbox_count);
+    }
+    rest_all(h);
+}
+
+/* The same of any part; time has come to `t`. */
+void home_lose(home *h, int64_t t)
+{
+    if (!is_apart(h)) {
+        give_loss(h->root, t, h->inbox, h->inbox_count);
+        h->alarm = h->root->at.alarm;
+    } else if (holds_back(h)) {
+        hold_back(h, t);
+    } else {
+        lose_inbox(h, t);
+    }
+    h->inbox_count = 0;
+}
+
+/* The trace may begin at `t`. */
+void home_begin_blank(home *h, int64_t t)
+{
+    const bool keeps = (h->part->plan->flags & PART_KEEPS_PAST) != 0;
+    if (keeps) {
+        keep_updates(h, t);
+        h->given = h->past_count;
+        if (h->past_count > 0) {
+            h->past[h->past_count - 1].says = SAYS_AHEAD;
+        }
+    }
+    touch_run(h->root);
+    may_begin(h->root, t);
+    if (is_apart(h)) {
+        rest_all(h);
+    } else {
+        untouch_all(h);
+        h->alarm = t;
+    }
+}
+
 /* The last position of a run, to which it is taken for what is judged at the end. */
 static void come_to_end(run *r, int64_t end)
 {
@@ -255,10 +300,10 @@ static void come_to_end(run *r, int64_t end)
             r->at.before = last - gap;
         }
     } else {
-        if (is_apart(r->home) && (r->home->monitor->last > r->at.position)) {
+        if (is_apart(r->home) && (last_position(r->home->monitor) > r->at.position)) {
             forget_last(r); /* a sample that this part does not read is a position, too */
         }
-        r->at.position = r->home->monitor->last;
+        r->at.position = last_position(r->home->monitor);
     }
 }
 

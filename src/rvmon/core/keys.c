@@ -138,6 +138,32 @@ void open_at(run *r, int64_t t)
     }
 }
 
+/* Whether the occurrence that an instance was opened by came before a tick at which its event is lost:
+ * then its value is not known. The instance waits for the next one. */
+bool was_swallowed(run *r, int64_t t)
+{
+    const part_plan *p = r->part->plan;
+    if ((r->rank == 0U) || (r->occurred < r->opens_at)
+        || !is_lost_at(r, p->signals.count + p->each_event, t)) {
+        return false;
+    }
+    r->opens_at = NEVER;
+    r->occurred = NEVER;
+    return true;
+}
+
+/* Have an instance that was made know that its value occurs at `t`. */
+static void open_anew(home *h, int32_t at, int64_t t)
+{
+    run *r = h->keys[at].open;
+    h->last_rank++;
+    h->keys[at].rank = h->last_rank;
+    h->keys[at].occurred = t;
+    r->rank = h->last_rank;
+    r->occurred = t;
+    open_at(r, t);
+}
+
 /* Have an instance of a value that begins at the sample at `t`. */
 static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
 {
@@ -162,7 +188,7 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         /* What came since the last tick of a clock belongs to the next one. */
         made->over = h->root->over;
         made->at.gathered = h->root->at.gathered;
-        if (made->at.started) {
+        if (made->at.started && (made->at.presence == ARE_THERE)) {
             vary(made, made->at.position, made->at.gathered);
         }
     } else {
@@ -182,7 +208,9 @@ void open_instances(home *h, int64_t t)
     for (i = 0; i < h->inbox_count; i++) {
         const incoming *in = &h->inbox[i];
         const rv_update *u = in->update;
-        if (!in->event || (in->local != p->each_event) || (u->says == RV_SAYS_NO)) {
+        if (!in->event || (in->local != p->each_event) || (u->says == RV_SAYS_NO)
+            || ((u->says <= RV_SAYS_YES)
+                && is_lost_at(h->root, p->signals.count + in->local, t))) {
             continue;
         }
         if ((u->says == RV_SAYS_YES) && (u->fields != NULL)
@@ -195,15 +223,27 @@ void open_instances(home *h, int64_t t)
             }
             if ((at >= 0) && (h->keys[at].open == NULL)) {
                 open_instance(h, at, t, is_known);
+            } else if ((at >= 0) && (h->keys[at].open->occurred == NEVER)) {
+                open_anew(h, at, t);
+            } else {
+                /* It has begun. */
             }
         } else {
             unknown = true;
         }
     }
-    while (unknown && (h->oldest >= 0) && !h->monitor->spoilt) {
+    if (unknown) {
+        open_unknown(h, t);
+    }
+}
+
+/* What occurs at `t` may be of any value. */
+void open_unknown(home *h, int64_t t)
+{
+    while ((h->oldest >= 0) && !h->monitor->spoilt) {
         open_instance(h, h->oldest, t, true);
     }
-    if (unknown && (h->root->opens_at == NEVER)) {
+    if (h->root->opens_at == NEVER) {
         open_at(h->root, t);
     }
 }
@@ -269,7 +309,8 @@ bool is_over(const run *r)
     const int32_t *varying = LIST(PLAN(r), p->varying);
     int32_t next = 0;
     int32_t i;
-    if (!is_quiet(r)) {
+    if (!is_quiet(r) || (r->at.lost_count > 0) || (r->occurred == NEVER) || r->at.dense
+        || (r->at.presence != ARE_THERE)) {
         return false;
     }
     for (i = 0; i < p->nodes.count; i++) {

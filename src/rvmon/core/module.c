@@ -2,6 +2,7 @@
  * columns, and gives out attempts. The only file of the core that knows of Python. */
 #include "module_attempts.h"
 #include "module_open.h"
+#include "module_outages.h"
 #include "module_rows.h"
 
 #ifndef RVMON_SOURCE_HASH
@@ -241,7 +242,7 @@ static PyObject *records_of(monitor *c, PyObject *unused)
 }
 
 /* How many attempts of each requirement failed, passed, and stayed open, and whether its trigger was
- * ever true or false. */
+ * ever true or false, and nothing came too late for it. */
 static PyObject *counts_of(monitor *c, PyObject *unused)
 {
     PyObject *made = rv_spoilt(c->m) ? PyErr_NoMemory() : PyList_New(0);
@@ -250,7 +251,8 @@ static PyObject *counts_of(monitor *c, PyObject *unused)
     for (i = 0; (made != NULL) && (i < c->sizes.requirements); i++) {
         const rv_counts found = rv_count(c->m, i);
         PyObject *own = Py_BuildValue("LLLi", (long long)found.failed, (long long)found.passed,
-                                      (long long)found.inconclusive, found.heard ? 1 : 0);
+                                      (long long)found.inconclusive,
+                                      (found.heard && !found.late) ? 1 : 0);
         if ((own == NULL) || (PyList_Append(made, own) < 0)) {
             Py_CLEAR(made);
         }
@@ -276,6 +278,9 @@ static PyObject *next_due_of(monitor *c, PyObject *unused)
 
 METHOD(judge)
 METHOD(advance)
+METHOD(lose)
+METHOD(found)
+METHOD(late)
 METHOD(finish)
 METHOD(reset)
 METHOD(flush)
@@ -346,6 +351,9 @@ static PyMethodDef monitor_methods[] = {
     {"judge", monitor_judge, METH_VARARGS, NULL},
     {"rows", monitor_rows, METH_VARARGS, NULL},
     {"advance", monitor_advance, METH_O, NULL},
+    {"lose", monitor_lose, METH_VARARGS, NULL},
+    {"found", monitor_found, METH_VARARGS, NULL},
+    {"late", monitor_late, METH_VARARGS, NULL},
     {"finish", monitor_finish, METH_O, NULL},
     {"flush", monitor_flush, METH_NOARGS, NULL},
     {"open", monitor_open, METH_NOARGS, NULL},

@@ -10,8 +10,12 @@ from rvmon.errors import RvmonError
 from rvmon.plan.plan import Plan
 
 
-def pack(plan: Plan) -> Packed:
+def pack(plan: Plan, *, next_law: bool = False) -> Packed:
     """Pack a plan: all requirements without captured values together, each of the others apart.
+
+    Args:
+        plan: of the requirements.
+        next_law: whether they are judged by the law to come.
 
     Raises:
         RvmonError: there is no requirement, or an expression is beyond the core.
@@ -35,7 +39,7 @@ def pack(plan: Plan) -> Packed:
         max(len(rule.captured) for rule in plan.asked),
     )
     ids = tuple(rule.requirement.id for rule in plan.asked)
-    return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes))
+    return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes, next_law=next_law))
 
 
 def _subscribe(sections: Sections, plan: Plan, parts: list[Part]) -> None:

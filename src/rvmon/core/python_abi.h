@@ -209,6 +209,8 @@ long long PyLong_AsLongLongAndOverflow(PyObject *, int *);
 PyObject *PyLong_FromLongLong(long long);
 PyObject *PyLong_FromUnsignedLong(unsigned long);
 
+PyObject *PySequence_Tuple(PyObject *);
+
 PyObject *PyTuple_GetItem(PyObject *, Py_ssize_t);
 PyObject *PyTuple_New(Py_ssize_t);
 PyObject *PyTuple_Pack(Py_ssize_t, ...);

@@ -138,6 +138,7 @@ rv_counts rv_count(const rv_monitor *m, int32_t requirement)
         }
     }
     counts.open = counts.open && !m->finished;
+    counts.late = m->late[requirement] != 0U;
     return counts;
 }
 
@@ -147,7 +148,7 @@ int rv_verdict(const rv_monitor *m, int32_t requirement)
     if (counts.failed > 0) {
         return RV_FAIL;
     }
-    if ((counts.inconclusive > 0) || counts.open || m->spoilt) {
+    if ((counts.inconclusive > 0) || counts.open || counts.late || m->spoilt) {
         return RV_INCONCLUSIVE;
     }
     if (counts.passed > 0) {

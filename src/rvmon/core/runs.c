@@ -60,6 +60,11 @@ static size_t cut_block(cutter *c, run *r)
     r->silent = piece(c, events, 1);
     r->absent = piece(c, names, 1);
     r->seen = piece(c, p->seen, 1);
+    r->lost = piece(c, names_to_lose(r), 1);
+    r->until = piece(c, names_to_lose(r), sizeof *r->until);
+    r->kept = piece(c, names_to_lose(r), sizeof *r->kept);
+    r->has_kept = piece(c, names_to_lose(r), 1);
+    r->keeps = piece(c, names_to_lose(r), 1);
     copied = c->used;
     r->payloads = piece(c, events, sizeof *r->payloads);
     r->chosen = piece(c, events, sizeof *r->chosen);
@@ -215,6 +220,7 @@ void clear_run(run *r)
         s->growing = false;
         s->apart = false;
     }
+    begin_unlost(r);
     clear_judges(r);
 }
 
@@ -384,6 +390,19 @@ void keep_updates(home *h, int64_t t)
     }
 }
 
+/* Keep what is judged now, if somebody will look at it again. */
+void keep_given(home *h, int64_t t)
+{
+    if (holds_back(h)) {
+        h->given += (h->inbox_count > 0) ? h->inbox_count : 1; /* it is kept already */
+    } else if ((h->part->plan->flags & PART_KEEPS_PAST) != 0) {
+        keep_updates(h, t);
+        h->given = h->past_count;
+    } else {
+        /* Nobody does. */
+    }
+}
+
 /* Have a run with values of its own see all that was. */
 void replay(run *r)
 {
@@ -395,7 +414,7 @@ void replay(run *r)
     clear_run(r);
     r->over = false;
     for (i = 0; i < p->signals.count + p->events.count; i++) {
-        if (h->root->absent[i] != 0U) {
+        if (has_no_source(h->root, i)) {
             lack(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
         }
     }
@@ -404,19 +423,39 @@ void replay(run *r)
         if ((GAP(r) == 0) && r->at.started) {
             r->at.position = h->previous;
         }
-        approach(r, t);
-        forget_last(r);
+        const bool loss = h->past[first].says > RV_SAYS_YES;
+        const bool amid = r->at.dense;
+        if (!amid) {
+            approach(r, t);
+        }
+        if (!loss && !amid) {
+            forget_last(r);
+        }
         do {
             const past_update *one = &h->past[first];
             const rv_update update = {0, one->says, one->value, one->fields};
             const incoming in = {one->local, one->event, &update};
-            if (one->local >= 0) {
+            if (one->says == SAYS_AHEAD) {
+                may_begin(r, t);
+            } else if (one->says == SAYS_DENSE) {
+                run_begin_dense(r, t);
+            } else if (one->says == SAYS_SPARSE) {
+                run_end_dense(r, t);
+            } else if (loss) {
+                give_loss(r, t, &in, 1);
+            } else if (r->at.dense) {
+                run_take_amid(r, t, &in, (one->local >= 0) ? 1 : 0);
+            } else if (one->local >= 0) {
                 take_update(r, t, &in);
+            } else {
+                /* It says nothing. */
             }
             first++;
         } while ((first < h->given) && !h->past[first - 1].last);
-        arrive(r, t);
-        h->previous = t;
+        if (!loss && !amid) {
+            arrive(r, t);
+        }
+        h->previous = (loss && (h->past[first - 1].says != SAYS_SPARSE)) ? h->previous : t;
     }
     h->previous = previous;
 }

@@ -147,6 +147,17 @@ typedef struct {
     int64_t end;
 } stretch;
 
+/* How a name is: not lost; lost; lost up to an instant that is known; lost till its next update. */
+enum { NOT_LOST = 0, LOST_ON = 1, LOST_UNTIL = 2, LOST_SINCE = 3 };
+
+/* What is said of a name in place of an update: see `rv_lose` and `rv_found`. What is said of none:
+ * AHEAD, before the first sample something was lost; DENSE, from here on every tick may be a position;
+ * SPARSE, only samples are behind here. */
+enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD, SAYS_DENSE, SAYS_SPARSE };
+
+/* Whether there are positions: surely; nobody knows; from the next one on. */
+enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
+
 /* Stretches of instants at which a `since` in bounds holds, as a ring. */
 typedef struct {
     stretch *at;
@@ -197,6 +208,8 @@ typedef struct {
     bool sorted;               /* whether no attempt is due before an older one */
     bool is_restless_listed;
     bool is_failing_listed;
+    bool blind;                /* whether its network, which looks back, missed positions: nothing more
+                                * is said of attempts */
 } judge;
 
 /* The state of a part: of all requirements without values of their own, of an instance, or of an
@@ -269,14 +282,26 @@ struct run {
     uint8_t *silent;
     uint8_t *absent;
     uint8_t *seen;
+    /* Of a plan by which names can be lost, else empty. */
+    uint8_t *lost;             /* by name, how it is */
+    int64_t *until;            /* by name, the last instant at which it is lost; till that is known
+                                * the first one */
+    rv_number *kept;           /* by signal, what came at that instant */
+    uint8_t *has_kept;
+    uint8_t *keeps;            /* whether what comes at that instant counts behind it */
     /* What is copied with them. */
     struct progress {
         int64_t origin;
+        int64_t dense_from;    /* the first such tick */
+        int64_t begun;         /* the first position that is surely there */
         int64_t position;
         int64_t before;
         int64_t alarm;         /* before that nothing happens without a change */
         int64_t after;         /* the last sample that was taken */
-        int64_t awaited;       /* the tick of a clock that what was taken belongs to */
+        int64_t awaited;       /* the tick of a clock that what was taken belongs to; or the position
+                                * at which names are lost */
+        int64_t ends_at;       /* a position behind which some are known to be found */
+        int32_t lost_count;    /* names of which something is lost */
         int32_t fading_count;
         int32_t fresh_count;
         int32_t marks_count;
@@ -284,7 +309,9 @@ struct run {
         int32_t undetermined_left;
         int32_t phase;         /* 1: all is born and determined */
         bool started;
-        bool starting;         /* at the first position */
+        uint8_t starting;      /* a truth: whether this is the first position */
+        uint8_t presence;      /* whether there are positions now */
+        bool dense;            /* whether every tick may be one, where only samples are */
         bool gathered;
         bool dirty;            /* a position is to be looked at though no node is dirty */
     } at;
@@ -354,6 +381,7 @@ struct home {
     uint32_t failed;
     uint32_t inconclusive;
     rv_number *room;           /* for values that are captured to be compared */
+    rv_number *nothing;        /* the values of its signals where all are unknown; NULL till then */
     int32_t sure[2];           /* what became so and is not numbered: first and last */
     int32_t doubtful[2];
     int32_t done[2];           /* what was decided and is not told */
@@ -391,6 +419,14 @@ struct rv_monitor {
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    uint8_t *late;             /* by requirement, whether something came too late for it */
+    /* Where only samples are positions. */
+    uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */
+    int32_t losing_count;
+    int64_t dense_until;       /* the last tick that may be one; NEVER: it goes on; RV_NO_TIME: none
+                                * may be now */
+    int64_t dense_end;         /* that of the last such stretch */
+    int64_t heard;             /* how far names are known to have been lost; RV_NO_TIME: none was */
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;

@@ -8,7 +8,7 @@
 #define EXACT (INT64_C(1) << 52)
 
 /* Remember to forget what is said of a name once its position is over. Signals come first. */
-static void mark(run *r, int32_t name)
+void mark(run *r, int32_t name)
 {
     if (r->marked[name] == 0U) {
         r->marked[name] = 1;
@@ -37,7 +37,7 @@ void forget(run *r)
 }
 
 /* Take an update; tells whether it brought another value. */
-static uint8_t remember(history *h, int64_t t, const rv_number *value)
+uint8_t remember(history *h, int64_t t, const rv_number *value)
 {
     const bool first = h->updates == 0;
     h->before = h->last;
@@ -105,7 +105,7 @@ static void hold(run *r, int32_t local, const rv_number *value)
     learn_span(r, local);
 }
 
-static void come_to_birth(run *r, int32_t local, bool known)
+void come_to_birth(run *r, int32_t local, bool known)
 {
     const signal_plan *s = &r->part->signals[local];
     if ((r->births[local] < s->births) && (known || (r->births[local] > 0))) {
@@ -121,6 +121,16 @@ static void come_to_birth(run *r, int32_t local, bool known)
     }
 }
 
+/* Have a signal become stale so long after an update at `t`. */
+void set_stale(run *r, int32_t local, int64_t t)
+{
+    const signal_plan *s = &r->part->signals[local];
+    const int64_t stale_at = sum(t, s->stale_after + 1);
+    timers_set(&r->wake, r->part->plan->timers + s->perishable, stale_at);
+    /* The update may change no value: then nothing else has the timer seen to. */
+    r->at.alarm = least(r->at.alarm, stale_at);
+}
+
 static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     const signal_plan *s = &r->part->signals[local];
@@ -132,16 +142,13 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
         r->at.dirty = true; /* another value may be captured */
     }
     if (s->perishable >= 0) {
-        const int64_t stale_at = sum(t, s->stale_after + 1);
-        timers_set(&r->wake, r->part->plan->timers + s->perishable, stale_at);
-        /* The update may change no value: then nothing else has the timer seen to. */
-        r->at.alarm = least(r->at.alarm, stale_at);
+        set_stale(r, local, t);
     }
     if (s->births != 0) {
         come_to_birth(r, local, known);
     }
     if ((s->flags & (SIGNAL_MARKS | SIGNAL_HISTORY)) != 0) {
-        r->updated[local] = 1;
+        r->updated[local] = IS_TRUE;
         mark(r, local);
         if ((s->flags & SIGNAL_HISTORY) != 0) {
             const uint8_t changed = remember(&r->history[local], t, value);
@@ -156,7 +163,7 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
 }
 
 /* Keep the payload of an occurrence. */
-static void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
+void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
 {
     occurrences *o = &r->payloads[local];
     const int32_t width = r->part->events[local].fields;
@@ -193,7 +200,7 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
     const event_plan *e = &r->part->events[local];
     const int32_t name = r->part->plan->signals.count + local;
     if ((e->flags & EVENT_MARKS) != 0) {
-        r->updated[name] = 1;
+        r->updated[name] = IS_TRUE;
         mark(r, name);
         r->at.dirty = true;
     }
@@ -213,6 +220,9 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
 void take_news(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
+    if ((r->at.lost_count > 0) && take_amid(r, t, in)) {
+        return;
+    }
     if (!in->event) {
         take_signal(r, t, in->local, (u->says == RV_SAYS_YES) ? &u->value : &UNKNOWN_NUMBER);
     } else if ((r->part->events[in->local].flags & EVENT_KEY) != 0) {
@@ -227,7 +237,11 @@ void take_news(run *r, int64_t t, const incoming *in)
 
 void go_stale(run *r, int32_t perishable)
 {
-    hold(r, r->part->perishable[perishable], &UNKNOWN_NUMBER);
+    const int32_t local = r->part->perishable[perishable];
+    if (r->at.lost_count > 0) {
+        stay_unknown(r, local);
+    }
+    hold(r, local, &UNKNOWN_NUMBER);
 }
 
 void lack(run *r, bool event, int32_t local)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.formula.core import Core, Sense
+from rvmon.formula.core import Constant as CoreConstant
+from rvmon.formula.core import Core, Literal, Sense
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.obligation import Origin
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, State
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -30,17 +31,28 @@ class Lowering:
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         favour: whether what is not born counts in favour of what is owed.
         measured: see `rvmon.formula.four.Reader`.
+        next_law: see there.
+        sampled: whether only samples are positions.
 
     Attributes:
         origins: where what was made comes from.
     """
 
     def __init__(
-        self, factory: Factory, period: int | None, favour: bool, *, measured: bool = False
+        self,
+        factory: Factory,
+        period: int | None,
+        favour: bool,
+        *,
+        measured: bool = False,
+        next_law: bool = False,
+        sampled: bool = False,
     ) -> None:
         self.factory = factory
-        self.reader = Reader(factory, period, measured=measured)
+        self.reader = Reader(factory, period, measured=measured, next_law=next_law)
         self.favour = favour
+        self._looks_back_at_blanks = next_law
+        self._meets_blanks = next_law and sampled
         self.origins: dict[Core, Origin] = {}
         self._made_up: dict[int, Formula] = {}
 
@@ -53,6 +65,8 @@ class Lowering:
     def episode(self, trigger: State, implied: Core, consequent: Formula) -> Core:
         """What is implied, up to where the trigger is known to be false; there nothing is."""
         over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
+        if self._meets_blanks:
+            implied = self._if_there(implied)
         owed = self.factory.release(over, implied, 0, None)
         for node in (implied, owed):
             self.origins[node] = Origin(consequent, True)
@@ -77,9 +91,10 @@ class Lowering:
             case Unary(op=UnaryOp.NOT, operand=operand):
                 return self.core(operand, not positive)
             case Unary(op=UnaryOp.NEXT, operand=operand):
-                return self.factory.next(self.core(operand, positive))
+                return self.factory.next(self._ahead(self.core(operand, positive)))
             case Unary(op=UnaryOp.PREVIOUS, operand=operand):
-                return self.factory.core_previous(self.core(operand, positive), first=not positive)
+                before = self._behind(self.core(operand, positive))
+                return self.factory.core_previous(before, first=not positive)
             case Binary(op=BinaryOp.AND, left=left, right=right):
                 return self._both(left, right, positive, positive)
             case Binary(op=BinaryOp.OR, left=left, right=right):
@@ -112,12 +127,36 @@ class Lowering:
 
     def _since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
+        if left is not self.factory.constant(not dual):
+            left = self._behind(left)
+        right = self._behind(right)
         return self.factory.core_since(left, right, low, high, dual=dual)
 
     def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
         make = self.factory.until if positive else self.factory.release
+        if not isinstance(left, CoreConstant):
+            left = self._ahead(left)
+        if low > 0 or right is not self.factory.constant(positive):
+            right = self._ahead(right)
         return make(left, right, low, high)
+
+    def _ahead(self, operand: Core) -> Core:
+        """What is asked of later positions, of which some may not be there."""
+        return self._if_there(operand) if self._meets_blanks else operand
+
+    def _behind(self, operand: Core) -> Core:
+        """The same of earlier ones."""
+        return self._if_there(operand) if self._looks_back_at_blanks else operand
+
+    def _if_there(self, operand: Core) -> Core:
+        """A formula that is unknown where there may be no position, as a proposition is anyway."""
+        factory = self.factory
+        if isinstance(operand, Literal):
+            return operand
+        there = factory.leaf(Elapsed(0))  # true, but where there may be no position
+        whole = factory.all_of([factory.literal(there, Sense.TRUE), operand])
+        return factory.any_of([whole, factory.literal(there, Sense.FALSE)])
 
     def _both(self, left: Formula, right: Formula, sign: bool, conjunction: bool) -> Core:
         """Both operands or one of them, with a sign; state formulas become one."""

@@ -98,14 +98,23 @@ class Reader(Reading[Four]):
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         measured: whether what is made has the robustness that the formula has, and not its truth
             alone, which takes more formulas.
+        next_law: whether for the law to come: what was lost may not be born either.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
 
-    def __init__(self, factory: Factory, period: int | None, *, measured: bool = False) -> None:
+    def __init__(
+        self,
+        factory: Factory,
+        period: int | None,
+        *,
+        measured: bool = False,
+        next_law: bool = False,
+    ) -> None:
         self.factory = factory
         self.period = period
         self.measured = measured
+        self.next_law = next_law
         self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
@@ -250,15 +259,36 @@ class Reader(Reading[Four]):
         if high is not None and low > high:
             return self.constant(False)
         value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
+        if self.next_law and (low > 0 or right.mortal):
+            value = self._or_lost(value, left, right, low, high)
         if not right.mortal:
             return Four(factory, _same(value), mortal=False)
         if right.fades and low == 0:
             unborn = right.unborn
+            if self.next_law:  # in an outage before the first sample it may be, or not
+                unborn = factory.state_all([unborn, factory.sure(factory.negation(value))])
         else:
             born = factory.since(factory.state_true, factory.negation(right.unborn), low, high)
             some = factory.since(factory.state_true, factory.state_true, low, high)
             unborn = factory.state_all([factory.negation(born), some])
         return self._besides(value, unborn)
+
+    def _or_lost(self, value: State, left: Four, right: Four, low: int, high: int | None) -> State:
+        """A `since` that is unknown where its right side was lost throughout the window.
+
+        That may not be born, then; so it is not false, though the left side be.
+        """
+        factory = self.factory
+        if left.read(TRUE) is factory.state_true:
+            return value
+
+        def once(state: State) -> State:
+            return factory.since(factory.state_true, state, low, high)
+
+        is_false = factory.negation(right.read(TRUE))
+        known = factory.state_any([factory.sure(right.read(FALSE)), factory.sure(is_false)])
+        lost = [factory.negation(once(known)), once(factory.negation(right.unborn))]
+        return factory.state_any([value, factory.state_all([*lost, factory.unknown])])
 
     def _besides(self, value: State, unborn: State) -> Four:
         """The formula that is not born where `unborn` says so; `value` is FALSE there."""

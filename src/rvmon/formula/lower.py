@@ -32,6 +32,8 @@ def lower(
     period: int | None = None,
     *,
     measured: bool = False,
+    next_law: bool = False,
+    sampled: bool = False,
 ) -> Obligation:
     """Bring a requirement into core form.
 
@@ -40,12 +42,16 @@ def lower(
         factory: where its formulas are made; shared by the requirements of a spec.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         measured: see `rvmon.formula.four.Reader`.
+        next_law: whether for the law to come, by which anything may be lost.
+        sampled: whether only samples are positions.
 
     Raises:
         UnmonitorableError: the trigger speaks of the future.
     """
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
-    lowering = Lowering(factory, period, favour, measured=measured)
+    lowering = Lowering(
+        factory, period, favour, measured=measured, next_law=next_law, sampled=sampled
+    )
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
             return Obligation(None, lowering.core(requirement.consequent, True), lowering.origins)
@@ -53,7 +59,8 @@ def lower(
             raise UnmonitorableError("its trigger speaks of the future")
     four = lowering.reader.four(requirement.trigger)
     trigger = four.read(FALSE)
-    determined = _determined(four, factory)
+    may_be_lost = next_law or _may_be_unknown(trigger)
+    determined = _determined(four, factory, next_law=next_law)
     if requirement.mode is Mode.WHENEVER:
         parts = flattened(requirement.consequent, True, False)
         running = _running(trigger, requirement, factory)
@@ -83,7 +90,7 @@ def lower(
         owed,
         lowering.origins,
         determined=determined,
-        hidden=hidden(False) if _may_be_unknown(trigger) else None,
+        hidden=hidden(False) if may_be_lost else None,
         doubted=hidden(True) if requirement.for_each is not None else None,
     )
 
@@ -94,9 +101,9 @@ def _running(trigger: State, requirement: Requirement, factory: Factory) -> Stat
     return factory.state_all([trigger, factory.negation(factory.leaf(Lapsed()))])
 
 
-def _determined(trigger: Four, factory: Factory) -> State | None:
+def _determined(trigger: Four, factory: Factory, *, next_law: bool) -> State | None:
     """TRUE as soon as a trigger was TRUE or FALSE; `None` if it is from the first position on."""
-    if not _may_be_unknown(trigger.read(UNKNOWN)):
+    if not (next_law or _may_be_unknown(trigger.read(UNKNOWN))):
         return None
     is_false = factory.sure(factory.negation(trigger.read(TRUE)))
     known = factory.state_any([factory.sure(trigger.read(FALSE)), is_false])

@@ -361,8 +361,14 @@ class CompiledRequirement:
         return any(graph.nodes[place] not in followed.index for place in graph.stateful)
 
 
-def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:
+def compiled_requirements(
+    checked: CheckedSpec, *, next_law: bool = False
+) -> Mapping[str, CompiledRequirement]:
     """The requirements of a specification, compiled, by id.
+
+    Args:
+        checked: as checked.
+        next_law: see `CompiledSpec`.
 
     Raises:
         RvmonError: one is beyond all engines; which one and why is in the message.
@@ -371,7 +377,13 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
     made = {}
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
         try:
-            obligation = lower(requirement, factory, checked.period)
+            obligation = lower(
+                requirement,
+                factory,
+                checked.period,
+                next_law=next_law,
+                sampled=checked.gap is None,
+            )
         except UnmonitorableError as error:
             span = requirement.span
             place = "" if span is None else f"{span.source.name}:{span.line}: "

@@ -39,14 +39,15 @@ class Place:
     Args:
         spec: the specification.
         ids: of the requirements.
+        next_law: see `rvmon.monitor.compiled.specification.CompiledSpec`.
     """
 
-    def __init__(self, spec: CheckedSpec, ids: tuple[str, ...]) -> None:
+    def __init__(self, spec: CheckedSpec, ids: tuple[str, ...], *, next_law: bool) -> None:
         folder = cache_folder()
         if folder is None:
             self._path = None
             return
-        content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), ids])
+        content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), ids, next_law])
         self._key = hashlib.sha256(content.encode()).hexdigest()
         self._path = folder / f"plan-{self._key}.bin"
 

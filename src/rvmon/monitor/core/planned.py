@@ -143,7 +143,7 @@ def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) ->
     ids = tuple(one for one in spec.requirements if only is None or one in only)
     found = compiled.forms.get(("core", ids))
     if not isinstance(found, PlannedCore):
-        place = Place(spec, ids) if compiled.is_kept else None
+        place = Place(spec, ids, next_law=compiled.next_law) if compiled.is_kept else None
         found = None if place is None else _checked(spec, ids, place.read())
         if found is None:
             made = _made(compiled, ids)
@@ -161,7 +161,7 @@ def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
 
     plan = plan_alone(compiled, ids)
     single = frozenset().union(*(one.single_payloads for one in compiled.chosen(ids)))
-    return Kept(pack(plan).data, single, plan.fillable)
+    return Kept(pack(plan, next_law=compiled.next_law).data, single, plan.fillable)
 
 
 def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> PlannedCore | None:

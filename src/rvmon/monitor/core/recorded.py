@@ -135,10 +135,10 @@ def report_of_run(
 
     Source: SEMANTICS, section 3.
     """
-    heard, counts = {}, {}
+    complete, counts = {}, {}
     for name, own in zip(planned.packed.ids, run.counts(), strict=True):
-        *_, was_heard = own
-        heard[name] = bool(was_heard)
+        *_, is_complete = own
+        complete[name] = bool(is_complete)
         counts[name] = {verdict: own[VERDICTS.index(verdict)] for verdict in _COUNTED}
     records, numbers = run.records()
     made = np.frombuffer(records, RECORD)
@@ -146,7 +146,7 @@ def report_of_run(
     order = _order(made)
     return Report(
         verdicts={
-            name: fold([one for one, count in own.items() if count], complete=heard[name])
+            name: fold([one for one, count in own.items() if count], complete=complete[name])
             for name, own in counts.items()
         },
         attempts=RecordedAttempts(planned, made, captured)
