@@ -107,11 +107,12 @@ void run_pass_dense(run *r, int64_t limit)
             give_up_networks(r);
         }
         next = next_tick(r, limit);
-        if (second) {
+        if (second) { /* what may be hidden there is another letter */
+            r->at.before = r->at.position;
             blank_out(r, next);
-            touch_all(r, TOUCHED_TRIGGER);
+            touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
         }
-        for (i = 0; i < judges; i++) {
+        for (i = 0; !second && (i < judges); i++) {
             if (!is_networked(r, i)) {
                 r->judges[i].touched &= (uint8_t)~TOUCHED_LETTER;
                 pass_ticks(r, i, next);

@@ -420,7 +420,7 @@ void replay(run *r)
     }
     while (first < h->given) {
         const int64_t t = h->past[first].t;
-        if ((GAP(r) == 0) && r->at.started) {
+        if ((GAP(r) == 0) && r->at.started && !r->at.dense) {
             r->at.position = h->previous;
         }
         const bool loss = h->past[first].says > RV_SAYS_YES;

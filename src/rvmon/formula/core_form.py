@@ -65,8 +65,6 @@ class Lowering:
     def episode(self, trigger: State, implied: Core, consequent: Formula) -> Core:
         """What is implied, up to where the trigger is known to be false; there nothing is."""
         over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
-        if self._meets_blanks:
-            implied = self._if_there(implied)
         owed = self.factory.release(over, implied, 0, None)
         for node in (implied, owed):
             self.origins[node] = Origin(consequent, True)
@@ -91,7 +89,7 @@ class Lowering:
             case Unary(op=UnaryOp.NOT, operand=operand):
                 return self.core(operand, not positive)
             case Unary(op=UnaryOp.NEXT, operand=operand):
-                return self.factory.next(self._ahead(self.core(operand, positive)))
+                return self.factory.next(self.owed(self.core(operand, positive)))
             case Unary(op=UnaryOp.PREVIOUS, operand=operand):
                 before = self._behind(self.core(operand, positive))
                 return self.factory.core_previous(before, first=not positive)
@@ -136,17 +134,17 @@ class Lowering:
         low, high = (interval.low, interval.high) if interval else (0, None)
         make = self.factory.until if positive else self.factory.release
         if not isinstance(left, CoreConstant):
-            left = self._ahead(left)
+            left = self.owed(left)
         if low > 0 or right is not self.factory.constant(positive):
-            right = self._ahead(right)
+            right = self.owed(right)
         return make(left, right, low, high)
 
-    def _ahead(self, operand: Core) -> Core:
-        """What is asked of later positions, of which some may not be there."""
+    def owed(self, operand: Core) -> Core:
+        """What is owed at positions of which some may not be there."""
         return self._if_there(operand) if self._meets_blanks else operand
 
     def _behind(self, operand: Core) -> Core:
-        """The same of earlier ones."""
+        """The same of what is asked of earlier ones."""
         return self._if_there(operand) if self._looks_back_at_blanks else operand
 
     def _if_there(self, operand: Core) -> Core:

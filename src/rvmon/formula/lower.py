@@ -65,7 +65,7 @@ def lower(
         parts = flattened(requirement.consequent, True, False)
         running = _running(trigger, requirement, factory)
         implied = lowering.join_signed(parts, False, [factory.negation(running)])
-        owed = lowering.episode(running, implied, requirement.consequent)
+        owed = lowering.episode(running, lowering.owed(implied), requirement.consequent)
         ahead = lowering.core(requirement.consequent, True)
         again = None if _looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
@@ -81,7 +81,7 @@ def lower(
         doubt = factory.doubt(trigger, pulse=requirement.pulse, every=every)
         running = _running(doubt, requirement, factory)
         here = factory.state_any([factory.negation(running), factory.sure(running)])
-        either = factory.any_of([factory.literal(here, Sense.TRUE), owed])
+        either = factory.any_of([factory.literal(here, Sense.TRUE), lowering.owed(owed)])
         whole = lowering.episode(running, either, requirement.consequent)
         return Obligation(doubt, whole, lowering.origins, running)
 

@@ -338,6 +338,32 @@ def test_of_samples_before_the_first_there_may_be_another():
     assert run.sample(0, p=True).sample(1).said() == ["-8? I"]
 
 
+@pytest.mark.parametrize(("last", "expected"), [(18, "NT"), (19, "I")])
+def test_of_samples_a_trigger_can_be_hidden_from_the_second_tick_on(last, expected):
+    """At the first one there is no edge if it was true before."""
+    run = Run("requirement R\n  upon p\n  then true", "sampled").sample(0, p=False)
+    run.sample(1, p=None).sample(4, p=True).lost("", 18, last)
+    assert run.report().verdicts["R"].value == expected
+
+
+def test_of_samples_nothing_is_captured_within():
+    """What is captured there is not known, though the value was read."""
+    text = "requirement R\n  upon end\n  then true\n  let v = x"
+    report = Run(text, "sampled").sample(0, x=1.0).lost("", 3, 3).report()
+    assert [dict(one.captured) for one in report.attempts] == [{"v": None}]
+
+
+def test_of_a_clock_a_key_that_came_before_a_lost_tick_is_not_known():
+    """It counts at the tick, at which whatever occurred is unknown; the next time it is known."""
+    text = "requirement R\n  upon start\n  then true\n  for each id in g.k"
+    run = Run(text, "sampled every 4 ns").sample(1, g={"k": 0}).lost("g", 3, 4)
+    assert run.report().verdicts["R"].value == "NT"
+    text = "requirement R\n  upon g.k == id\n  then true\n  for each id in g.k"
+    run = Run(text, "sampled every 4 ns").sample(1, g={"k": 0}).lost("g", 3, 4)
+    found = run.sample(6, g={"k": 0}).report(8).attempts
+    assert [(one.triggered, one.captured["id"]) for one in found if not one.in_doubt] == [(8, 0)]
+
+
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize(
     ("requirement", "expected"),
@@ -408,7 +434,7 @@ def test_random_samples_too_late_leave_what_the_law_leaves():
     """Of each requirement the verdict."""
     traces = TraceProfile(unknowns=False, advances=False, fewest=3)
     changed = 0
-    for number in range(150):
+    for number in range(90):
         case = case_of(f"late/{number}", Profile(captures=False), traces)
         rng = random.Random(number)
         if len(case.samples) < 3:
@@ -430,7 +456,7 @@ def test_random_samples_too_late_leave_what_the_law_leaves():
                 expected[name] = without[name]  # what a formula does not depend on is not read
         assert verdicts == expected
         changed += verdicts != without
-    assert changed > 20
+    assert changed > 15
 
 
 @pytest.mark.law
