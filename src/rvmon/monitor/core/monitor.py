@@ -11,6 +11,7 @@ from rvmon.errors import SnapshotError
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
 from rvmon.monitor.inputs.health import by_name, of_intake
+from rvmon.monitor.inputs.validate import Validator
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.monitor.online.one_call import overlap
@@ -46,10 +47,7 @@ class CoreMonitor(Monitor):
             names - (names if sources is None else sources), self._take_at, self._look_closer
         )
         super().__init__(compiled, (), "c", settle, sources, None)
-
-    @property
-    def _single_payloads(self) -> frozenset[str]:
-        return self._planned.single_payloads
+        self._validator = Validator(compiled.checked, sources, planned.single_payloads)
 
     def _attend(self) -> None:
         if self._intake is None and not self._listeners:

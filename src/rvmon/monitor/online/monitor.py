@@ -71,16 +71,12 @@ class Monitor:
         keep: int | None,
     ) -> None:
         self.options = Options(compiled, requirements, engine, settle, sources, keep)
-        self._validator = Validator(compiled.checked, sources, self._single_payloads)
+        single = frozenset().union(*(one.single_payloads for one in requirements))
+        self._validator = Validator(compiled.checked, sources, single)
         self._listeners = Listeners()
         self.one_call = OneCall(self)
         self.step, self.step_ns = self._take_at, self._take
         self._begin()
-
-    @property
-    def _single_payloads(self) -> frozenset[str]:
-        """The events of which only one payload can be judged at one instant."""
-        return frozenset().union(*(one.single_payloads for one in self.options.requirements))
 
     def _enter(self) -> None:
         """Begin a call: learn what was done without one."""
