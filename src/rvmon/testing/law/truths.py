@@ -301,7 +301,8 @@ class Truths:
                 )
             case BinaryOp.SINCE:
                 lasting = unless_constant(formula.left, left, Truth.TRUE)
-                return since(self._letters, lasting, right, i, interval, next_law=self._next_law)
+                next_law = self._next_law and not speaks_of_future(formula)
+                return since(self._letters, lasting, right, i, interval, next_law=next_law)
             case _:
                 assert_never(formula.op)
 
