@@ -214,12 +214,15 @@ void set_restless(run *r, int32_t index);
 void pass_to(run *r, int32_t index, int64_t t);
 void pass_ticks(run *r, int32_t index, int64_t t);
 void visit_judge(run *r, int32_t index, int64_t t);
+void reach_judge(run *r, int32_t index, int64_t t);
+bool drive_from(run *r, int32_t index, int32_t at, int64_t t);
+
+/* ---- starts.c: attempts as they begin */
+bool starts(run *r, int32_t index, uint8_t truth);
+bool watches(const run *r, int32_t index);
 void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
 void begin(run *r, int32_t index, int64_t t, int64_t triggered);
 void enter(run *r, int32_t index, int32_t at, int64_t t);
-void reach_judge(run *r, int32_t index, int64_t t);
-bool starts(run *r, int32_t index, uint8_t truth);
-bool watches(const run *r, int32_t index);
 
 /* ---- queue.c: attempts of which age alone decides */
 bool make_queue(run *r, int32_t index);
@@ -256,6 +259,14 @@ int64_t last_position(const rv_monitor *m);
 const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 
+/* ---- positions.c: at which positions something can change */
+int64_t tick_from(int64_t gap, int64_t t);
+bool may_go_on(const run *r, int32_t index);
+void tidy_failing(run *r);
+int64_t next_start(const run *r);
+int64_t next_position(const run *r);
+void set_alarm(run *r, int64_t position);
+
 /* ---- clock.c */
 void clear_run(run *r);
 void clear_judges(run *r);
@@ -268,9 +279,6 @@ void reach(run *r, int64_t t);
 void through(run *r, int64_t limit, bool comes);
 void approach(run *r, int64_t t);
 void arrive(run *r, int64_t t);
-int64_t tick_from(int64_t gap, int64_t t);
-void set_alarm(run *r, int64_t position);
-int64_t next_position(const run *r);
 int64_t next_decision(run *r);
 void settle_all(run *r, int64_t end, int64_t reached);
 bool was_heard(const run *r, int32_t index);
@@ -335,6 +343,8 @@ run *new_run(home *h);
 run *forked(const run *r);
 void set_aside(home *h, run *r);
 void give(run *r, int64_t t, const incoming *in, int32_t count);
+
+/* ---- kept.c: samples for those that look at what was before */
 void keep_updates(home *h, int64_t t);
 void keep_given(home *h, int64_t t);
 void replay(run *r);

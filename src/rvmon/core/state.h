@@ -3,6 +3,7 @@
 #define RVMON_STATE_H
 
 #include "judging.h"
+#include "plan_view.h"
 
 #define NEVER RV_NEVER
 #define LIMIT (INT64_C(1) << 62)
@@ -12,99 +13,6 @@ enum { IS_FALSE = 0, IS_UNKNOWN = 1, IS_TRUE = 2 };
 
 /* The two last locations of every automaton. */
 enum { FAILED = 0, PASSED = 1, WAITING = 2 };
-
-/* ---- memory.c: blocks of a few sizes, all given back at once */
-
-#define SIZE_CLASSES (32 * sizeof(size_t)) /* four for each of its bits */
-
-typedef struct chunk {
-    struct chunk *next;
-} chunk;
-
-typedef struct {
-    rv_memory from;
-    chunk *chunks;
-    char *free;
-    size_t left;
-    size_t used;               /* all that was handed out anew, together */
-    void *spare[SIZE_CLASSES];
-} arena;
-
-void *arena_take(arena *a, size_t size);          /* zeroed; NULL: there is none */
-void arena_give(arena *a, void *block, size_t size);
-void arena_release(arena *a);                     /* all of it */
-
-/* ---- plan.c: the plan, checked, with a pointer for each section */
-
-/* Clocks that one automaton may have. */
-#define CLOCKS_MOST 64
-
-/* An automaton with a pointer for each of its tables; see `automaton_plan`. */
-typedef struct {
-    const int32_t *class_of;
-    const int32_t *bases;
-    const int32_t *widths;
-    const int32_t *strides;
-    const int32_t *cut_first;
-    const int64_t *cuts;
-    const int32_t *edges;
-    const int32_t *targets;
-    const int32_t *sources;
-    const int32_t *time_values;
-    const int32_t *clause_first;
-    const int32_t *test_first;
-    const int32_t *tests;
-    const int64_t *ages;
-    int64_t gap;
-    int64_t step;
-    int32_t initial;
-    int32_t clocks;
-    int32_t classes;
-} machine;
-
-typedef struct {
-    const part_plan *plan;
-    const signal_plan *signals;
-    const event_plan *events;
-    const atom_plan *atoms;
-    const node_plan *nodes;
-    const judge_plan *judges;
-    const form_plan *forms;
-    machine *machines;         /* by judge that has an automaton */
-    int32_t *timed;            /* by timer, the node */
-    int32_t *perishable;       /* by number among these, the signal */
-    int32_t *networked;        /* judges that networks are, neither automata nor chains */
-    int32_t networked_count;
-    bool has_episodes;         /* whether some attempt runs until its trigger is false */
-    bool restarts;             /* whether some failure may be followed by another attempt */
-} part;
-
-typedef struct {
-    const plan_header *header;
-    const int32_t *field_first;
-    const int32_t *subscription_first;
-    const subscription *subscriptions;
-    const part_plan *parts;
-    const signal_plan *signals;
-    const event_plan *events;
-    const atom_plan *atoms;
-    const node_plan *nodes;
-    const link_plan *links;
-    const judge_plan *judges;
-    const automaton_plan *automata;
-    const form_plan *forms;
-    const operator_plan *operators;
-    const number_plan *numbers;
-    const int32_t *code;
-    const int32_t *lists;
-    const int32_t *ints;
-    const int64_t *ticks;
-    int64_t counts[SECTIONS];
-    int32_t part_count;
-} plan;
-
-bool plan_view(plan *p, const void *bytes, size_t size);
-machine machine_view(const plan *p, const automaton_plan *a);
 
 /* ---- the state */
 

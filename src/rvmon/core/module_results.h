@@ -1,0 +1,72 @@
+/* What module.c says of a run: attempts that are decided or open, records, counts. Included there alone. */
+#ifndef RVMON_MODULE_RESULTS_H
+#define RVMON_MODULE_RESULTS_H
+
+#include "module_attempts.h"
+
+static PyObject *flush_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return rv_spoilt(c->m) ? PyErr_NoMemory() : decided_since(c);
+}
+
+/* The attempts that are undecided now, and those that will stay so. */
+static PyObject *open_of(monitor *c, PyObject *unused)
+{
+    gathering g;
+    (void)unused;
+    begin_gathering(&g, c);
+    gather_records(c, 0, true, &g);
+    if (!g.failed) {
+        rv_each_open(c->m, gather, &g);
+    }
+    return listed(&g);
+}
+
+/* All records as bytes, and as many captured values for each of them as any has. */
+static PyObject *records_of(monitor *c, PyObject *unused)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(c->m, &records);
+    const Py_ssize_t most = (Py_ssize_t)c->sizes.captured;
+    PyObject *one = PyBytes_FromStringAndSize((const char *)records,
+                                              (Py_ssize_t)count * (Py_ssize_t)sizeof *records);
+    PyObject *other = PyBytes_FromStringAndSize(
+        NULL, (Py_ssize_t)count * most * (Py_ssize_t)sizeof(rv_number));
+    PyObject *made = NULL;
+    (void)unused;
+    if ((one != NULL) && (other != NULL)) {
+        rv_number *to = (rv_number *)(void *)PyBytes_AsString(other);
+        int64_t i;
+        (void)memset(to, 0, (size_t)PyBytes_Size(other));
+        for (i = 0; i < count; i++) {
+            copy_captured(c, &records[i], rv_captured(c->m, &records[i]), &to[i * most]);
+        }
+        made = PyTuple_Pack(2, one, other);
+    }
+    Py_XDECREF(one);
+    Py_XDECREF(other);
+    return made;
+}
+
+/* How many attempts of each requirement failed, passed, and stayed open, and whether its trigger was
+ * ever true or false, and nothing came too late for it. */
+static PyObject *counts_of(monitor *c, PyObject *unused)
+{
+    PyObject *made = rv_spoilt(c->m) ? PyErr_NoMemory() : PyList_New(0);
+    int32_t i;
+    (void)unused;
+    for (i = 0; (made != NULL) && (i < c->sizes.requirements); i++) {
+        const rv_counts found = rv_count(c->m, i);
+        PyObject *own = Py_BuildValue("LLLi", (long long)found.failed, (long long)found.passed,
+                                      (long long)found.inconclusive,
+                                      (found.heard && !found.late) ? 1 : 0);
+        if ((own == NULL) || (PyList_Append(made, own) < 0)) {
+            Py_CLEAR(made);
+        }
+        Py_XDECREF(own);
+    }
+    return made;
+}
+
+#endif
