@@ -156,6 +156,23 @@ static int one_step(rv_monitor *m, script *s, int64_t t, bool in_rows)
     return rv_step(m, t, updates, count);
 }
 
+/* Names are lost, found, or came too late. */
+static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
+{
+    const rv_sizes sizes = rv_sizes_of(m);
+    const int32_t names = sizes.signals + sizes.events;
+    int32_t lost[3] = {0, 0, 0};
+    const int32_t count = (names > 0) ? byte_of(s) % 4 : 0;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        lost[i] = byte_of(s) % ((names < 256) ? names : 256);
+    }
+    if (what == 0) {
+        return rv_lose(m, t, lost, count);
+    }
+    return (what == 1) ? rv_found(m, t, lost, count) : rv_late(m, t - 3, lost, count - 1);
+}
+
 /* A run by a script, from its begin; returns the sum of all that it says. */
 static uint64_t one_run(rv_monitor *m, script s)
 {
@@ -173,18 +190,20 @@ static uint64_t one_run(rv_monitor *m, script s)
     while (!is_over(&s) && (steps < STEPS_MOST)) {
         const uint8_t what = byte_of(&s);
         int code = RV_OK;
-        if (what < 190) {
+        if (what < 170) {
             code = one_step(m, &s, t, what % 4 == 3);
-        } else if (what < 215) {
+        } else if (what < 185) {
             code = rv_advance(m, t);
-        } else if (what < 225) {
+        } else if (what < 195) {
             sum = mixed(sum, rv_next_due(m));
-        } else if (what < 235) {
+        } else if (what < 205) {
             rv_each_open(m, note_open, &sum);
-        } else if (what < 245) {
+        } else if (what < 215) {
             sum = noted_records(m, sum, false);
-        } else if (what < 250) {
+        } else if (what < 220) {
             code = rv_step(m, t - 5, NULL, 0);
+        } else if (what < 250) {
+            code = one_loss(m, &s, t, (what < 234) ? 0 : ((what < 247) ? 1 : 2));
         } else {
             sum = mixed(sum, rv_end(m, t));
         }

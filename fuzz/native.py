@@ -67,8 +67,10 @@ def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[byte
     made = 0
     while made < most:
         profile = Profile(requirements=1 if limit else 3, depth=rng.randint(1, 3), wide=10)
+        next_law = made % 2 == 1  # names can be lost
         try:
-            data = pack(plan_alone(compile_spec(random_spec(rng, profile)))).data
+            compiled_spec = compile_spec(random_spec(rng, profile), next_law=next_law)
+            data = pack(plan_alone(compiled_spec), next_law=next_law).data
         except RvmonError:
             continue
         if limit is None or len(data) <= limit:
