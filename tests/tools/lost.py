@@ -57,7 +57,7 @@ def open_at_end(case: Case) -> int | None:
     """The end of a case at which something is lost still, to try that nobody says it was found."""
     last = max((outage.last for outage in case.outages), default=None)
     later = [action.t if isinstance(action, Sample) else action for action in case.actions]
-    if last is None or any(t > last for t in (*later, case.end or last)):
+    if last is None or any(t > last for t in (*later, last if case.end is None else case.end)):
         return None
     return last
 
