@@ -101,7 +101,7 @@ void set_alarm(run *r, int64_t position)
     if (GAP(r) == 0) {
         const bool busy = (r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy
                           || (r->part->plan->stateful.count > 0) || is_restless(r)
-                          || (r->failing_count > 0)
+                          || (r->failing_count > 0) || (r->at.presence != ARE_THERE)
                           || ((r->cut < NEVER) && (r->cut > r->at.position));
         r->at.alarm = busy ? -LIMIT : least(r->at.alarm, timers_next(&r->wake));
     }

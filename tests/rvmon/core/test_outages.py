@@ -364,6 +364,14 @@ def test_of_a_clock_a_key_that_came_before_a_lost_tick_is_not_known():
     assert [(one.triggered, one.captured["id"]) for one in found if not one.in_doubt] == [(8, 0)]
 
 
+def test_behind_an_outage_of_sampled_time_each_instance_sees_the_next_sample():
+    """Also one that the sample says nothing of."""
+    text = "requirement R\n  upon p\n  then p\n  for each id in g.k"
+    run = Run(text, "sampled").sample(6, g={"k": -2}).sample(8, p=False).lost("", 17, 17)
+    found = run.sample(18).sample(19, p=None).report().attempts
+    assert (19, -2) in [(one.triggered, one.captured["id"]) for one in found]
+
+
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize(
     ("requirement", "expected"),
