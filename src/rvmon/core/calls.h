@@ -349,7 +349,7 @@ void keep_updates(home *h, int64_t t);
 void keep_given(home *h, int64_t t);
 void replay(run *r);
 
-/* ---- held.c: samples that wait for the tick that sees them */
+/* ---- waiting.c: samples that wait for the tick that sees them */
 bool holds_back(const home *h);
 void hold_back(home *h, int64_t t);
 void give_held(home *h, int64_t limit);

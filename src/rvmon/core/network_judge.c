@@ -139,9 +139,12 @@ void network_foresee(run *r, int32_t index, int64_t now)
 static void pass(judging *g, int64_t now, int64_t last, int64_t until)
 {
     const bool complete = last == last_at(g, now); /* else the position there is still to come */
-    if ((g->f.gap > 0) && complete && (soonest(g, now) > now)) {
-        set_due(g, soonest(g, now));
-        return;
+    if ((g->f.gap > 0) && complete) {
+        const int64_t due = soonest(g, now);
+        if (due > now) {
+            set_due(g, due);
+            return;
+        }
     }
     while (g->j->first >= 0) {
         const int64_t decided = step_to_decision(g, until, complete ? last_at(g, until) : last);
