@@ -1,4 +1,4 @@
-/* rvmon.core._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
+/* rvmon.native._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
  * columns, and gives out attempts. The only file of the core that knows of Python. */
 #include "module_attempts.h"
 #include "module_open.h"
@@ -312,7 +312,7 @@ static PyType_Slot monitor_slots[] = {
 };
 
 static PyType_Spec monitor_spec = {
-    "rvmon.core._core.Monitor", sizeof(monitor), 0,
+    "rvmon.native._core.Monitor", sizeof(monitor), 0,
     Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_IMMUTABLETYPE, monitor_slots,
 };
 
@@ -349,8 +349,11 @@ static PyMethodDef core_methods[] = {
 static int execute(PyObject *module)
 {
     PyObject *type = PyType_FromModuleAndSpec(module, &monitor_spec, NULL);
-    const bool done = (type != NULL) && (PyModule_AddObjectRef(module, "Monitor", type) == 0);
+    PyObject *base = record_type(module);
+    const bool done = (type != NULL) && (PyModule_AddObjectRef(module, "Monitor", type) == 0)
+                      && (base != NULL) && (PyModule_AddObjectRef(module, "Record", base) == 0);
     Py_XDECREF(type);
+    Py_XDECREF(base);
     return done ? PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH) : -1;
 }
 

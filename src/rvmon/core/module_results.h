@@ -20,7 +20,7 @@ static PyObject *open_of(monitor *c, PyObject *unused)
     if (!g.failed) {
         rv_each_open(c->m, gather, &g);
     }
-    return listed(&g);
+    return attempts_of(&g);
 }
 
 /* All records as bytes, and as many captured values for each of them as any has. */

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.core._core import Monitor as Run
 from rvmon.monitor import compile_spec
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.monitor.core.recorded import NUMBER, RECORD
+from rvmon.native import Monitor as Run
 
 SPEC = """
 spec odd "All that is laid out"
@@ -290,7 +290,7 @@ def parts_of(planned: PlannedCore) -> list[Any]:
             return None
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("rvmon.core._core.Monitor", Kept)
+        patch.setattr("rvmon.native.Monitor", Kept)
         planned.monitor(frozenset(), closer, closer)
     return kept
 
@@ -306,7 +306,7 @@ def damaged(planned: PlannedCore) -> Iterator[list[Any]]:
     yield [data, (numbers, words, kinds, single[1:]), absent, look, attempts]
     yield [data, (numbers, tuple(None for _ in words), kinds, single), absent, look, attempts]
     yield [data, reading, absent[1:], look, attempts]
-    for place, wrong in ((1, ()), (1, tuple(range(9))), (2, ())):
+    for place, wrong in ((0, int), (1, ()), (2, ()), (3, tuple(range(9)))):
         yield [data, reading, absent, look, (*attempts[:place], wrong, *attempts[place + 1 :])]
     yield [data, reading, absent, look]
     yield [3, reading, absent, look, attempts]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
-import rvmon.core._core as native
+from rvmon import native
 from rvmon.core.packed import packed
 from rvmon.errors import TraceError
 from rvmon.monitor.core.captured import CapturedValues
@@ -29,13 +29,10 @@ DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OP
 _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
 """In the order of `module_intake.h`."""
 
-_SLOTS = (
-    *("requirement", "number", "triggered", "decided", "verdict", "decision"),
-    *("in_doubt", "_details", "_noted"),
-)
-"""The fields of an attempt that are set in C, in the order of `module_attempts.h`."""
+_TOLD = ("requirement", "number", "triggered", "decided", "verdict", "decision", "in_doubt")
+"""The fields of an attempt that the core tells."""
 
-_LATER = tuple(one.name for one in fields(Attempt) if one.name not in _SLOTS)
+_LATER = tuple(one.name for one in fields(Attempt) if one.name not in _TOLD)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +78,6 @@ class PlannedCore:
         coming = {name: number for name, number in self.numbers.items() if name not in absent}
         attempts = (
             Attempt,
-            tuple(getattr(Attempt, name) for name in _SLOTS),
             self.packed.ids,
             VERDICTS,
             DECISIONS,

@@ -12,6 +12,12 @@ def memory_of(plan: bytes, attempts: int, /) -> int:
         ValueError: the plan is damaged, or the bytes are not aligned to 8.
     """
 
+class Record:
+    """The fields of an attempt that the core tells; `Attempt` derives from it and types them."""
+
+    _details: Callable[[Any, Any], Mapping[str, Any]]
+    _noted: Any
+
 class Monitor:
     """A run of a packed plan; what a call does that is not explained here, `core.h` says.
 
@@ -22,7 +28,7 @@ class Monitor:
             whether only one occurrence of it can be judged at an instant.
         absent: of each name whether it has no source.
         look_closer: take the samples that are not plain values in a `dict`, at seconds, at ticks.
-        attempts: the type, the descriptors of its fields, ids of requirements, verdicts, decisions,
+        attempts: the type, which derives from `Record`, ids of requirements, verdicts, decisions,
             what gives an attempt its other fields.
 
     Raises:
@@ -37,7 +43,6 @@ class Monitor:
         look_closer: tuple[Any, Any],
         attempts: tuple[
             type[Attempt],
-            tuple[Any, ...],
             tuple[str, ...],
             tuple[Any, ...],
             tuple[Any, ...],
@@ -87,7 +92,7 @@ class Monitor:
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 
-    def open(self) -> list[Attempt]:
+    def open(self) -> tuple[Attempt, ...]:
         """The attempts that are undecided now, and those that will stay so."""
 
     def records(self) -> tuple[bytes, bytes]:
