@@ -33,7 +33,7 @@ ENDS = [
 ]
 
 CASES = {
-    "what can hold nowhere, were its window open at once: it does not go on after a failure": case_of(
+    "what can hold nowhere, were its window open at once": case_of(
         "held",
         "whenever true then e xor true R[1 ns, 1 ns] false",
         (0, {"e": True}),
