@@ -153,6 +153,7 @@ void reread(run *r, int32_t atom, bool pending);
 uint8_t leaf_truth(const run *r, const node_plan *n);
 
 /* ---- past.c */
+stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
@@ -204,6 +205,8 @@ void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reac
 
 /* ---- records.c */
 bool grow_records(rv_monitor *m, int64_t wanted);
+void keep_record(rv_monitor *m, const rv_record *record);
+int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count);
 void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
             uint8_t decision, int64_t t);
 void sort_records(rv_monitor *m);
@@ -244,6 +247,7 @@ static inline bool has_attempts(const judge *j)
 }
 
 /* ---- dense.c: outages where only samples are positions */
+bool make_nothing(home *h);
 bool begin_dense(rv_monitor *m, int64_t t);
 void pass_dense(rv_monitor *m, int64_t limit);
 void end_dense(rv_monitor *m);
@@ -345,6 +349,7 @@ void set_aside(home *h, run *r);
 void give(run *r, int64_t t, const incoming *in, int32_t count);
 
 /* ---- kept.c: samples for those that look at what was before */
+past_update *keep_one(home *h, int64_t t);
 void keep_updates(home *h, int64_t t);
 void keep_given(home *h, int64_t t);
 void replay(run *r);
@@ -366,9 +371,12 @@ void soil_lapsed(run *r);
 void forget_last(run *r);
 bool is_idle(const run *r);
 void let_go(run *r);
+void adopt(run *parent, run *child);
 
 /* ---- keys.c: instances of a `for each` */
 bool begin_keys(home *h);
+int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank);
+void put_over(home *h, int32_t at);
 void open_instances(home *h, int64_t t);
 void open_unknown(home *h, int64_t t);
 void close_instance(run *r);

@@ -229,7 +229,7 @@ static void keep_watch(run *r, int64_t t)
 }
 
 /* Take a run among those of attempts that were triggered in another. */
-static void adopt(run *parent, run *child)
+void adopt(run *parent, run *child)
 {
     child->parent = parent;
     child->previous_sibling = NULL;

@@ -81,7 +81,9 @@ enum {
     RV_TOO_EARLY = 3,          /* the sample is not later than all before */
     RV_OUT_OF_RANGE = 4,       /* an instant beyond 2^62 */
     RV_FINISHED = 5,
-    RV_OTHER_LAW = 6           /* the plan is of a law by which nothing is lost */
+    RV_OTHER_LAW = 6,          /* the plan is of a law by which nothing is lost */
+    RV_BAD_SNAPSHOT = 7,       /* the bytes are none of this plan, or damaged */
+    RV_NOT_FRESH = 8           /* a run has begun */
 };
 
 /* Check a plan: the place of the first section found wrong, -1 if all is well. The bytes are not
@@ -173,6 +175,14 @@ rv_counts rv_count(const rv_monitor *m, int32_t requirement);
 /* The verdict so far: final once the run is finished; never PASS or NOT_TRIGGERED if it is spoilt, or
  * something came too late. */
 int rv_verdict(const rv_monitor *m, int32_t requirement);
+
+/* The run as it stands, as bytes, with all records that were not forgotten: so many are needed, and
+ * written if there is room. 0: it is spoilt. */
+size_t rv_save(rv_monitor *m, void *bytes, size_t size);
+
+/* Have a monitor that was just made of the same plan go on where that of some bytes stood. No bytes lead
+ * it outside of its memory. One that refuses them, RV_BAD_SNAPSHOT, is spoilt: free it. */
+int rv_load(rv_monitor *m, const void *bytes, size_t size);
 
 /* Whether memory was short in this run. */
 bool rv_spoilt(const rv_monitor *m);

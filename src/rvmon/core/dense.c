@@ -186,19 +186,25 @@ static void begin_one(run *r, int64_t t)
     }
 }
 
+/* Have the values of signals where all are unknown; false if memory is short. */
+bool make_nothing(home *h)
+{
+    if (h->nothing == NULL) {
+        h->nothing = arena_take(&h->monitor->memory,
+                                (size_t)(h->part->plan->signals.count + 1) * sizeof *h->nothing);
+    }
+    return h->nothing != NULL;
+}
+
 bool begin_dense(rv_monitor *m, int64_t t)
 {
     int32_t i;
     for (i = 0; i < m->plan.part_count; i++) {
         home *h = &m->homes[i];
         run *one;
-        if (h->nothing == NULL) {
-            h->nothing = arena_take(&m->memory,
-                                    (size_t)(h->part->plan->signals.count + 1) * sizeof *h->nothing);
-            if (h->nothing == NULL) {
-                m->spoilt = true;
-                return false;
-            }
+        if (!make_nothing(h)) {
+            m->spoilt = true;
+            return false;
         }
         for (one = h->root; one != NULL; one = following(h, one)) {
             if (one->at.started) {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Add an update to what is kept; NULL: memory is short. */
-static past_update *keep_one(home *h, int64_t t)
+past_update *keep_one(home *h, int64_t t)
 {
     past_update *made = grown(h->monitor, h->past, &h->past_room, (int64_t)h->past_count + 1,
                               sizeof *made);

@@ -102,6 +102,16 @@ static int32_t add_key(home *h, const rv_number *value, int64_t t)
     return at;
 }
 
+/* Know a value as it was known before; -1: it is known already, or there is no room. */
+int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank)
+{
+    const int32_t at = (find_key(h, value) < 0) ? add_key(h, value, occurred) : -1;
+    if (at >= 0) {
+        h->keys[at].rank = rank;
+    }
+    return at;
+}
+
 /* Take a value out of those whose instance is over. */
 static void take_from_over(home *h, int32_t at)
 {
@@ -354,21 +364,27 @@ static void forget_oldest(home *h)
     h->free_key = at;
 }
 
-/* Let go of an instance that is over; its value is remembered for a while. */
-void close_instance(run *r)
+/* Put a value behind those whose instance is over. */
+void put_over(home *h, int32_t at)
 {
-    home *h = r->home;
-    key *k = &h->keys[r->key];
+    key *k = &h->keys[at];
     k->open = NULL;
     k->older = h->newest;
     k->newer = -1;
     if (h->newest < 0) {
-        h->oldest = r->key;
+        h->oldest = at;
     } else {
-        h->keys[h->newest].newer = r->key;
+        h->keys[h->newest].newer = at;
     }
-    h->newest = r->key;
+    h->newest = at;
     h->over_count++;
+}
+
+/* Let go of an instance that is over; its value is remembered for a while. */
+void close_instance(run *r)
+{
+    home *h = r->home;
+    put_over(h, r->key);
     delist(r, false);
     while (h->over_count > MOST_OVER) {
         forget_oldest(h);

@@ -5,6 +5,7 @@
 #include "module_outages.h"
 #include "module_results.h"
 #include "module_rows.h"
+#include "module_snapshot.h"
 
 #ifndef RVMON_SOURCE_HASH
 #define RVMON_SOURCE_HASH "" /* compiled by hand */
@@ -226,6 +227,8 @@ METHOD(counts)
 METHOD(times)
 METHOD(next_due)
 METHOD(rows)
+METHOD(save)
+METHOD(load)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
 static PyObject *monitor_hold(PyObject *self, PyObject *held)
@@ -299,6 +302,8 @@ static PyMethodDef monitor_methods[] = {
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},
+    {"save", monitor_save, METH_NOARGS, NULL},
+    {"load", monitor_load, METH_O, NULL},
     {NULL, NULL, 0, NULL},
 };
 

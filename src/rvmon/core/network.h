@@ -58,6 +58,10 @@ static inline int64_t due_of(const judging *g)
     return g->r->rules.due[g->index];
 }
 
+/* ---- network_judge.c */
+judging judging_of(run *r, int32_t index);
+networks *made_networks(const form *f);
+
 /* ---- network_nodes.c, network_sweeps.c */
 void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last);
 void lead(const form *f, const network *w, const operator_plan *n, operator_state *o);

@@ -28,7 +28,7 @@ form form_of(const run *r, int32_t index)
     return f;
 }
 
-static judging judging_of(run *r, int32_t index)
+judging judging_of(run *r, int32_t index)
 {
     judging g;
     g.r = r;
@@ -41,7 +41,7 @@ static judging judging_of(run *r, int32_t index)
 }
 
 /* The networks of a judge, made when they are used first; NULL: memory is short. */
-static networks *made_networks(const form *f)
+networks *made_networks(const form *f)
 {
     const size_t size = (size_t)f->form->operators.count * sizeof(operator_state);
     arena *a = &f->monitor->memory;

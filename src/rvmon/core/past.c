@@ -33,6 +33,18 @@ static bool make_room(rv_monitor *m, stretches *s)
     return true;
 }
 
+/* One of a ring; with `append`, it is put behind those that there are. NULL: memory is short. */
+stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append)
+{
+    if (append) {
+        if ((s->count == s->room) && !make_room(m, s)) {
+            return NULL;
+        }
+        s->count++;
+    }
+    return stretch_at(s, i);
+}
+
 static void add_stretch(run *r, stretches *s, int64_t begin, int64_t end)
 {
     if ((s->count > 0) && (begin - step_of(r) <= stretch_at(s, s->count - 1)->end)) {

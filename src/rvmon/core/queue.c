@@ -56,12 +56,45 @@ void tell(const queueing *g, const queued *x, uint8_t verdict, uint8_t decision,
     report(g->r, g->index, &made, x->number, verdict, decision, t);
 }
 
+/* Make a queue larger; false if memory is short. */
+static bool widen_queue(rv_monitor *m, queue *q)
+{
+    const int32_t room = (q->room > 0) ? 2 * q->room : 8;
+    queued *made = (q->room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
+    int32_t i;
+    if (made == NULL) {
+        m->spoilt = true;
+        return false;
+    }
+    for (i = 0; i < q->count; i++) {
+        made[i] = *item(q, i);
+    }
+    arena_give(&m->memory, q->items, (size_t)q->room * sizeof *made);
+    q->items = made;
+    q->room = room;
+    q->head = 0;
+    return true;
+}
+
+/* One that is queued; with `append`, it is put behind those that there are. NULL: memory is short. */
+queued *next_queued(rv_monitor *m, queue *q, int32_t i, bool append)
+{
+    if (append) {
+        if ((q->count == q->room) && !widen_queue(m, q)) {
+            return NULL;
+        }
+        q->count++;
+    }
+    return item(q, i);
+}
+
 /* Put an attempt that begins at `t` behind the others, unless that decides it; false if memory is
  * short. */
 bool queue_begin(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
     queue *q = g.q;
+    queued *made;
     int64_t clock = 0;
     int64_t due;
     queued x;
@@ -77,25 +110,11 @@ bool queue_begin(run *r, int32_t index, int64_t t)
         tell(&g, &x, (k.location == PASSED) ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t);
         return true;
     }
-    if (q->count == q->room) {
-        const int32_t room = (q->room > 0) ? 2 * q->room : 8;
-        queued *made = (q->room < INT32_MAX / 4)
-            ? arena_take(&r->home->monitor->memory, (size_t)room * sizeof *made) : NULL;
-        int32_t i;
-        if (made == NULL) {
-            r->home->monitor->spoilt = true;
-            return false;
-        }
-        for (i = 0; i < q->count; i++) {
-            made[i] = *item(q, i);
-        }
-        arena_give(&r->home->monitor->memory, q->items, (size_t)q->room * sizeof *made);
-        q->items = made;
-        q->room = room;
-        q->head = 0;
+    made = next_queued(r->home->monitor, q, q->count, true);
+    if (made == NULL) {
+        return false;
     }
-    *item(q, q->count) = x;
-    q->count++;
+    *made = x;
     if ((q->segment_count > 0) && (q->segments[q->segment_count - 1].location == k.location)) {
         q->segments[q->segment_count - 1].count++;
     } else if (q->segment_count < SEGMENTS_MOST) {

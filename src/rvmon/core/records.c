@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Keep the values that an attempt captured; -1: there is no room. */
-static int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count)
+int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count)
 {
     const int64_t at = m->captured_count;
     if (at + count > m->captured_room) {
@@ -35,7 +35,7 @@ bool grow_records(rv_monitor *m, int64_t wanted)
     return true;
 }
 
-static void keep_record(rv_monitor *m, const rv_record *record)
+void keep_record(rv_monitor *m, const rv_record *record)
 {
     if ((m->record_count == m->record_room) && !grow_records(m, m->record_count + 1)) {
         return;

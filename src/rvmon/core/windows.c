@@ -9,7 +9,7 @@ bool is_chained(const run *r, int32_t index)
     return (j->automaton < 0) && (r->part->forms[j->form].windows.count > 0);
 }
 
-static chaining chaining_of(run *r, int32_t index)
+chaining chaining_of(run *r, int32_t index)
 {
     chaining g;
     g.r = r;
@@ -24,7 +24,7 @@ static chaining chaining_of(run *r, int32_t index)
 }
 
 /* The chain of a judge, made when it is used first; NULL: memory is short. */
-static chain *made_chain(const chaining *g)
+chain *made_chain(const chaining *g)
 {
     arena *a = &g->f.monitor->memory;
     chain *made = arena_take(a, sizeof *made);

@@ -47,4 +47,8 @@ int64_t first_failure(const chaining *g, const chain_reading *w, int64_t positio
 int64_t known_between(const chaining *g, const chain_reading *w, int64_t first, int64_t behind);
 bool outcome_of(const chaining *g, const chain_reading *w, int64_t at, int64_t *stamp);
 
+/* ---- windows.c */
+chaining chaining_of(run *r, int32_t index);
+chain *made_chain(const chaining *g);
+
 #endif

@@ -89,6 +89,12 @@ class Monitor:
         """End the run; gives the last instant of the trace."""
 
     def reset(self) -> None: ...
+    def save(self) -> bytes:
+        """The run as it stands; what was decided counts as given out."""
+
+    def load(self, data: bytes, /) -> bool:
+        """Go on as a run that was saved; false, and nothing is done, if it is none of this plan."""
+
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 

@@ -1,0 +1,151 @@
+"""A run of the core as bytes, and from them: nothing is lost, and no bytes do harm."""
+
+from __future__ import annotations
+
+import random
+import struct
+from collections import Counter
+from typing import Any
+
+import pytest
+from tests.rvmon.core.test_outages import planned
+from tests.tools.differential import case_of
+from tests.tools.forms import Compiler
+from tests.tools.lost import Found, Lost
+from tests.tools.put_away import Twins, forged, put_away
+
+from rvmon.monitor.core.planned import PlannedCore
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.case import Case
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+from rvmon.trace.sample import Sample
+
+REQUIREMENTS = """
+requirement R1
+  whenever p or once[0 s, 3 ns] q
+  then eventually[2 ns, 7 ns] (x > 1 or rate(x) < 2)
+requirement R2
+  upon g.k == key
+  then within 6 ns (e or (s since[1 ns, 4 ns] p))
+  for each key in g.k
+requirement R3
+  upon g
+  then within 5 ns x == value
+  let value = x
+requirement R4
+  upon rise(q)
+  then always[1 ns, 4 ns] (eventually[0 ns, 3 ns] p)
+"""
+
+
+def case(number: int, time: TimeModel, *, next_law: bool) -> Case:
+    """A random case of some requirements, with keys and captured values; names may be lost."""
+    profile = Profile(requirements=1 + number % 4, time=time)
+    return case_of(f"away/{time}/{number}", profile, TraceProfile(outages=next_law))
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("next_law", [False, True])
+@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED, TimeModel.CLOCKED])
+def test_a_run_taken_up_again_goes_on_alike(time, next_law):
+    """Put away behind each call, and at the end, it says the same, and is the same bytes again."""
+    compile_ = Compiler(next_law=next_law)
+    cases = (case(number, time, next_law=next_law) for number in range(100))
+    assert sum(put_away(compile_(one.spec), one) for one in cases) > 700
+
+
+def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:
+    """Two runs that have come somewhere, of which one was taken up again on the way."""
+    twins = Twins(planned_, frozenset())
+    t = 0
+    for _ in range(steps):
+        t += rng.randint(1, 4)
+        values: dict[str, Any] = {"p": rng.random() < 0.5, "q": rng.random() < 0.5}
+        values["x"] = rng.choice([0.5, 1.5, None])
+        if rng.random() < 0.5:
+            values |= {"e": True, "s": True, "g": ({"k": rng.randint(0, 3)}, {"k": 4})}
+        twins.tell(Sample(t, values))
+        if rng.random() < 0.2:
+            twins.tell(Lost(("x", "e"), t + 1))
+            twins.tell(t + 3)
+            twins.tell(Found(("x", "e"), t + 4))
+            t += 4
+    return twins
+
+
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
+def test_changed_bytes_are_refused(time):
+    """Each byte that is another, each end that is missing, and what is behind it, is found."""
+    plan = planned(REQUIREMENTS, time)
+    data = run_of(plan, random.Random(time), 12).plain.save()
+    other = plan.monitor(frozenset())
+    for place in range(len(data)):
+        assert not other.load(data[:place] + bytes([data[place] ^ 0x41]) + data[place + 1 :])
+    for end in range(0, len(data), 7):
+        assert not other.load(data[:end])
+    assert not other.load(data + b"\0")
+    assert other.load(data)
+    assert other.save() == data
+
+
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 2 ns"])
+def test_forged_bytes_do_no_harm(time):
+    """Bytes with a hash that fits are refused, or give a run that can be led to its end."""
+    plan = planned(REQUIREMENTS, time)
+    rng = random.Random(time)
+    data = run_of(plan, rng, 12).plain.save()
+    outcomes: Counter[bool] = Counter()
+    for _ in range(1500):
+        made = plan.monitor(frozenset())
+        taken = made.load(forged(data, rng))
+        outcomes[taken] += 1
+        if taken:
+            _, _, reached = made.times()
+            again = made.save()
+            other = plan.monitor(frozenset())
+            assert other.load(again)
+            assert other.save() == again
+            t = 0 if reached is None else min(reached, 1 << 61)
+            for number in range(3):
+                made.judge(t + 2 * number + 1, {"p": True, "g": {"k": number}}, True)
+            made.open()
+            made.finish(None)
+            made.counts()
+    assert min(outcomes.values()) > 50, outcomes
+
+
+def test_a_refused_snapshot_changes_nothing():
+    """A run that was told to take up what is none stands where it stood."""
+    plan = planned(REQUIREMENTS)
+    run = run_of(plan, random.Random(1), 5).plain
+    before = run.save()
+    assert not run.load(before[:-1])
+    assert run.save() == before
+
+
+def test_another_plan_refuses_it():
+    """A snapshot is of one plan alone, even if the requirements have the same form."""
+    data = planned(REQUIREMENTS).monitor(frozenset()).save()
+    assert not planned(REQUIREMENTS.replace("7 ns", "8 ns")).monitor(frozenset()).load(data)
+
+
+def test_names_without_a_source_are_part_of_it():
+    """Who takes a run up again need not say which names have no source."""
+    plan = planned("requirement R1\n  upon start\n  then eventually[2 ns, 2 ns] p")
+    absent = plan.monitor(frozenset({"p"}))
+    made = plan.monitor(frozenset())
+    assert made.load(absent.save())
+    for one in (absent, made):
+        assert one.judge(0, {"q": True}, True)
+        one.finish(5)
+        assert one.counts() == [(0, 0, 1, 1)]
+
+
+def test_a_head_says_what_it_is():
+    """The first words: what it is with its version, the plan's hash, the size."""
+    plan = planned(REQUIREMENTS)
+    data = plan.monitor(frozenset()).save()
+    magic, hash_, size = struct.unpack_from("<8sQQ", data)
+    assert (magic, size) == (b"rvvshot1", len(data))
+    assert hash_ == struct.unpack_from("<Q", plan.packed.data, 24)[0]

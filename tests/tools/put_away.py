@@ -1,0 +1,153 @@
+"""A run of the core that is put away and taken up again at each call, beside one that is not."""
+
+from __future__ import annotations
+
+import random
+import struct
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from rvmon import native
+from rvmon.monitor import CompiledSpec
+from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.monitor.core.recorded import NUMBER, RECORD
+from rvmon.testing.case import Case
+from rvmon.trace.sample import Sample
+from tests.tools.lost import Found, Lost, told
+
+HEAD = 32
+"""Bytes of the head of a snapshot; the last eight are the hash of what follows."""
+
+EXTREMES = (0, 1, -1, (1 << 62) - 1, -(1 << 62), (1 << 63) - 1)
+"""Numbers at which something may go wrong."""
+
+
+class Twins:
+    """Two runs that are told the same; all that they say has to be alike.
+
+    Args:
+        planned: the plan of both.
+        absent: the names without a source.
+
+    Attributes:
+        taken: so often one was taken up again.
+    """
+
+    def __init__(self, planned: PlannedCore, absent: frozenset[str]) -> None:
+        self._planned = planned
+        self.plain: native.Monitor = planned.monitor(absent)
+        self.other: native.Monitor = planned.monitor(absent)
+        self.taken = 0
+
+    def tell(self, action: Sample | int | Lost | Found) -> None:
+        """Tell both, and take one up again from what it is put away as.
+
+        Raises:
+            AssertionError: they say something different, or the bytes are not the same again.
+        """
+        said = [self._told(one, action) for one in (self.plain, self.other)]
+        assert said[0] == said[1], f"at {action}: {said}"
+        self.take_up()
+
+    def take_up(self) -> None:
+        """Have one run be taken up again by a monitor that was just made.
+
+        Raises:
+            AssertionError: it does not stand as before.
+        """
+        data = self.other.save()
+        made = self._planned.monitor(frozenset())
+        assert made.load(data), "what it was put away as is refused"
+        assert made.save() == data, "it is put away as something else the second time"
+        self.other = made
+        self.taken += 1
+        assert _state(self.plain) == _state(self.other)
+        assert self.plain.save() == self.other.save(), "it does not stand as before"
+
+    def finish(self, end: int | None) -> None:
+        """End both.
+
+        Raises:
+            AssertionError: they say something different.
+        """
+        assert self.plain.finish(end) == self.other.finish(end)
+        assert self.plain.flush() == self.other.flush()
+        self.take_up()
+        assert _of_records(self.plain) == _of_records(self.other)
+
+    def _told(self, run: native.Monitor, action: Sample | int | Lost | Found) -> Any:
+        match action:
+            case Lost(names, t):
+                return run.lose([self._planned.numbers[name] for name in names], t), run.flush()
+            case Found(names, t):
+                return run.found([self._planned.numbers[name] for name in names], t), run.flush()
+            case Sample(t, values):
+                return run.judge(t, self._planned.plain(t, values), True), run.flush()
+            case _:
+                run.advance(action)
+                return run.flush()
+
+
+def _state(run: native.Monitor) -> Any:
+    return run.next_due(), run.open(), run.counts(), run.times()
+
+
+def _of_records(run: native.Monitor) -> Any:
+    records, numbers = run.records()
+    made = np.frombuffer(records, RECORD).tolist()
+    values = np.frombuffer(numbers, NUMBER).tolist()
+    # Where captured values stand is no matter of the run; what is unknown has no digits.
+    told = [(*one[:2], one[2] >= 0, *one[3:]) for one in made]
+    return told, [(kind, bits if kind else None) for kind, bits in values]
+
+
+def actions_of(case: Case) -> Iterator[Sample | int | Lost | Found]:
+    """What a run is told of a case."""
+    yield from told(case) if case.outages else case.actions
+
+
+def put_away(compiled: CompiledSpec, case: Case) -> int:
+    """Run a case twice, once taken up again behind each call; how often it was.
+
+    Raises:
+        AssertionError: that changed something.
+    """
+    names = frozenset((*compiled.checked.signals, *compiled.checked.events))
+    absent = frozenset() if case.names is None else names - case.names
+    twins = Twins(planned_core(compiled), absent)
+    twins.take_up()
+    for action in actions_of(case):
+        twins.tell(action)
+    twins.finish(case.end)
+    return twins.taken
+
+
+def sealed(body: bytes, head: bytes) -> bytes:
+    """A snapshot with the size and the hash of what stands behind its head."""
+    hash_ = 0xCBF29CE484222325
+    for one in body:
+        hash_ = (hash_ ^ one) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return head[:16] + struct.pack("<QQ", HEAD + len(body), hash_) + body
+
+
+def forged(data: bytes, rng: random.Random) -> bytes:
+    """A snapshot that was changed somewhere, with a hash that fits."""
+    body = bytearray(data[HEAD:])
+    for _ in range(rng.randint(1, 3)):
+        place = rng.randrange(len(body))
+        how = rng.random()
+        if how < 0.5:
+            body[place] = rng.choice((0, 1, 2, 3, 127, 128, 255, rng.randrange(256)))
+        elif how < 0.8:
+            word = rng.choice(
+                (0, 1, -1, (1 << 62) - 1, -(1 << 62), (1 << 63) - 1, rng.randrange(99))
+            )
+            body[place : place + 8] = struct.pack("<q", word)
+        elif how < 0.9:
+            del body[place : place + rng.randint(1, 9)]
+        else:
+            other = rng.randrange(len(body))
+            body[place:place] = body[other : other + rng.randint(1, 9)]
+    return sealed(bytes(body), data[:HEAD])
