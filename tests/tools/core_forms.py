@@ -14,6 +14,7 @@ from rvmon.monitor import CompiledSpec, build_monitor
 from rvmon.monitor.core.monitor import CoreMonitor
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.monitor.core.recorded import report_of_run
+from rvmon.monitor.restore import restore
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Kind
@@ -45,6 +46,20 @@ class Stepped:
         self._rng = random.Random(len(case.actions))
         self._due: int | None = None
         self._asked = False
+        self._compiled = compiled
+        self._interrupts: random.Random | None = None
+
+    def take_up_again(self, rng: random.Random) -> None:
+        """From now on a tenth of the calls goes to what is made of a snapshot."""
+        self._interrupts = rng
+
+    def _taken_up(self) -> CoreMonitor:
+        """The monitor, perhaps another one that goes on as it."""
+        if self._interrupts is not None and self._interrupts.random() < 0.1:
+            made = restore(self._compiled, self._monitor.snapshot())
+            assert isinstance(made, CoreMonitor)
+            self._monitor = made
+        return self._monitor
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
         """Take a sample.
@@ -52,7 +67,7 @@ class Stepped:
         Raises:
             AssertionError: time alone decided what was not due.
         """
-        decided = self._monitor.step_ns(t_ns, values)
+        decided = self._taken_up().step_ns(t_ns, values)
         if self._asked and (self._due is None or t_ns < self._due):
             early = [one for one in decided if (one.decided or 0) < t_ns]
             assert not early, f"due was {self._due}, and at {t_ns} came {early}"
@@ -64,24 +79,26 @@ class Stepped:
     def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
         """Let time pass."""
         self._asked = False
-        return self._monitor.advance_ns(t_ns)
+        return self._taken_up().advance_ns(t_ns)
 
     def lose(self, names: Iterable[str], since: int, /) -> bool:
         """Lose some names."""
         self._asked = False
-        return self._monitor._core.lose(self._numbers(names), since)
+        return self._taken_up()._core.lose(self._numbers(names), since)
 
     def found(self, names: Iterable[str], at: int, /) -> bool:
         """Find them again."""
         self._asked = False
-        return self._monitor._core.found(self._numbers(names), at)
+        return self._taken_up()._core.found(self._numbers(names), at)
 
     def _numbers(self, names: Iterable[str]) -> list[int]:
         return [self._monitor._planned.numbers[name] for name in names]
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         """End the trace."""
-        return self._monitor.finish_ns(t_ns)
+        report = self._taken_up().finish_ns(t_ns)
+        self._interrupts = None  # a finished run is not put away
+        return report
 
     @property
     def open(self) -> Sequence[Attempt]:

@@ -10,7 +10,7 @@ from rvmon.errors import SnapshotError, TraceError
 from rvmon.monitor.build import build_monitor
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.online.monitor import Monitor
-from rvmon.monitor.online.snapshot import document_of, put_back
+from rvmon.monitor.online.snapshot import document_of
 from rvmon.trace.time import whole_ticks
 
 
@@ -54,7 +54,7 @@ def _restored(compiled: CompiledSpec, document: Mapping[str, Any]) -> Monitor:
         sources=document["sources"],
         keep=document["keep"],
     )
-    put_back(document, monitor.options, monitor.evaluators, monitor)
+    monitor.take_up(document)
     for instant in (monitor._last, monitor._reached, monitor._torn):
         if instant is not None:
             whole_ticks(instant)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.errors import SnapshotError, TimeOrderError, TraceError
+from rvmon.errors import TimeOrderError, TraceError
 
 SPEC = """
 spec watch "A base"
@@ -273,13 +273,6 @@ def test_settled_by_the_next_stamp(spec):
     """With `settle="next"` equal stamps are one sample."""
     rows = [(0, FIRST), (S, {"p": True}), (S, {"q": True}), (S, {"stop": True}), (9 * S, {})]
     both(spec, [(t, row) for t, row in rows], settle="next")
-
-
-def test_no_snapshot(spec):
-    """It says that it cannot be put away, and what can."""
-    monitor = spec.monitor(engine="c")
-    with pytest.raises(SnapshotError, match="engine `auto`"):
-        monitor.snapshot()
 
 
 def test_attempts_are_attempts(spec):

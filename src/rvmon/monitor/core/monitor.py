@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from rvmon.errors import SnapshotError
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
+from rvmon.monitor.core.snapshot import put_back, written
 from rvmon.monitor.inputs.health import by_name, of_intake
 from rvmon.monitor.inputs.validate import Validator
 from rvmon.monitor.online.evaluators import Evaluators
@@ -33,6 +33,8 @@ class CoreMonitor(Monitor):
         settle: see `build_monitor`.
         sources: the names that can arrive; `None`: all.
     """
+
+    STATE = ("_intake", "_torn")
 
     def __init__(
         self,
@@ -115,15 +117,13 @@ class CoreMonitor(Monitor):
         health = [] if self._intake is None else of_intake(self._intake)
         return replace(report, health=tuple(sorted(health, key=by_name))), decided
 
-    def snapshot(self) -> bytes:
-        """Refused: what the core holds is not written down.
+    def _written(self) -> bytes:
+        return written(self.options, self._planned, self._core, self)
 
-        Raises:
-            SnapshotError: always.
-        """
-        raise SnapshotError(
-            "a monitor of the engine `c` cannot be put away: use the engine `auto` for snapshots"
-        )
+    def take_up(self, document: Mapping[str, Any]) -> None:
+        """See `Monitor.take_up`."""
+        put_back(document, self._planned, self._core, self)
+        self._note_times()
 
     def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
         """See `Monitor.owed`; without deadlines and forecasts."""

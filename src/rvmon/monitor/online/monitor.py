@@ -18,7 +18,7 @@ from rvmon.monitor.online.one_call import OneCall
 from rvmon.monitor.online.options import Options
 from rvmon.monitor.online.owed import owed_now
 from rvmon.monitor.online.retention import Kept
-from rvmon.monitor.online.snapshot import snapshot
+from rvmon.monitor.online.snapshot import put_back, snapshot
 from rvmon.monitor.online.torn import capped, not_passed
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.values import NEVER
@@ -368,8 +368,23 @@ class Monitor:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
         if self._torn is not None:
             self._flush()  # what the torn call has decided is not lost
+        return self._written()
+
+    def _written(self) -> bytes:
+        """The run as bytes; nothing that it decided is still to be given out."""
         self._kept.tidy(self._evaluators)
         return snapshot(self.options, self._evaluators, self)
+
+    def take_up(self, document: Mapping[str, Any]) -> None:
+        """Go on as the run of a snapshot; this monitor was just made as that was.
+
+        Args:
+            document: from `rvmon.monitor.online.snapshot.document_of`.
+
+        Raises:
+            SnapshotError: it fits no such monitor, as far as that can be seen.
+        """
+        put_back(document, self.options, self._evaluators, self)
 
     @property
     def open(self) -> Sequence[Attempt]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
@@ -37,13 +37,7 @@ _LEFT_OUT = ("span", "source", "text", "title", "doc")
 def snapshot(options: Options, evaluators: Evaluators, run: object) -> bytes:
     """The bytes of a run."""
     document = {
-        "rvmon": _version(),
-        "spec": digest_of(options.compiled),
-        "only": [one.requirement.id for one in options.requirements],
-        "engine": options.engine,
-        "settle": options.settle,
-        "sources": None if options.sources is None else sorted(options.sources),
-        "keep": options.keep,
+        **heading(options, [one.requirement.id for one in options.requirements]),
         "machines": _machines(options),
         "locations": {
             name: machine.table() for name, _, machine in _progressing(options, evaluators)
@@ -52,6 +46,24 @@ def snapshot(options: Options, evaluators: Evaluators, run: object) -> bytes:
     freezer = Freezer(_plans(options.compiled))
     document["evaluators"] = freezer.freeze(evaluators.shape())
     document["state"] = freezer.freeze(run)
+    return sealed(document)
+
+
+def heading(options: Options, only: Sequence[str]) -> dict[str, Any]:
+    """What a snapshot says of its monitor, which judges the requirements `only`."""
+    return {
+        "rvmon": _version(),
+        "spec": digest_of(options.compiled),
+        "only": [*only],
+        "engine": options.engine,
+        "settle": options.settle,
+        "sources": None if options.sources is None else sorted(options.sources),
+        "keep": options.keep,
+    }
+
+
+def sealed(document: Mapping[str, Any]) -> bytes:
+    """The bytes of a document, which `document_of` reads."""
     body = json.dumps(document, separators=(",", ":")).encode()
     return b"%s %s\n%s" % (_KIND, hashlib.sha256(body).hexdigest().encode(), body)
 

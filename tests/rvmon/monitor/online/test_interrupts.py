@@ -191,7 +191,7 @@ def test_after_a_torn_step_nothing_passes(engine: str, make: type[dict[str, obje
     assert torn > len(struck) / 2
 
 
-@pytest.mark.parametrize("engine", ["auto", "network"])
+@pytest.mark.parametrize("engine", ["auto", "network", "c"])
 def test_a_snapshot_keeps_that_a_step_was_torn(engine: str) -> None:
     """What goes on from it says the same."""
     spec = rvmon.loads(_SPEC)

@@ -44,7 +44,7 @@ SAMPLES = [
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "progression", "network"])
+@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "progression", "network", "c"])
 def test_interruptions_change_nothing(engine):
     """Every engine, taken up from snapshots at random points, judges as the law says."""
     seeds = [f"snapshot/{number}" for number in range(20)]
@@ -55,12 +55,13 @@ def test_interruptions_change_nothing(engine):
 
 
 @pytest.mark.law
-def test_another_process_could_take_over():
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_another_process_could_take_over(engine):
     """A specification that was compiled anew takes the snapshot, and gives the same bytes again."""
     taken = 0
     for number in range(6):
         case = case_of(f"anew/{number}", Profile(), TraceProfile())
-        monitor = Spec(case.spec).monitor(sources=case.names)
+        monitor = Spec(case.spec).monitor(engine=engine, sources=case.names)
         rng = random.Random(number)
         for action in case.actions:
             feed(monitor, action)
@@ -73,11 +74,12 @@ def test_another_process_could_take_over():
 
 
 @pytest.mark.parametrize("text", ["max delay 2 s\n", ""])
-def test_samples_held_back_are_kept(text):
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_samples_held_back_are_kept(text, engine):
     """What waits to be sorted or merged is in the snapshot, and so is what came too late."""
     spec = rvmon.loads(TEXT.replace("spec door\n", f"spec door\n{text}"))
-    plain = spec.monitor(settle="next")
-    other = Interrupted(spec.monitor(settle="next"), random.Random(1), share=1)
+    plain = spec.monitor(engine=engine, settle="next")
+    other = Interrupted(spec.monitor(engine=engine, settle="next"), random.Random(1), share=1)
     stream = [*SAMPLES, (9, {"width": 2.5}), (9, {"closed": True})]
     if text:
         stream = [stream[1], stream[0], *stream[2:], (1, {"closed": False})]
@@ -88,10 +90,11 @@ def test_samples_held_back_are_kept(text):
     assert {"late", "conflict"} & {one.kind.value for one in report.health}
 
 
-def test_open_attempts_and_records_are_kept():
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_open_attempts_and_records_are_kept(engine):
     """The restored monitor shows the same open attempts and reports the same run."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor()
+    monitor = spec.monitor(engine=engine)
     for t, values in SAMPLES[:4]:
         monitor.step(t, values)
     restored = spec.restore(monitor.snapshot())
@@ -102,9 +105,10 @@ def test_open_attempts_and_records_are_kept():
     assert monitor.finish(20) == restored.finish(20)
 
 
-def test_another_specification_is_refused():
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_another_specification_is_refused(engine):
     """A snapshot names what it does not fit; layout and comments do not count."""
-    monitor = rvmon.loads(TEXT).monitor()
+    monitor = rvmon.loads(TEXT).monitor(engine=engine)
     monitor.step(0, {"closed": True})
     data = monitor.snapshot()
     with pytest.raises(SnapshotError, match="another specification"):
@@ -112,13 +116,14 @@ def test_another_specification_is_refused():
     assert rvmon.loads(f"# the front door\n{TEXT}\n").restore(data).snapshot() == data
 
 
-def test_wrong_bytes_are_refused():
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_wrong_bytes_are_refused(engine):
     """Bytes that are cut, changed or something else are no snapshot, whatever is changed."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor()
+    monitor = spec.monitor(engine=engine)
     monitor.step(0, {"closed": True})
     data = monitor.snapshot()
-    for wrong in (b"", b"PK\x03\x04", data[:-1], data + b" ", data.replace(b"closed", b"opened")):
+    for wrong in (b"", b"PK\x03\x04", data[:-1], data + b" ", data.replace(b"settle", b"sattle")):
         with pytest.raises(SnapshotError, match=r"no snapshot|damaged"):
             spec.restore(wrong)
 
@@ -150,9 +155,10 @@ def test_forged_bytes_are_refused():
             spec.restore(head.rpartition(b" ")[0] + b" " + checksum + b"\n" + text)
 
 
-def test_a_finished_run_has_a_report_and_no_snapshot():
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_a_finished_run_has_a_report_and_no_snapshot(engine):
     """After the end there is nothing to go on with."""
-    monitor = rvmon.loads(TEXT).monitor()
+    monitor = rvmon.loads(TEXT).monitor(engine=engine)
     monitor.finish()
     with pytest.raises(SnapshotError, match="finished"):
         monitor.snapshot()
@@ -168,10 +174,11 @@ def places_in(value, path=()):
 
 
 @pytest.mark.slow
-def test_most_hostile_snapshots_are_refused_at_once():
+@pytest.mark.parametrize("engine", ["auto", "c"])
+def test_most_hostile_snapshots_are_refused_at_once(engine):
     """A sealed snapshot with something else at a place is refused, or makes a monitor to ask."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor()
+    monitor = spec.monitor(engine=engine)
     for t, values in SAMPLES[:5]:
         monitor.step(t, values)
     head, _, body = monitor.snapshot().partition(b"\n")
@@ -264,7 +271,7 @@ def test_a_run_that_was_torn_at_its_first_step_is_restored():
     assert ("interrupted", None) in {(one.kind.value, one.first) for one in report.health}
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
+@pytest.mark.parametrize("engine", ["auto", "automaton", "network", "c"])
 def test_a_captured_attempt_that_is_not_looked_after_stays_so(engine):
     """Between the ticks of a clock, what occurs is judged at the tick that follows, as before."""
     spec = rvmon.loads(
