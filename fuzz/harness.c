@@ -2,8 +2,10 @@
  *
  * Compiled with -DPLANS: the bytes are a plan, whose hash is put right; if it is accepted, some
  * samples are judged by it. Else the first byte names one of the plans in the file `$RVMON_PLANS`, and
- * the others say what it is told. Each run is repeated after a reset, and has to say the same; then
- * with memory that ends somewhere, and must not be green. */
+ * the others say what it is told. Each run is repeated after a reset, and has to say the same; again with
+ * another monitor that goes on from a snapshot of it now and then; then with memory that ends somewhere,
+ * and must not be green. With -DSNAPSHOTS the first byte names a plan, too, and the others are what
+ * stands behind the head of a snapshot, which is put right: what is accepted judges some samples. */
 #include "core.h"
 #include "plan.h"
 
@@ -173,23 +175,83 @@ static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
     return (what == 1) ? rv_found(m, t, lost, count) : rv_late(m, t - 3, lost, count - 1);
 }
 
-/* A run by a script, from its begin; returns the sum of all that it says. */
-static uint64_t one_run(rv_monitor *m, script s)
+/* What a monitor is made of. */
+typedef struct {
+    const void *plan;
+    size_t size;
+    bool forged;               /* nobody's run led there: a state behind it may be refused */
+} source;
+
+/* Bytes of a run; NULL: it is spoilt. */
+static void *saved(rv_monitor *m, size_t *size)
 {
+    void *made = NULL;
+    *size = rv_save(m, NULL, 0);
+    if (*size > 0) {
+        made = malloc(*size);
+        if ((made == NULL) || (rv_save(m, made, *size) != *size)) {
+            abort();
+        }
+    }
+    return made;
+}
+
+/* Another monitor that goes on from where one stands, which is freed. */
+static rv_monitor *taken_up(rv_monitor *m, source from)
+{
+    const rv_memory memory = {malloc, free, NULL, 0};
+    size_t size;
+    size_t again_size;
+    void *bytes = saved(m, &size);
+    void *again;
+    rv_monitor *made;
+    if (bytes == NULL) {
+        return m;
+    }
+    made = rv_new(from.plan, from.size, memory);
+    if (made == NULL) {
+        abort();
+    }
+    if (rv_load(made, bytes, size) != RV_OK) {
+        if (from.forged) {
+            free(bytes);
+            rv_free(made);
+            return m;
+        }
+        (void)fprintf(stderr, "a snapshot is refused\n");
+        abort();
+    }
+    again = saved(made, &again_size);
+    if ((again == NULL) || (again_size != size) || (memcmp(again, bytes, size) != 0)) {
+        (void)fprintf(stderr, "a snapshot is another the second time\n");
+        abort();
+    }
+    free(again);
+    free(bytes);
+    rv_free(m);
+    return made;
+}
+
+/* A run by a script, from its begin, or from where it stands at `t`; returns the sum of all that it
+ * says. With `from`, others go on with it. */
+static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from)
+{
+    rv_monitor *m = *own;
     const rv_sizes sizes = rv_sizes_of(m);
     const int32_t names = sizes.signals + sizes.events;
     uint64_t sum = 1;
-    static const int64_t begins[] = {0, 0, 0, INT64_C(1) << 53, (INT64_C(1) << 62) - 300,
-                                     -(INT64_C(1) << 62) - 100};
-    int64_t t = begins[byte_of(&s) % (sizeof begins / sizeof *begins)] + byte_of(&s);
     int32_t steps = 0;
     int32_t i;
-    if ((names > 0) && (byte_of(&s) >= 200)) {
+    if ((rv_times_of(m).reached == RV_NO_TIME) && (names > 0) && (byte_of(&s) >= 200)) {
         rv_set_absent(m, byte_of(&s) % ((names < 256) ? names : 256));
     }
     while (!is_over(&s) && (steps < STEPS_MOST)) {
         const uint8_t what = byte_of(&s);
         int code = RV_OK;
+        if ((from != NULL) && (what % 5 == 0)) {
+            m = taken_up(m, *from);
+            *own = m;
+        }
         if (what < 170) {
             code = one_step(m, &s, t, what % 4 == 3);
         } else if (what < 185) {
@@ -227,19 +289,32 @@ static uint64_t one_run(rv_monitor *m, script s)
     return sum;
 }
 
+/* The same from its begin. */
+static uint64_t one_run(rv_monitor **own, script s, const source *from)
+{
+    static const int64_t begins[] = {0, 0, 0, INT64_C(1) << 53, (INT64_C(1) << 62) - 300,
+                                     -(INT64_C(1) << 62) - 100};
+    const int64_t begin = begins[byte_of(&s) % (sizeof begins / sizeof *begins)];
+    const int64_t t = begin + byte_of(&s);
+    return run_on(own, s, t, from);
+}
+
+#ifndef SNAPSHOTS
+
 static void judge(const void *bytes, size_t size, script s)
 {
     const rv_memory memory = {malloc, free, NULL, 0};
+    const source from = {bytes, size, false};
     rv_monitor *m = rv_new(bytes, size, memory);
     if (m != NULL) {
-        const uint64_t first = one_run(m, s);
+        const uint64_t first = one_run(&m, s, NULL);
         if ((rv_sizes_of(m).signals + rv_sizes_of(m).events <= NAMES_MOST) && !rv_spoilt(m)) {
             uint64_t again;
             /* A name is still absent then: so what a script says of that is said of two runs. */
             (void)rv_reset(m);
-            again = one_run(m, s);
+            again = one_run(&m, s, NULL);
             (void)rv_reset(m);
-            if (!rv_spoilt(m) && (one_run(m, s) != again)) {
+            if (!rv_spoilt(m) && (one_run(&m, s, &from) != again)) {
                 (void)fprintf(stderr, "%llx at first: another run says something else\n",
                               (unsigned long long)first);
                 abort();
@@ -250,10 +325,10 @@ static void judge(const void *bytes, size_t size, script s)
     guarded_left = byte_of(&s) % 64;
     m = rv_new(bytes, size, memory);
     if (m != NULL) {
-        (void)one_run(m, s);
+        (void)one_run(&m, s, NULL);
         guarded_left = -1;
         (void)rv_reset(m);
-        (void)one_run(m, s);
+        (void)one_run(&m, s, NULL);
         rv_free(m);
     }
     guarded_left = -1;
@@ -262,6 +337,8 @@ static void judge(const void *bytes, size_t size, script s)
         abort();
     }
 }
+
+#endif
 
 #ifdef PLANS
 
@@ -339,6 +416,65 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
     return 0;
 }
 
+#ifdef SNAPSHOTS
+
+static void put_word(uint8_t *at, uint64_t word)
+{
+    int32_t i;
+    for (i = 0; i < 8; i++) {
+        at[i] = (uint8_t)(word >> (8 * i));
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const rv_memory memory = {malloc, free, NULL, 0};
+    const size_t wanted = size + 31;
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    uint8_t *bytes;
+    rv_monitor *m;
+    source from;
+    size_t i;
+    if (size < 1) {
+        return 0;
+    }
+    from.plan = plans[data[0] % plan_count];
+    from.size = plan_sizes[data[0] % plan_count];
+    from.forged = false;
+    bytes = malloc(wanted); /* as long as it is, so that a step beyond its end is seen */
+    if (bytes == NULL) {
+        return 0;
+    }
+    for (i = 1; i < size; i++) {
+        bytes[31 + i] = data[i];
+        hash = (hash ^ data[i]) * UINT64_C(0x100000001b3);
+    }
+    (void)memcpy(bytes, "rvvshot1", 8);
+    put_word(&bytes[8], ((const plan_header *)from.plan)->hash);
+    put_word(&bytes[16], wanted);
+    put_word(&bytes[24], hash);
+    m = rv_new(from.plan, from.size, memory);
+    if ((m != NULL) && (rv_load(m, bytes, wanted) == RV_OK)) {
+        const int64_t reached = rv_times_of(m).reached;
+        script s;
+        (void)memset(&s, 0, sizeof s);
+        s.seed = hash;
+        s.more = 200;
+        m = taken_up(m, from);
+        from.forged = true;
+        (void)run_on(&m, s, (reached == RV_NO_TIME) ? 0 : reached, &from);
+    }
+    rv_free(m);
+    free(bytes);
+    if (guarded_in_use != 0) {
+        (void)fprintf(stderr, "%zu bytes are not given back\n", guarded_in_use);
+        abort();
+    }
+    return 0;
+}
+
+#else
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     script s;
@@ -353,5 +489,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     judge(plans[which], plan_sizes[which], s);
     return 0;
 }
+
+#endif
 
 #endif

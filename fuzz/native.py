@@ -1,11 +1,12 @@
-"""The core under AFL++, each block of its memory watched: plans of any bytes, and any samples.
+"""The core under AFL++, each block of its memory watched: any plans, samples and snapshots.
 
     python -m fuzz.native --seconds 3600 --out out/fuzz-native
 
-Bytes of a plan get a hash that fits, so that what is fuzzed is what is behind it. A plan that is
-accepted judges some samples; each run is repeated after a reset and has to say the same, then with
-memory that ends somewhere, and must not be green. Prints what AFL++ counted and the inputs at which
-the core crashed, hung, or was found out by AddressSanitizer or UBSan; exits 1 if there are any.
+Bytes of a plan, or a snapshot, get a hash that fits, so that what is fuzzed is what is behind it.
+What is accepted judges some samples. Each run is repeated after a reset and has to say the same, if
+others go on with it from snapshots as well; then with memory that ends somewhere, and must not be
+green. Prints what AFL++ counted and the inputs at which the core crashed, hung, or was found out by
+AddressSanitizer or UBSan; exits 1 if there are any.
 Needs the Debian packages afl++ and libclang-rt-14-dev.
 """
 
@@ -23,12 +24,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.tools.guarded import guarded_memory
+from tests.tools.put_away import HEAD, Twins, actions_of
 
 from rvmon.core.plan import pack
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.monitor.core.planned import planned_core
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 HARNESS = Path(__file__).with_name("harness.c")
 CORE = HARNESS.parents[1] / "src" / "rvmon" / "core"
@@ -38,7 +42,7 @@ FLAGS = (
     *("-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"),
 )
 
-TARGETS = {"plans": ("-DPLANS",), "samples": ()}
+TARGETS = {"plans": ("-DPLANS",), "samples": (), "snapshots": ("-DSNAPSHOTS",)}
 """What is fuzzed, and how the harness is compiled for it."""
 
 SMALL = 6_000
@@ -78,6 +82,26 @@ def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[byte
             yield data
 
 
+def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
+    """So many plans of random specifications, and of a run of each what is behind a head."""
+    rng = random.Random("snapshots")
+    made = 0
+    while made < most:
+        next_law = made % 2 == 1
+        profile = Profile(requirements=1 + made % 3, depth=rng.randint(1, 3))
+        try:
+            compiled_spec = compile_spec(random_spec(rng, profile), next_law=next_law)
+        except RvmonError:
+            continue
+        planned = planned_core(compiled_spec)
+        case = random_trace(rng, compiled_spec.checked, TraceProfile(outages=next_law))
+        twins = Twins(planned, frozenset())
+        for action in [*actions_of(case)][: rng.randint(1, 12)]:
+            twins.tell(action)
+        made += 1
+        yield planned.packed.data, twins.plain.save()[HEAD:]
+
+
 def compiled(folder: Path, target: str, *, compiler: str = COMPILER) -> Path:
     """The program of a target, compiled into a folder.
 
@@ -100,9 +124,17 @@ def begun_with(folder: Path, target: str) -> None:
         for number, data in enumerate(plans("plans", most=60, limit=SMALL)):
             (folder / "in" / str(number)).write_bytes(data)
         return
-    held = [*plans("samples", most=PLANS)]
+    if target == "snapshots":
+        held = []
+        for number, (plan, data) in enumerate(snapshots(PLANS)):
+            held.append(plan)
+            (folder / "in" / str(number)).write_bytes(bytes([number]) + data)
+    else:
+        held = [*plans("samples", most=PLANS)]
     sized = b"".join(struct.pack("<q", len(data)) + data for data in held)
     (folder / "held").write_bytes(sized)
+    if target == "snapshots":
+        return
     rng = random.Random("samples")
     for number in range(PLANS):
         (folder / "in" / str(number)).write_bytes(bytes([number]) + rng.randbytes(120))

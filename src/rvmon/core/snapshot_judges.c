@@ -162,7 +162,7 @@ static bool is_driven(const run *r, int32_t index)
     if ((j->first >= 0) && !queue_is_empty(j)) {
         return false;
     }
-    if ((due < NEVER) && (j->lag >= due + LIMIT)) {
+    if ((due < LIMIT) && (j->lag >= due + LIMIT)) {
         return false;
     }
     return (GAP(r) == 0) || (automaton_of(r, index) == NULL) || !has_attempts(j) || (due > j->position);
