@@ -246,6 +246,7 @@ void clear_judges(run *r)
         clear_queue(&r->judges[i]);
         if (windows != NULL) {
             windows->begun = false;
+            windows->kept = 0;
         }
         if (net != NULL) {
             net->begun = false;

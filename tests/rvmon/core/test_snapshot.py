@@ -9,16 +9,18 @@ from typing import Any
 
 import pytest
 from tests.rvmon.core.test_outages import planned
+from tests.tools.chains import random_chain
 from tests.tools.differential import case_of
 from tests.tools.forms import Compiler
 from tests.tools.lost import Found, Lost
 from tests.tools.put_away import Twins, forged, put_away
 
+from rvmon.monitor import compile_spec
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.trace.sample import Sample
 
 REQUIREMENTS = """
@@ -53,6 +55,18 @@ def test_a_run_taken_up_again_goes_on_alike(time, next_law):
     compile_ = Compiler(next_law=next_law)
     cases = (case(number, time, next_law=next_law) for number in range(100))
     assert sum(put_away(compile_(one.spec), one) for one in cases) > 700
+
+
+@pytest.mark.law
+def test_chains_of_windows_taken_up_again_go_on_alike():
+    """So do those that are followed by where values change."""
+    taken = 0
+    for number in range(60):
+        rng = random.Random(f"chain/{number}")
+        spec, next_law = random_chain(rng, untils=number % 3 == 0), number % 2 == 1
+        one = random_trace(rng, spec, TraceProfile(outages=next_law))
+        taken += put_away(compile_spec(spec, next_law=next_law), one)
+    assert taken > 400
 
 
 def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:
