@@ -107,7 +107,7 @@ class Exported:
             else:
                 monitor.advance(action)
         monitor.finish(case.end)
-        records, numbers = monitor.records()
+        records, numbers, *_ = monitor.records()
         rows = np.frombuffer(records, RECORD)
         values = np.frombuffer(numbers, NUMBER).reshape(len(rows), -1 if len(rows) else 0)
         return [_record(*one) for one in zip(rows, values, strict=True)]

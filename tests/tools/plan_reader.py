@@ -463,6 +463,7 @@ def _walk_judge(part: _Part, judge: dict[str, Any]) -> None:
     _within([judge["form"]], part.fields["forms"][1], -1)
     _within(judge["outcomes"], 16)
     assert (judge["automaton"] >= 0) == (judge["form"] < 0)
+    part.listed(judge["leaves"], nodes)
     if judge["automaton"] < 0:
         return
     automaton = plan.records["AUTOMATA"][judge["automaton"]]

@@ -90,8 +90,11 @@ class Monitor:
     def open(self) -> list[Attempt]:
         """The attempts that are undecided now, and those that will stay so."""
 
-    def records(self) -> tuple[bytes, bytes]:
-        """All records as `rv_record`, and as many `rv_number` for each as any captures."""
+    def records(self) -> tuple[bytes, bytes, bytes, list[tuple[tuple[bytes, ...], bytes]]]:
+        """All records as `rv_record`, and as many `rv_number` for each as any captures.
+
+        Then the words of notes, and the letters that these refer to: pieces, and the last one.
+        """
 
     def counts(self) -> list[tuple[int, int, int, int]]:
         """Of each requirement how many attempts failed, passed, stayed open.

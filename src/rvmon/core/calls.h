@@ -193,10 +193,12 @@ bool is_sure(const run *r, int32_t index);
 bool runs_on(const run *r, int32_t index);
 void leave_episode(run *r, int32_t index);
 void look_at(run *r, int32_t index, int64_t t);
-void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
+void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t,
+              int64_t note);
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
 void leave(run *r, int32_t index, int32_t before, int32_t at);
 bool is_moot(const attempt *x);
+void lay_down(run *r, int32_t index, int32_t at);
 void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
 int32_t next_open(const run *r, int32_t index, int32_t at);
 uint32_t told_number(const run *r, int32_t at);
@@ -205,7 +207,7 @@ void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reac
 /* ---- records.c */
 bool grow_records(rv_monitor *m, int64_t wanted);
 void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
-            uint8_t decision, int64_t t);
+            uint8_t decision, int64_t t, int64_t note);
 void sort_records(rv_monitor *m);
 
 /* ---- drive.c: attempts of a judge through time */
@@ -224,6 +226,32 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
 void begin(run *r, int32_t index, int64_t t, int64_t triggered);
 void enter(run *r, int32_t index, int32_t at, int64_t t);
 
+/* ---- notes.c: what is kept so that notes can be told */
+bool make_notes(run *r);
+void clear_noting(run *r, int32_t index);
+void stand_at_first(run *r, int64_t t);
+void stand_like(run *made, const run *r);
+void note_node(run *r, int32_t node, uint8_t was, int64_t t);
+void note_trigger(run *r, int32_t index, int64_t t);
+void note_begin(run *r, int32_t index, attempt *x, int64_t t);
+void note_parting(run *r, int32_t index, attempt *x);
+void note_doubt(run *r, int32_t index, int64_t t);
+bool is_in_doubt(const run *r, int32_t index);
+void note_moot(run *r, int32_t index, int64_t t);
+const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
+
+/* ---- letters.c: the letters by which a network judges */
+void keep_letter(run *r, int32_t index, int64_t t);
+
+/* ---- told.c: notes of decisions and of open attempts */
+int64_t note_nothing(run *r, int32_t index, const attempt *x);
+int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t);
+int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hollow, int64_t end);
+void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t *clocks);
+void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, int64_t t);
+void tell_open(rv_monitor *m, bool begins);
+void forget_notes(rv_monitor *m, int64_t words, int32_t spans);
+
 /* ---- queue.c: attempts of which age alone decides */
 bool make_queue(run *r, int32_t index);
 void clear_queue(judge *j);
@@ -236,6 +264,7 @@ bool queue_begin(run *r, int32_t index, int64_t t);
 void loosen_queue(run *r, int32_t index);
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
 const queued *queue_item(const judge *j, int32_t i);
+const attempt *queued_attempt(const run *r, int32_t index, int32_t i);
 
 /* Whether a judge has attempts that a position may concern. */
 static inline bool has_attempts(const judge *j)

@@ -176,6 +176,9 @@ void visit(run *r, int64_t t)
     }
     call_up(r, t);
     work_out(r, t);
+    if ((r->standing != NULL) && (r->at.starting == IS_TRUE)) {
+        stand_at_first(r, t);
+    }
     r->at.position = t;
     r->at.awaited = NEVER;
     have_judged(r, t);

@@ -54,6 +54,7 @@ typedef struct {
     int64_t triggered;
     int64_t decided;
     int64_t captured;          /* place of its captured values among those of all; -1: it has none */
+    int64_t note;              /* place of what its reason is worked out from; -1: nothing is noted */
     int32_t requirement;
     uint32_t number;
     uint8_t verdict;
@@ -153,9 +154,43 @@ const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
 int32_t rv_captured_of(const rv_monitor *m, int32_t requirement);
 void rv_forget_records(rv_monitor *m);
 
-/* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. */
+/* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. Notes
+ * of them are valid until the next call. */
 typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);
-void rv_each_open(const rv_monitor *m, rv_take take, void *user);
+void rv_each_open(rv_monitor *m, rv_take take, void *user);
+
+/* Have noted with each record from here on what its reason is worked out from: where its run stood just
+ * before the decision, since when propositions had their truths, the letters that matter. Before the
+ * first sample; nobody who wants verdicts alone needs it. It takes some words a decision and a few
+ * nanoseconds a change. The words are told of in notes.c.
+ *
+ * Letters stand in pieces, which many notes share; a piece that is full stays as it is. Who reads them
+ * can hang something on a piece, and is told by `let_go` when that serves no more. */
+typedef struct rv_piece rv_piece;
+const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count); /* a position, then truths */
+rv_piece *rv_piece_next(const rv_piece *piece);
+void **rv_piece_held(rv_piece *piece, int32_t which);                 /* of who reads it: 0 or 1 */
+
+typedef struct {
+    const int64_t *words;
+    const int64_t *standing;   /* how all stood at the decision; NULL: nobody asks */
+    int64_t count;
+    int64_t standing_count;
+    rv_piece *first;           /* letters; NULL: they do not matter */
+    rv_piece *last;
+    int32_t last_count;        /* words of the last piece */
+} rv_note;
+
+typedef void (*rv_let_go)(void *user, void *held);
+int rv_keep_notes(rv_monitor *m, rv_let_go let_go, void *user);
+
+/* What was noted with a record; false: nothing. */
+bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note);
+
+/* The words of all notes, and the letters of a number among those that notes refer to; false: there are
+ * no more. */
+int64_t rv_notes(const rv_monitor *m, const int64_t **words);
+bool rv_span(const rv_monitor *m, int32_t number, rv_note *note);
 
 /* How many attempts of a requirement failed, passed, stayed open, and whether its trigger was ever
  * true or false. */

@@ -133,8 +133,9 @@ bool home_begin(home *h)
             return false;
         }
         h->last_root = h->root;
+        h->lone = arena_take(&h->monitor->memory, h->stride);
         h->room = arena_take(&h->monitor->memory, (size_t)(p->captured + 1) * sizeof *h->room);
-        if (h->room == NULL) {
+        if ((h->room == NULL) || (h->lone == NULL)) {
             return false;
         }
     }

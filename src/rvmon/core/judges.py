@@ -109,9 +109,6 @@ class Judges:
     ) -> None:
         place = self._place
         running = rule.running if rule.requirement.captures else rule.trigger
-        propositions: Sequence[int] = ()
-        if judged_by[2] >= 0:
-            propositions = [self._index[state] for state in rule.alphabet.propositions]
         self._sections.add(
             Section.JUDGES,
             *map(place, (rule.trigger, rule.again, rule.unborn, rule.determined)),
@@ -121,7 +118,8 @@ class Judges:
             requirement,
             _flags(rule, hidden=number >= len(self._plan.rules)),
             *judged_by,
-            *self._sections.listed(propositions),
+            *self._sections.listed([self._index[state] for state in rule.alphabet.propositions]),
+            *self._sections.listed([self._index[state] for state in rule.noted]),
             *outcomes(rule.requirement.at_end),
         )
 

@@ -193,6 +193,7 @@ static PyObject *reset_of(monitor *c, PyObject *unused)
 {
     (void)unused;
     c->given = 0;
+    forget_standing(&c->notes);
     rv_forget_records(c->m);
     return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
 }
@@ -268,8 +269,11 @@ static void monitor_dealloc(PyObject *self)
     PyObject_GC_UnTrack(self);
     (void)monitor_clear(self);
     if (c->m != NULL) {
+        (void)rv_reset(c->m); /* pieces give back what hangs on them */
         rv_free(c->m);
     }
+    forget_standing(&c->notes);
+    free(c->notes.dropped);
     free_intake(&c->in);
     PyMem_Free(c->captured);
     free(c->plan);

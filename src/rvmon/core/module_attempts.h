@@ -4,6 +4,7 @@
 #define RVMON_MODULE_ATTEMPTS_H
 
 #include "module_intake.h"
+#include "module_notes.h"
 
 /* The fields of an attempt that are set here. */
 enum {
@@ -31,6 +32,7 @@ typedef struct {
     PyObject *verdicts;
     PyObject *decisions;
     PyObject *details;         /* gives an attempt its other fields */
+    note_cache notes;
 } monitor;
 
 /* Raises what it comes to that the core did not do something. */
@@ -49,7 +51,7 @@ static bool is_done(int code)
 /* Records, each with room for as many captured values as any has. They are copies: what is made of
  * them may set off the collector, and that anything, such as steps of this very monitor. */
 typedef struct {
-    const monitor *c;
+    monitor *c;
     rv_record *records;        /* `few` as long as they fit in there */
     rv_number *captured;
     int64_t count;
@@ -58,7 +60,7 @@ typedef struct {
     rv_record few[8];
 } gathering;
 
-static void begin_gathering(gathering *g, const monitor *c)
+static void begin_gathering(gathering *g, monitor *c)
 {
     g->c = c;
     g->records = g->few;
@@ -156,7 +158,7 @@ static PyObject *noted_of(const rv_number *values, int32_t count)
     return made;
 }
 
-static PyObject *attempt_of(const monitor *c, const rv_record *record, const rv_number *captured)
+static PyObject *attempt_of(monitor *c, const rv_record *record, const rv_number *captured)
 {
     PyObject *made = PyType_GenericAlloc(c->attempt, 0);
     const bool open = record->decision == (uint8_t)RV_OPEN;
@@ -169,7 +171,7 @@ static PyObject *attempt_of(const monitor *c, const rv_record *record, const rv_
         && share_slot(c, made, SLOT_DECISION, PyTuple_GetItem(c->decisions, record->decision))
         && share_slot(c, made, SLOT_IN_DOUBT, (record->in_doubt != 0U) ? Py_True : Py_False)
         && share_slot(c, made, SLOT_DETAILS, c->details)
-        && set_slot(c, made, SLOT_NOTED, noted_of(captured, count))
+        && set_slot(c, made, SLOT_NOTED, noted_with(&c->notes, c->m, record, noted_of(captured, count)))
         && set_slot(c, made, SLOT_NUMBER, PyLong_FromUnsignedLong(record->number))
         && set_slot(c, made, SLOT_TRIGGERED, PyLong_FromLongLong(record->triggered))
         && (open ? share_slot(c, made, SLOT_DECIDED, Py_None)
@@ -198,6 +200,7 @@ static PyObject *listed(gathering *g)
         PyMem_Free(g->records);
     }
     PyMem_Free(g->captured);
+    free_dropped(&g->c->notes);
     return made;
 }
 

@@ -30,6 +30,10 @@ static bool open_plan(monitor *c, PyObject *data)
         return false;
     }
     c->sizes = rv_sizes_of(c->m);
+    if (rv_keep_notes(c->m, note_dropped, &c->notes) != RV_OK) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
     return true;
 }
 

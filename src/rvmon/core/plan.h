@@ -219,7 +219,8 @@ typedef struct {
     int32_t automaton;         /* in SEC_AUTOMATA; -1: a network judges */
     int32_t form;              /* in the part; -1: none */
     int32_t diagram;           /* of its letters, in SEC_INTS; -1: a table has their classes */
-    list propositions;         /* nodes, if it has a diagram: the digits are told by these */
+    list propositions;         /* nodes: its letters, and the digits of its diagram, are told by these */
+    list leaves;               /* nodes that it reads of the input, as they are told of */
     int32_t outcomes[8];       /* at the end: verdict + 4 * decision, by 1 holds, 2 cannot pass, 4
                                 * cannot fail */
 } judge_plan;

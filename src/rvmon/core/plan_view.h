@@ -66,6 +66,8 @@ typedef struct {
     int32_t *perishable;       /* by number among these, the signal */
     int32_t *networked;        /* judges that networks are, neither automata nor chains */
     int32_t networked_count;
+    int32_t *slots;            /* by node, its number among those that notes tell of; -1: it is none */
+    int32_t stood;             /* so many these are */
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
     bool restarts;             /* whether some failure may be followed by another attempt */
 } part;

@@ -47,11 +47,12 @@ static int32_t end_of_region(const queueing *g, int32_t location, int32_t from, 
     return end;
 }
 
-static void tell_decided(const queueing *g, int32_t from, int32_t end, bool passed, int64_t t)
+static void tell_decided(const queueing *g, int32_t location, int32_t from, int32_t end, bool passed,
+                         int64_t t)
 {
     int32_t i;
     for (i = from; i < end; i++) {
-        tell(g, item(g->q, i), passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t);
+        tell_of_decision(g, item(g->q, i), location, passed, t);
     }
 }
 
@@ -165,7 +166,7 @@ static void step_queue(const queueing *g, int64_t t)
             const int32_t row = row_of_region(g->a, location, region);
             const int32_t target = g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]];
             if (target <= PASSED) {
-                tell_decided(g, from, until, target == PASSED, t);
+                tell_decided(g, location, from, until, target == PASSED, t);
             } else {
                 keep_items(g, &s, target, from, until);
             }
@@ -191,7 +192,7 @@ static void settle_queue(const queueing *g, int64_t t)
             const int32_t until = end_of_region(g, location, from, end, t, &region);
             const int32_t truth = g->a->time_values[row_of_region(g->a, location, region)];
             if (truth != IS_UNKNOWN) {
-                tell_decided(g, from, until, truth == IS_TRUE, t);
+                tell_decided(g, location, from, until, truth == IS_TRUE, t);
             } else {
                 keep_items(g, &s, location, from, until);
             }

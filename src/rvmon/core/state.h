@@ -85,6 +85,29 @@ typedef struct {
     bool apart;
 } edge;
 
+/* A node that notes tell of: since when it has its truth, and the last positions at which it was false
+ * and true before; RV_NO_TIME: there is none. */
+typedef struct {
+    int64_t since;
+    int64_t last[2];
+} stood;
+
+/* How such a node was before the last position at which one changed. */
+typedef struct {
+    stood was;
+    int32_t slot;
+    uint8_t truth;
+} undone;
+
+/* Such nodes of a run. */
+typedef struct {
+    stood *nodes;
+    undone *before;
+    int32_t before_count;
+    int64_t moved_at;          /* the last position at which one changed */
+    int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
+} standing;
+
 /* What becomes of a judge at a position. */
 enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
 
@@ -95,6 +118,7 @@ typedef struct {
     networks *net;
     chain *chain;
     queue *queue;              /* NULL: its attempts are driven one by one */
+    noting *noting;            /* NULL: nothing is noted */
     int32_t first;
     int32_t last;
     int32_t moot;              /* the first of those that stay open for good */
@@ -134,6 +158,7 @@ struct run {
     uint64_t call;             /* the last one that concerned it */
     int32_t id;                /* its number among the runs of its home */
     judge *judges;
+    standing *standing;        /* NULL: nothing is noted */
     timers rules;              /* by number of the judge */
     int32_t *touched;
     int32_t *restless;
@@ -272,6 +297,7 @@ struct home {
     int32_t run_room;
     int32_t touched_count;
     char *pool;                /* attempts */
+    attempt *lone;             /* room for one that stands in none */
     turn *turns;
     size_t stride;
     int32_t capacity;
@@ -310,6 +336,20 @@ struct home {
     uint32_t last_rank;
 };
 
+/* Letters that a note refers to. */
+typedef struct {
+    rv_piece *first;
+    rv_piece *last;
+    int32_t last_count;
+} span_of_letters;
+
+/* Where an attempt stood before it moved. */
+typedef struct {
+    int64_t clocks[CLOCKS_MOST];
+    int32_t location;
+    int32_t width;
+} before_decision;
+
 struct rv_monitor {
     arena memory;
     plan plan;
@@ -323,6 +363,18 @@ struct rv_monitor {
     int64_t sorted;            /* so many records are in order */
     int64_t captured_count;
     int64_t captured_room;
+    int64_t *notes;            /* words, one note behind the other */
+    int64_t note_count;
+    int32_t note_room;
+    int32_t span_count;
+    int32_t span_room;
+    span_of_letters *spans;    /* that notes refer to */
+    rv_let_go let_go;
+    void *let_go_user;
+    int64_t settled_notes;     /* so many words are of records; behind them those of open attempts */
+    int32_t settled_spans;
+    uint32_t epoch;            /* of notes: what was placed in another one is forgotten */
+    before_decision before;    /* the token of the attempt at hand, before it moves */
     int64_t began;
     int64_t last;
     int64_t after;             /* a sample has to be later */
@@ -338,6 +390,9 @@ struct rv_monitor {
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;
+    bool keeps_notes;
+    bool tells_open;           /* whether open attempts are being told of */
+    bool told_open;            /* whether notes of them stand behind those of records */
 };
 
 #endif

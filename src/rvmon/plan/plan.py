@@ -31,8 +31,7 @@ class PlannedRule:
         hidden: judges the attempts in doubt `upon` the trigger; `None` if there are none. Its own
             trigger is UNKNOWN where an attempt in doubt starts, if none runs; it runs until that
             is FALSE.
-        noted: the formulas of which a record of a decision notes the values; `None`: no records
-            are kept.
+        noted: the leaves of which a record says the values; they are nodes of the graph.
         doubted: as `hidden`, where it is not known whether there is such an instance.
         running: of an episode with captured values, what is FALSE where it is over.
         blurs: of attempts with captured values, UNKNOWN where another may have begun, whose values
@@ -51,7 +50,7 @@ class PlannedRule:
     unborn: State | None = None
     determined: State | None = None
     hidden: PlannedRule | None = None
-    noted: tuple[State, ...] | None = None
+    noted: tuple[State, ...] = ()
     doubted: PlannedRule | None = None
     running: State | None = None
     blurs: State | None = None

@@ -21,6 +21,7 @@ from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.attempts.network_letters import Letters, letter_reader
 from rvmon.monitor.attempts.waiting import learnt, position_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.explained.network import WAITING
 from rvmon.plan.standing import Standing
 from rvmon.plan.stood import Stood
 from rvmon.runtime.values import NEVER
@@ -28,12 +29,6 @@ from rvmon.trace.sample import Scalar
 
 PATIENCE = 6
 """So often it is looked before it is worked out what time brings if the letter stays."""
-
-WAITING = PASSED + 1
-"""In the place of a location: neither `FAILED` nor `PASSED`.
-
-The token of an attempt is how it stands in a network, and the position whose value it is.
-"""
 
 
 class NetworkJudge(AttemptJudge):

@@ -55,7 +55,7 @@ def _rule(
         is_judged = hidden or (one.follows_windows and not (measured or stepped))
         automaton = None if is_judged or of_tables(one) is not None else one.automaton
     else:
-        automaton = one.slim
+        automaton = one.shaped
     obligation = one.obligation
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
@@ -77,7 +77,7 @@ def _rule(
         unborn=obligation.unborn,
         determined=obligation.determined,
         hidden=beside(one.hidden),
-        noted=tuple(leaf for leaf, _ in one.leaves) if explained else None,
+        noted=tuple(leaf for leaf, _ in one.leaves),
         doubted=beside(doubted),
         running=obligation.running if captures else None,
         blurs=_blurs(one) if captures else None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import rvmon.core._core as native
@@ -11,7 +11,7 @@ from rvmon.core.packed import packed
 from rvmon.errors import TraceError
 from rvmon.monitor.core.captured import CapturedValues
 from rvmon.monitor.core.packed_cache import Kept, Place
-from rvmon.spec.checked.specification import CheckedSpec, Type
+from rvmon.spec.checked.specification import Type
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks
@@ -21,6 +21,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.core.packed import Packed
     from rvmon.monitor.compiled.specification import CompiledSpec
+    from rvmon.monitor.core.notes import Note
 
 VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
 DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
@@ -35,7 +36,9 @@ _SLOTS = (
 )
 """The fields of an attempt that are set in C, in the order of `module_attempts.h`."""
 
-_LATER = tuple(one.name for one in fields(Attempt) if one.name not in _SLOTS)
+Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | None]
+"""What an attempt keeps: captured values, its note, how all stood then, letters but for the last
+piece of them, that; see `module_notes.h`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,7 @@ class PlannedCore:
         kinds: of the same; of events they mean nothing.
         single: of each name, whether only one payload of it can be judged at one instant.
         fillable: see `rvmon.plan.plan.Plan.fillable`.
+        compiled: the specification.
     """
 
     packed: Packed
@@ -59,6 +63,7 @@ class PlannedCore:
     kinds: bytes
     single: bytes
     fillable: frozenset[str]
+    compiled: CompiledSpec
 
     @property
     def single_payloads(self) -> frozenset[str]:
@@ -119,14 +124,37 @@ class PlannedCore:
             for field, value in payload.items()
         }
 
-    def _details(self, attempt: Attempt, noted: tuple[float | None, ...] | None) -> dict[str, Any]:
-        """The fields of an attempt that are not set in C: nothing, but for captured values."""
-        bare = Attempt(attempt.requirement, 0, 0, None, attempt.verdict)
-        found = {name: getattr(bare, name) for name in _LATER}
-        if noted is not None:
-            number = self.packed.ids.index(attempt.requirement)
-            found["captured"] = self.captured.of(number, noted)
-        return found
+    def _details(self, attempt: Attempt, noted: Noted) -> Mapping[str, Any]:
+        """The fields of an attempt that are not set in C."""
+        from rvmon.monitor.core.notes import note_of
+
+        captured, *note = noted
+        return self.details(attempt, captured, note_of(*note))
+
+    def details(
+        self, attempt: Attempt, captured: Sequence[float | None] | None, note: Note
+    ) -> Mapping[str, Any]:
+        """The fields of an attempt that are not set in C.
+
+        Args:
+            attempt: what is set in C.
+            captured: the values that it captured; `None`: it captures none.
+            note: what the core noted of it.
+        """
+        # What tells of attempts is imported now: many are never asked.
+        from rvmon.monitor.core.notes import NotesReader
+
+        ids = self.packed.ids
+        reader = self.compiled.forms.get(("told", ids))
+        if not isinstance(reader, NotesReader):
+            reader = NotesReader(self.compiled, ids)
+            self.compiled.forms["told", ids] = reader
+        values = () if captured is None else captured
+        return {
+            **reader.details(attempt, note),
+            "captured": self.captured.of(ids.index(attempt.requirement), values),
+            "robustness": None,
+        }
 
 
 def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) -> PlannedCore:
@@ -144,10 +172,10 @@ def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) ->
     found = compiled.forms.get(("core", ids))
     if not isinstance(found, PlannedCore):
         place = Place(spec, ids, next_law=compiled.next_law) if compiled.is_kept else None
-        found = None if place is None else _checked(spec, ids, place.read())
+        found = None if place is None else _checked(compiled, ids, place.read())
         if found is None:
             made = _made(compiled, ids)
-            found = _planned(spec, ids, made)
+            found = _planned(compiled, ids, made)
             if place is not None:
                 place.write(made)
         compiled.forms["core", ids] = found
@@ -164,11 +192,13 @@ def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
     return Kept(pack(plan, next_law=compiled.next_law).data, single, plan.fillable)
 
 
-def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> PlannedCore | None:
+def _checked(
+    compiled: CompiledSpec, ids: tuple[str, ...], before: Kept | None
+) -> PlannedCore | None:
     """What was kept, made ready; `None` if that is nothing, or no plan of these requirements."""
     if before is None:
         return None
-    found = _planned(spec, ids, before)
+    found = _planned(compiled, ids, before)
     try:
         found.monitor(frozenset())
     except ValueError:
@@ -176,7 +206,8 @@ def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> Pl
     return found
 
 
-def _planned(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore:
+def _planned(compiled: CompiledSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore:
+    spec = compiled.checked
     plan = packed(spec, ids, made.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:
@@ -200,6 +231,7 @@ def _planned(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore
         bytes(map(_KINDS.index, kinds)),
         bytes(name in made.single for name in names),
         made.fillable,
+        compiled,
     )
 
 

@@ -1,0 +1,171 @@
+/* The letters by which a network judges, kept for notes: where the truths of propositions changed, or
+ * stood at a sample, from the begin of the oldest attempt on.
+ *
+ * They stand in pieces of a fixed size. A note refers to the pieces between the begin of its attempt and
+ * its decision, so a decision copies none; a piece goes when no open attempt needs it, and no note. */
+#include "notes.h"
+
+#include <string.h>
+
+/* So many pieces are kept at most: what lasts longer is explained by its last part. */
+#define PIECES_MOST 4096
+
+const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count)
+{
+    *count = piece->count;
+    return piece->words;
+}
+
+rv_piece *rv_piece_next(const rv_piece *piece)
+{
+    return piece->next;
+}
+
+void **rv_piece_held(rv_piece *piece, int32_t which)
+{
+    return &piece->held[which];
+}
+
+static size_t size_of_piece(int32_t stride)
+{
+    return sizeof(rv_piece) + (size_t)LETTERS_IN_PIECE * (size_t)stride * sizeof(int64_t);
+}
+
+/* Let go of a piece that nobody needs. */
+static void drop_if_idle(rv_monitor *m, rv_piece *piece)
+{
+    int32_t i;
+    if (!piece->is_left || (piece->users > 0)) {
+        return;
+    }
+    for (i = 0; i < 2; i++) {
+        if ((piece->held[i] != NULL) && (m->let_go != NULL)) {
+            m->let_go(m->let_go_user, piece->held[i]);
+        }
+    }
+    arena_give(&m->memory, piece, size_of_piece(piece->stride));
+}
+
+/* The oldest piece is needed by no open attempt. */
+static void leave_first(rv_monitor *m, noting *n)
+{
+    rv_piece *piece = n->first;
+    n->first = piece->next;
+    n->last = (n->first == NULL) ? NULL : n->last;
+    n->pieces--;
+    piece->is_left = true;
+    drop_if_idle(m, piece);
+}
+
+void forget_letters(rv_monitor *m, noting *n)
+{
+    while (n->first != NULL) {
+        leave_first(m, n);
+    }
+}
+
+/* Take the letter at the position `t`; if it is not known, attempts that are open hang on that. */
+void keep_letter(run *r, int32_t index, int64_t t)
+{
+    rv_monitor *m = r->home->monitor;
+    judge *j = &r->judges[index];
+    noting *n = j->noting;
+    const list propositions = r->part->judges[index].propositions;
+    const int32_t words = words_for(propositions.count);
+    const int32_t stride = words + 1;
+    int64_t *made;
+    if ((j->first < 0) && !watches(r, index)) {
+        forget_letters(m, n);
+    }
+    if ((j->first >= 0) && is_in_doubt(r, index)
+        && ((n->doubts.count == 0) || (n->doubted_at < n->began_at))) {
+        note_doubt(r, index, t);
+    }
+    while ((n->first != n->last)
+           && ((n->pieces > PIECES_MOST)
+               || (!watches(r, index)
+                   && (n->first->next->count > 0)
+                   && (n->first->next->words[0] <= attempt_at(r->home, j->first)->triggered)))) {
+        leave_first(m, n);
+    }
+    if ((n->last == NULL) || (n->last->count == LETTERS_IN_PIECE * stride)) {
+        rv_piece *piece = arena_take(&m->memory, size_of_piece(stride));
+        if (piece == NULL) {
+            m->spoilt = true;
+            return;
+        }
+        piece->stride = stride;
+        if (n->last == NULL) {
+            n->first = piece;
+        } else {
+            piece->before = &n->last->words[n->last->count - stride];
+            n->last->next = piece;
+        }
+        n->last = piece;
+        n->pieces++;
+    }
+    made = &n->last->words[n->last->count];
+    made[0] = t;
+    pack_truths(r, propositions, false, &made[1]);
+    if (n->last->count > 0) {
+        n->last->before = made - stride;
+    }
+    if ((n->last->before != NULL)
+        && ((n->last->before[0] == t)
+            || ((GAP(r) > 0)
+                && (memcmp(&n->last->before[1], &made[1], (size_t)words * sizeof *made) == 0)))) {
+        return; /* it stays */
+    }
+    n->last->count += stride;
+}
+
+/* Refer to the letters from `begin` on; -1: there are none. */
+int32_t span_from(rv_monitor *m, const noting *n, int64_t begin)
+{
+    rv_piece *first = n->first;
+    rv_piece *one;
+    span_of_letters *made;
+    if (first == NULL) {
+        return -1;
+    }
+    while ((first->next != NULL) && (first->next->count > 0) && (first->next->words[0] <= begin)) {
+        first = first->next;
+    }
+    made = (m->span_count > 0) ? &m->spans[m->span_count - 1] : NULL;
+    if ((made != NULL) && (made->first == first) && (made->last == n->last)
+        && (made->last_count == n->last->count)) {
+        return m->span_count - 1;
+    }
+    made = grown(m, m->spans, &m->span_room, (int64_t)m->span_count + 1, sizeof *made);
+    if (made == NULL) {
+        return -1;
+    }
+    m->spans = made;
+    made = &m->spans[m->span_count];
+    made->first = first;
+    made->last = n->last;
+    made->last_count = n->last->count;
+    for (one = first; one != NULL; one = one->next) {
+        one->users++;
+    }
+    m->span_count++;
+    return m->span_count - 1;
+}
+
+/* Forget the spans behind some. */
+void forget_spans(rv_monitor *m, int32_t kept)
+{
+    while (m->span_count > kept) {
+        const span_of_letters *last = &m->spans[m->span_count - 1];
+        rv_piece *one = last->first;
+        bool more = true;
+        while (more) {
+            rv_piece *next = one->next;
+            more = one != last->last;
+            one->users--;
+            drop_if_idle(m, one);
+            one = next;
+        }
+        m->span_count--;
+    }
+}
