@@ -125,7 +125,7 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
 }
 
 void forget(run *r);
-void go_stale(run *r, int32_t perishable);
+void go_stale(run *r, int32_t perishable, int64_t t);
 void lack(run *r, bool event, int32_t local);
 
 /* ---- outages.c: names that may have said anything */
@@ -239,6 +239,12 @@ void note_doubt(run *r, int32_t index, int64_t t);
 bool is_in_doubt(const run *r, int32_t index);
 void note_moot(run *r, int32_t index, int64_t t);
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
+
+/* ---- unknowns.c: what was not known of signals */
+bool begin_unknowns(home *h);
+void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value);
+int64_t unknowns_count(const run *r, int64_t doubt);
+void put_unknowns(const run *r, int64_t doubt, int64_t *to);
 
 /* ---- letters.c: the letters by which a network judges */
 void keep_letter(run *r, int32_t index, int64_t t);

@@ -25,6 +25,9 @@ extern "C" {
  * whole numbers that the plan's maker has given them. */
 enum { RV_UNKNOWN = 0, RV_WHOLE = 1, RV_REAL = 2 };
 
+/* Why a number is unknown, as its `whole`, for who tells of it. */
+enum { RV_IS_NONE = 0, RV_IS_NAN = 1 };
+
 typedef struct {
     int32_t kind;
     union {

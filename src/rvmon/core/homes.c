@@ -140,6 +140,9 @@ bool home_begin(home *h)
         }
     }
     clear_home(h);
+    if (h->monitor->keeps_notes && !begin_unknowns(h)) {
+        return false;
+    }
     return (p->each == 0) || begin_keys(h);
 }
 

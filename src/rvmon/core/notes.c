@@ -76,7 +76,7 @@ int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
         done = p->slots != NULL;
         if (done) {
             number_stood(m, p);
-            done = make_notes(m->homes[i].root);
+            done = make_notes(m->homes[i].root) && begin_unknowns(&m->homes[i]);
         }
     }
     m->keeps_notes = done;

@@ -108,6 +108,17 @@ typedef struct {
     int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
 } standing;
 
+/* Why a signal was not known, behind what core.h says of numbers. */
+enum { IS_STALE = RV_IS_NAN + 1, NEVER_KNOWN_YET, HAS_NO_SOURCE };
+
+/* A stretch over which a signal was not known. */
+typedef struct {
+    int64_t since;             /* of no meaning if it was never known */
+    int64_t until;             /* NEVER: it still is not */
+    int32_t local;
+    int32_t why;
+} unknown_stretch;
+
 /* What becomes of a judge at a position. */
 enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
 
@@ -298,6 +309,10 @@ struct home {
     int32_t touched_count;
     char *pool;                /* attempts */
     attempt *lone;             /* room for one that stands in none */
+    unknown_stretch *unknowns;        /* NULL: nothing is noted */
+    int32_t *unknown_of;       /* by signal, the last of its own among those; -1: none is left */
+    int32_t unknown_count;
+    int32_t unknown_room;
     turn *turns;
     size_t stride;
     int32_t capacity;

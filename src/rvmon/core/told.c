@@ -8,7 +8,8 @@
  * Word 4: the instant of the doubt, RV_NO_TIME if there is none; of OPEN alone.
  * Word 5: the end of the trace, or RV_NO_TIME; of OPEN alone.
  * Then the leaves at the trigger; of OPEN with a doubt, the leaves there; then of an automaton the
- * location and the clocks of the run that decided, as it stood just before; of OPEN, of both.
+ * location and the clocks of the run that decided, as it stood just before; of OPEN, of both; of a
+ * network that is open, two locations. Of OPEN behind all that what was not known; see unknowns.c.
  *
  * A standing: how many words; where a run began to see what is its own, or RV_NO_TIME; the leaves; the propositions; of
  * each of these since when, and when it was false and true last, or RV_NO_TIME. */
@@ -214,9 +215,11 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
     const int32_t most = networked ? 0 : r->part->machines[index].clocks;
     const int64_t until = floored(now + 1, 2) - 1;
     const int64_t stood_at = place_standing(r, index, NEVER);
+    const int64_t *doubt = doubt_of(r, index, x);
+    const int64_t doubted_at = (doubt != NULL) ? doubt[0] : RV_NO_TIME;
     const int64_t note = begin_note(r, index, x, NOTE_OPEN, hollow ? NOTE_HOLLOW : 0,
-                                    words + 2 * ((int64_t)most + 1));
-    const int64_t *doubt = NULL;
+                                    words + 2 * ((int64_t)most + 1)
+                                        + unknowns_count(r, doubted_at));
     int64_t *to;
     if ((note < 0) || (stood_at < 0)) {
         return -1;
@@ -225,7 +228,6 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
     m->notes[note + 2] = now;
     m->notes[note + 5] = end;
     to = behind_trigger(r, index, note);
-    doubt = doubt_of(r, index, x);
     if (doubt != NULL) {
         m->notes[note + 4] = doubt[0];
         (void)memcpy(to, &doubt[1], (size_t)words * sizeof *to);
@@ -235,13 +237,16 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
         m->notes[note + 3] = span_from(m, j->noting, x->triggered);
         to[0] = x->parted ? x->location : WAITING;
         to[1] = x->parted ? x->better : WAITING;
+        to += 2;
     } else {
         const int64_t *better = x->parted ? x->clocks + r->part->plan->clocks : x->clocks;
         const int32_t location = x->parted ? x->better : x->location;
         const int32_t own = put_by_now(r, index, x->location, x->clocks, j->letter, until, to);
         const int32_t other = put_by_now(r, index, location, better, j->other, until, to + 1 + own);
         m->notes[note + 3] = own | ((int64_t)other << 32);
+        to += 2 + own + other;
     }
+    put_unknowns(r, doubted_at, to);
     return note;
 }
 

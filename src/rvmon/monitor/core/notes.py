@@ -27,8 +27,10 @@ from rvmon.monitor.explained.undecided import (
     why_settled,
 )
 from rvmon.monitor.reasons.doubt import Doubt
+from rvmon.plan.leaves import reads
 from rvmon.plan.outages import Outage
 from rvmon.plan.stood import Stood
+from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
 
@@ -37,7 +39,13 @@ _NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
 _HEAD = 6
 """Words of a note before those of the leaves."""
 _NEVER = -(1 << 63)
+_NOT_YET = (1 << 63) - 1
 _IN_WORD = 32
+_WHY = (
+    *(HealthKind.NONE, HealthKind.NAN, HealthKind.STALE),
+    *(HealthKind.MISSING, HealthKind.ABSENT),
+)
+"""In the order of `core.h` and `state.h`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,37 +239,80 @@ class Told:
 
     def _undecided(self, attempt: Attempt, note: Note) -> tuple[Judged, Undecided]:
         words, flags, at = note.words, note.flags, _HEAD + self._leaf_words
-        doubt = None
+        leaves: Sequence[int] = ()
         if words[4] != _NEVER:
-            doubt = self._doubt(words[4], truths(words[at:], len(self._texts)))
+            leaves = truths(words[at:], len(self._texts))
             at += self._leaf_words
         judged: Judged
         if flags & _NETWORK:
             position = attempt.triggered
             worse, better = ((location, (position,)) for location in words[at : at + 2])
+            at += 2
             judged = at_moment(self.compiled, self._gap, note.letters, position, note.at, 1)
         else:
-            known = (note.at - 1) // 2
-            gap = self._gap or 1
-            judged = MachineRuns(self, known // gap * gap, self._gap)
+            reached, gap = (note.at - 1) // 2, self._gap or 1
+            judged = MachineRuns(self, reached // gap * gap, self._gap)
             worse, at = _token(words, at, words[3] & 0xFFFFFFFF)
-            better, _ = _token(words, at, words[3] >> 32)
-        outages: Mapping[str, Outage] = {}
+            better, at = _token(words, at, words[3] >> 32)
+        outages = self._outages(words[at:])
+        known = {one.name: one for one in outages if one.until is None}
+        doubt = self._doubt(words[4], leaves, outages)
+        names = frozenset().union(*self._reads)
         return judged, Undecided(
             self.compiled,
             attempt.triggered,
             worse,
             better,
             doubt,
-            unborn_of((), outages, doubt),
+            unborn_of(names, known, doubt),
             bool(flags & _SURE),
             bool(flags & _HOLLOW),
             bool(flags & _CUT),
         )
 
-    def _doubt(self, position: int, leaves: Sequence[int]) -> Doubt:
-        texts = [text for text, truth in zip(self._texts, leaves, strict=True) if truth == UNKNOWN]
-        return Doubt(position, (), tuple(texts))
+    def _outages(self, words: Sequence[int]) -> Sequence[Outage]:
+        """What was not known."""
+        spec = self.compiled.spec
+        names = (*spec.signals, *spec.events)
+        found = []
+        for at in range(1, 1 + 3 * words[0], 3):
+            name = names[words[at] & 0xFFFFFFFF]
+            why = _WHY[words[at] >> 32]
+            until = None if words[at + 2] == _NOT_YET else words[at + 2]
+            signal = spec.signals.get(name)
+            bound = 0 if signal is None else signal.stale_after or 0
+            since = 0 if words[at + 1] == _NEVER else words[at + 1]
+            found.append(Outage(name, why, since, until, bound))
+        return found
+
+    def _doubt(
+        self, position: int, leaves: Sequence[int], outages: Sequence[Outage]
+    ) -> Doubt | None:
+        """What left an attempt open; `None`: nothing has."""
+        if position == _NEVER:
+            return None
+        lost = {
+            one.name: one
+            for one in outages
+            if one.why in (HealthKind.MISSING, HealthKind.ABSENT) or one.since <= position
+            if one.until is None or one.until > position
+        }
+        found: dict[str, Outage] = {}
+        texts = []
+        for names, text, truth in zip(self._reads, self._texts, leaves, strict=True):
+            if truth == UNKNOWN:
+                own = {name: lost[name] for name in sorted(names & lost.keys())}
+                found |= own
+                texts += [] if own else [text]
+        return Doubt(position, tuple(found.values()), tuple(texts))
+
+    @cached_property
+    def _reads(self) -> Sequence[frozenset[str]]:
+        """The names that each leaf reads."""
+        return [
+            frozenset() if state.leaf is None else reads(state.leaf).names
+            for state, _ in self.compiled.leaves
+        ]
 
 
 def _replaced(why: Explanation, reason: str) -> Explanation:
