@@ -238,6 +238,7 @@ void note_parting(run *r, int32_t index, attempt *x);
 void note_doubt(run *r, int32_t index, int64_t t);
 bool is_in_doubt(const run *r, int32_t index);
 void note_moot(run *r, int32_t index, int64_t t);
+int64_t begin_of(const run *r, int32_t index, const attempt *x);
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
 
 /* ---- unknowns.c: what was not known of signals */

@@ -194,7 +194,7 @@ void pass_to(run *r, int32_t index, int64_t t)
         set_rule_due(r, index, NEVER);
     } else if (j->first < 0) {
         queue_pass(r, index, t);
-        j->position = (GAP(r) > 0) ? t : j->position;
+        j->position = ((GAP(r) > 0) && (t > position)) ? t : position;
     } else if (is_chained(r, index)) {
         chain_pass(r, index, t, true);
     } else if (is_networked(r, index)) {

@@ -302,6 +302,12 @@ void note_doubt(run *r, int32_t index, int64_t t)
     }
 }
 
+/* The position at which an attempt began: what the end triggers begins at the last one. */
+int64_t begin_of(const run *r, int32_t index, const attempt *x)
+{
+    return (r->part->judges[index].trigger < 0) ? r->at.position : x->triggered;
+}
+
 /* Where and what an open attempt may hang on that was not known: the instant, and the leaves. */
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x)
 {
@@ -312,7 +318,7 @@ const int64_t *doubt_of(const run *r, int32_t index, const attempt *x)
         return truths_at(ring, words, x->doubted_at);
     }
     for (i = 0; is_networked(r, index) && (i < ring->count); i++) {
-        if (entry_of(ring, i, words)[0] >= x->triggered) {
+        if (entry_of(ring, i, words)[0] >= begin_of(r, index, x)) {
             return entry_of(ring, i, words);
         }
     }

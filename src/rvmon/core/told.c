@@ -7,6 +7,7 @@
  *         run has, and from bit 32 on the other run.
  * Word 4: the instant of the doubt, RV_NO_TIME if there is none; of OPEN alone.
  * Word 5: the end of the trace, or RV_NO_TIME; of OPEN alone.
+ * Word 6: the position at which the attempt began.
  * Then the leaves at the trigger; of OPEN with a doubt, the leaves there; then of an automaton the
  * location and the clocks of the run that decided, as it stood just before; of OPEN, of both; of a
  * network that is open, two locations. Of OPEN behind all that what was not known; see unknowns.c.
@@ -26,7 +27,7 @@ enum {
     NOTE_SURE = 16
 };
 /* Words before those of the leaves. */
-#define NOTE_HEAD 6
+#define NOTE_HEAD 7
 
 static int64_t *further_words(rv_monitor *m, int64_t count)
 {
@@ -117,6 +118,7 @@ static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind,
               | ((NOTE_HEAD + words + count) << 40);
     made[1] = made[2] = made[3] = -1;
     made[4] = made[5] = RV_NO_TIME;
+    made[6] = begin_of(r, index, x);
     if (then != NULL) {
         (void)memcpy(&made[NOTE_HEAD], &then[1], (size_t)words * sizeof *made);
     }
@@ -157,7 +159,7 @@ int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
     m->notes[note + 1] = stood_at;
     m->notes[note + 2] = t;
     if (networked) {
-        m->notes[note + 3] = span_from(m, r->judges[index].noting, x->triggered);
+        m->notes[note + 3] = span_from(m, r->judges[index].noting, m->notes[note + 6]);
     } else {
         m->notes[note + 3] = was->width;
         put_token(behind_trigger(r, index, note), was->location, was->clocks, was->width);
@@ -234,9 +236,9 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
         to += words;
     }
     if (networked) {
-        m->notes[note + 3] = span_from(m, j->noting, x->triggered);
-        to[0] = x->parted ? x->location : WAITING;
-        to[1] = x->parted ? x->better : WAITING;
+        m->notes[note + 3] = span_from(m, j->noting, m->notes[note + 6]);
+        to[0] = x->location;
+        to[1] = (x->parted && (x->better == PASSED)) ? PASSED : WAITING;
         to += 2;
     } else {
         const int64_t *better = x->parted ? x->clocks + r->part->plan->clocks : x->clocks;

@@ -36,7 +36,7 @@ from rvmon.verdict.verdict import Verdict
 
 _DECIDED, _OPEN, _NOTHING = 0, 1, 2
 _NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
-_HEAD = 6
+_HEAD = 7
 """Words of a note before those of the leaves."""
 _NEVER = -(1 << 63)
 _NOT_YET = (1 << 63) - 1
@@ -216,7 +216,7 @@ class Told:
         leaves, values, flow = self._stood(note)
         passed = attempt.verdict is Verdict.PASS
         if note.flags & _NETWORK:
-            position = attempt.triggered
+            position = note.words[6]
             network = at_decision(self.compiled, self._gap, note.letters, position, passed, note.at)
             why = explained_by_network(
                 self.compiled, network, position, passed, note.at, attempt.triggered, flow
@@ -245,7 +245,7 @@ class Told:
             at += self._leaf_words
         judged: Judged
         if flags & _NETWORK:
-            position = attempt.triggered
+            position = words[6]
             worse, better = ((location, (position,)) for location in words[at : at + 2])
             at += 2
             judged = at_moment(self.compiled, self._gap, note.letters, position, note.at, 1)

@@ -47,16 +47,8 @@ def _truth(sense: Sense, value: int, *, better: bool) -> bool:
     return value == (TRUE if sense is Sense.TRUE else FALSE)
 
 
-def _replayed(
-    compiled: CompiledRequirement,
-    gap: int | None,
-    letters: Letters,
-    position: int,
-    *,
-    better: bool,
-    until: int,
-) -> Network:
-    """The network as it was given the letters from a position on, up to an instant.
+class _Replay:
+    """A network that is given the letters from a position on.
 
     Args:
         compiled: the requirement.
@@ -64,36 +56,54 @@ def _replayed(
         letters: of the judge.
         position: what is asked for.
         better: whether the unknown is taken for the better.
-        until: the last instant of which the letter is taken.
     """
-    plan, propositions = compiled.network_plan, compiled.alphabet.propositions
-    place = {state: number for number, state in enumerate(propositions)}
-    leaves = [core for _, core in plan.leaves]
 
-    def letter(truths: Sequence[int]) -> tuple[bool, ...]:
-        return tuple(
-            core.value
-            if isinstance(core, Constant)
-            else _truth(core.sense, truths[place[core.proposition]], better=better)
-            for core in leaves
-        )
+    def __init__(
+        self,
+        compiled: CompiledRequirement,
+        gap: int | None,
+        letters: Letters,
+        position: int,
+        *,
+        better: bool,
+    ) -> None:
+        plan, propositions = compiled.network_plan, compiled.alphabet.propositions
+        place = {state: number for number, state in enumerate(propositions)}
+        leaves = [core for _, core in plan.leaves]
 
-    noted = [(t, letter(truths)) for t, truths in letters.read(len(propositions)) if t <= until]
-    network = Network(plan, gap)
-    if not noted:
-        return network
-    if not plan.looks_back:
-        # What came before the position does not matter; where letters stay, that does till there.
-        first = max((i for i, (t, _) in enumerate(noted) if t <= position), default=0)
-        t, stays = noted[first]
-        noted = [(t if gap is None else max(t, position), stays), *noted[first + 1 :]]
-    step = gap or 1
-    t, stays = noted[0]
-    if position < t:
-        network.begin_at(t // step, position // step, stays)
-    for t, own in noted:
-        network.note(t, own)
-    return network
+        def letter(truths: Sequence[int]) -> tuple[bool, ...]:
+            return tuple(
+                core.value
+                if isinstance(core, Constant)
+                else _truth(core.sense, truths[place[core.proposition]], better=better)
+                for core in leaves
+            )
+
+        noted = [(t, letter(truths)) for t, truths in letters.read(len(propositions))]
+        self.network = Network(plan, gap)
+        self._position = position
+        if noted and not plan.looks_back:
+            # What came before the position does not matter; a letter that stays does till there.
+            first = max((i for i, (t, _) in enumerate(noted) if t <= position), default=0)
+            t, stays = noted[first]
+            noted = [(t if gap is None else max(t, position), stays), *noted[first + 1 :]]
+        if noted and position < noted[0][0]:
+            t, stays = noted[0]
+            step = gap or 1
+            self.network.begin_at(t // step, position // step, stays)
+        self._noted = noted
+
+    def grow(self, stamp: int) -> None:
+        """Let time come to a stamp; letters behind it are not known yet."""
+        known = (stamp - 1) // 2
+        given = 0
+        for t, letter in self._noted:
+            if t > known:
+                break
+            self.network.note(t, letter)
+            given += 1
+        del self._noted[:given]
+        self.network.grow(stamp, self._position)
 
 
 def at_decision(
@@ -116,16 +126,13 @@ def at_decision(
     """
     if letters is None:
         return None
-    network = _replayed(compiled, gap, letters, position, better=not verdict, until=t - 1)
+    replay = _Replay(compiled, gap, letters, position, better=not verdict)
     # What became known by then is no news at the decision.
-    network.grow(2 * t - 1, position)
-    network.grow(2 * t, position)
-    if network.truth(position) is None:
-        whole = _replayed(compiled, gap, letters, position, better=not verdict, until=t)
-        whole.grow(2 * t, position)
-        network = whole
-        network.grow(2 * t + 1, position)
-    return network
+    replay.grow(2 * t - 1)
+    replay.grow(2 * t)
+    if replay.network.truth(position) is None:
+        replay.grow(2 * t + 1)
+    return replay.network
 
 
 def at_moment(
@@ -148,10 +155,9 @@ def at_moment(
     """
     if letters is None:
         return NetworkRuns(None, None, count, gap)
-    moments = [
-        Moment(
-            _replayed(compiled, gap, letters, position, better=better, until=(now - 1) // 2), now
-        )
-        for better in (False, True)
-    ]
+    moments = []
+    for better in (False, True):
+        replay = _Replay(compiled, gap, letters, position, better=better)
+        replay.grow(now)
+        moments.append(Moment(replay.network, now))
     return NetworkRuns(moments[0], moments[1], count, gap)
