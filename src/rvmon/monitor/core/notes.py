@@ -217,7 +217,15 @@ class Told:
         passed = attempt.verdict is Verdict.PASS
         if note.flags & _NETWORK:
             position = note.words[6]
-            network = at_decision(self.compiled, self._gap, note.letters, position, passed, note.at)
+            network = at_decision(
+                self.compiled,
+                self._gap,
+                note.letters,
+                position,
+                attempt.triggered,
+                passed,
+                note.at,
+            )
             why = explained_by_network(
                 self.compiled, network, position, passed, note.at, attempt.triggered, flow
             )

@@ -93,6 +93,10 @@ class _Replay:
             self.network.begin_at(t // step, position // step, stays)
         self._noted = noted
 
+    def last_before(self, t: int) -> int:
+        """The last instant before another at which there was a letter, or just that before it."""
+        return max((at for at, _ in self._noted if at < t), default=t - 1)
+
     def grow(self, stamp: int) -> None:
         """Let time come to a stamp; letters behind it are not known yet."""
         known = (stamp - 1) // 2
@@ -111,6 +115,7 @@ def at_decision(
     gap: int | None,
     letters: Letters | None,
     position: int,
+    triggered: int,
     verdict: bool,
     t: int,
 ) -> Network | None:
@@ -121,12 +126,20 @@ def at_decision(
         gap: ticks between two positions; `None` if only samples are positions.
         letters: by which it judged; `None`: they are not known.
         position: the instant of the position whose value was waited for, ticks.
+        triggered: the instant of the trigger; behind the position if that was the end of the trace.
         verdict: the decision: what fails is decided by the run for the better.
         t: its instant.
     """
     if letters is None:
         return None
     replay = _Replay(compiled, gap, letters, position, better=not verdict)
+    if t == position:
+        # It was known as the attempt began, perhaps before that: since the letter before.
+        replay.grow(2 * replay.last_before(t) + 1)
+        replay.grow(2 * t + 1)
+        if triggered > position:
+            replay.grow(2 * triggered)
+        return replay.network
     # What became known by then is no news at the decision.
     replay.grow(2 * t - 1)
     replay.grow(2 * t)
@@ -146,7 +159,7 @@ def at_moment(
     """The networks of an open attempt at a stamp.
 
     Args:
-        compiled: as for `at_decision`; so are the next three.
+        compiled: as for `at_decision`.
         gap: see there.
         letters: see there.
         position: see there.
