@@ -295,6 +295,9 @@ void settle_all(run *r, int64_t end, int64_t reached)
         if (is_networked(r, i) && !is_chained(r, i)) {
             network_close(r, i, end, reached);
         }
+        if (r->standing != NULL) {
+            note_open_count(r, i);
+        }
         if (!queue_is_empty(&r->judges[i])) {
             queue_close(r, i, end, reached);
         }

@@ -165,6 +165,7 @@ typedef struct {
     rv_piece *first;           /* letters, of one that a network judges */
     rv_piece *last;
     int32_t pieces;
+    int32_t open_count;        /* attempts that were open when they were told of */
     uint32_t epoch;            /* of the last standing that was noted; see `rv_monitor` */
     int64_t standing;          /* its place; -1: none */
     int64_t stood_at;          /* its position */

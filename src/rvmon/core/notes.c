@@ -369,3 +369,15 @@ void note_moot(run *r, int32_t index, int64_t t)
     noting *n = r->judges[index].noting;
     n->moot_since = least(n->moot_since, t);
 }
+
+/* Count the open attempts of a judge, before they are told of. */
+void note_open_count(run *r, int32_t index)
+{
+    int32_t at;
+    if (is_networked(r, index)) {
+        r->judges[index].noting->open_count = 0;
+        for (at = next_open(r, index, -1); at >= 0; at = next_open(r, index, at)) {
+            r->judges[index].noting->open_count++;
+        }
+    }
+}

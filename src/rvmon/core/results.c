@@ -63,6 +63,9 @@ static bool each_open_of(run *r, int32_t index, rv_take take, void *user)
     const rv_number *captured = (r->part->plan->captured > 0) ? r->captured : NULL;
     bool more = true;
     int32_t at;
+    if (r->standing != NULL) {
+        note_open_count(r, index);
+    }
     for (at = 0; more && !queue_is_empty(&r->judges[index]) && (at < r->judges[index].queue->count);
          at++) {
         const attempt *x = queued_attempt(r, index, at);

@@ -3,8 +3,8 @@
  * Word 0: the kind; flags, from bit 8 on; the judge, from bit 24 on; how many words, from bit 40 on.
  * Word 1: the place of how all stood then, which many notes share.
  * Word 2: DECIDED: the instant; OPEN: where the runs stand, -1 NOTHING.
- * Word 3: of a network, the number of the span of letters, or -1; of an automaton, how many clocks its
- *         run has, and from bit 32 on the other run.
+ * Word 3: of a network, the number of the span of letters, or -1, and of OPEN from bit 32 on how many
+ *         are; of an automaton, how many clocks its run has, and from bit 32 on the other run.
  * Word 4: the instant of the doubt, RV_NO_TIME if there is none; of OPEN alone.
  * Word 5: the end of the trace, or RV_NO_TIME; of OPEN alone.
  * Word 6: the position at which the attempt began.
@@ -236,7 +236,8 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
         to += words;
     }
     if (networked) {
-        m->notes[note + 3] = span_from(m, j->noting, m->notes[note + 6]);
+        const int64_t letters = span_from(m, j->noting, m->notes[note + 6]);
+        m->notes[note + 3] = (letters < 0) ? -1 : letters | ((int64_t)j->noting->open_count << 32);
         to[0] = x->location;
         to[1] = (x->parted && (x->better == PASSED)) ? PASSED : WAITING;
         to += 2;
@@ -310,8 +311,8 @@ bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note)
         note->standing = &m->notes[words[1]];
         note->standing_count = note->standing[0];
     }
-    if ((((words[0] >> 8) & NOTE_NETWORK) != 0) && (words[3] <= INT32_MAX)) {
-        (void)rv_span(m, (int32_t)words[3], note);
+    if ((((words[0] >> 8) & NOTE_NETWORK) != 0) && (m->span_count > 0)) {
+        (void)rv_span(m, (int32_t)(words[3] & INT32_MAX), note);
     }
     return true;
 }

@@ -40,6 +40,7 @@ _HEAD = 7
 """Words of a note before those of the leaves."""
 _NEVER = -(1 << 63)
 _NOT_YET = (1 << 63) - 1
+_SPAN = (1 << 31) - 1
 _IN_WORD = 32
 _WHY = (
     *(HealthKind.NONE, HealthKind.NAN, HealthKind.STALE),
@@ -108,7 +109,7 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Not
         standing = unpack_from(f"={count}q", notes, 8 * words[1])
     letters = None
     if head >> 8 & _NETWORK and words[3] >= 0:
-        pieces, last = spans[words[3]]
+        pieces, last = spans[words[3] & _SPAN]
         letters = Letters((*pieces, last))
     return Note(words, standing, letters)
 
@@ -256,7 +257,10 @@ class Told:
             position = words[6]
             worse, better = ((location, (position,)) for location in words[at : at + 2])
             at += 2
-            judged = at_moment(self.compiled, self._gap, note.letters, position, note.at, 1)
+            judged = at_moment(
+                self.compiled, self._gap, note.letters, position, note.at, words[3] >> 32
+            )
+            worse, better = judged.met(worse, better)
         else:
             reached, gap = (note.at - 1) // 2, self._gap or 1
             judged = MachineRuns(self, reached // gap * gap, self._gap)

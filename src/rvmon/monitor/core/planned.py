@@ -124,6 +124,14 @@ class PlannedCore:
             for field, value in payload.items()
         }
 
+    def instance(self, attempt: Attempt) -> object:
+        """What is the same of attempts of one instance, or one alone with values of its own."""
+        one = self.compiled.checked.requirements[attempt.requirement]
+        if one.captures:
+            return attempt.requirement, attempt.in_doubt, attempt.number
+        each = None if one.for_each is None else attempt.captured[one.for_each.name]
+        return attempt.requirement, attempt.in_doubt, each
+
     def _details(self, attempt: Attempt, noted: Noted) -> Mapping[str, Any]:
         """The fields of an attempt that are not set in C."""
         from rvmon.monitor.core.notes import note_of

@@ -99,6 +99,19 @@ class NetworkRuns:
     count: int
     gap: int | None
 
+    def met(self, worse: Token, better: Token) -> tuple[Token, Token]:
+        """Two runs that wait, of which one may have come to its end by now."""
+        for moment, value, ended in ((self.worse, False, FAILED), (self.better, True, PASSED)):
+            token = better if value else worse
+            if moment is None or token[0] != WAITING:
+                continue
+            found = moment.network.truth(token[1][0])
+            if found is not None and found[0] is value and value:
+                better = (ended, token[1])
+            elif found is not None and found[0] is value:
+                worse = (ended, token[1])
+        return worse, better
+
     def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
         """See `Judged`."""
         del now  # the networks have come to it
