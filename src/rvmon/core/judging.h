@@ -149,12 +149,12 @@ typedef struct {
 /* Letters, some of those that notes of a judge refer to. */
 struct rv_piece {
     rv_piece *next;            /* the later ones */
+    rv_piece *next_left;       /* of those that no open attempt needs any more, but notes do */
     const int64_t *before;     /* the last letter; while it is the last piece */
     void *held[2];             /* of who reads them */
-    int32_t users;             /* notes that begin or end here, or reach over it */
+    uint32_t pinned;           /* whether notes refer to it: the epoch of these; see `rv_monitor` */
     int32_t count;             /* words that are in it */
     int32_t stride;            /* of a letter */
-    bool is_left;              /* whether no open attempt needs it any more */
     int64_t words[];           /* the position, then the truths of propositions there */
 };
 
@@ -164,6 +164,7 @@ typedef struct {
     truths doubts;             /* where something was unknown that its attempts may hang on */
     rv_piece *first;           /* letters, of one that a network judges */
     rv_piece *last;
+    rv_piece *pinned;          /* the last one that is, while it is kept */
     int32_t pieces;
     int32_t open_count;        /* attempts that were open when they were told of */
     uint32_t epoch;            /* of the last standing that was noted; see `rv_monitor` */

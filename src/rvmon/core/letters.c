@@ -32,12 +32,9 @@ static size_t size_of_piece(int32_t stride)
 }
 
 /* Let go of a piece that nobody needs. */
-static void drop_if_idle(rv_monitor *m, rv_piece *piece)
+static void drop_piece(rv_monitor *m, rv_piece *piece)
 {
     int32_t i;
-    if (!piece->is_left || (piece->users > 0)) {
-        return;
-    }
     for (i = 0; i < 2; i++) {
         if ((piece->held[i] != NULL) && (m->let_go != NULL)) {
             m->let_go(m->let_go_user, piece->held[i]);
@@ -53,8 +50,13 @@ static void leave_first(rv_monitor *m, noting *n)
     n->first = piece->next;
     n->last = (n->first == NULL) ? NULL : n->last;
     n->pieces--;
-    piece->is_left = true;
-    drop_if_idle(m, piece);
+    if (piece->pinned == m->pins) {
+        piece->next_left = m->left;
+        m->left = piece;
+    } else {
+        drop_told_open(m); /* these may refer to it */
+        drop_piece(m, piece);
+    }
 }
 
 void forget_letters(rv_monitor *m, noting *n)
@@ -119,11 +121,27 @@ void keep_letter(run *r, int32_t index, int64_t t)
     n->last->count += stride;
 }
 
+/* Have letters from one piece on be kept as long as notes are. */
+static void pin(const rv_monitor *m, noting *n, rv_piece *first)
+{
+    rv_piece *one = first;
+    while ((one != NULL) && (one->pinned != m->pins)) {
+        one->pinned = m->pins;
+        one = one->next;
+    }
+    /* From there on all is pinned up to the last one that was. */
+    one = ((one != NULL) && (n->pinned != NULL)) ? n->pinned->next : NULL;
+    while (one != NULL) {
+        one->pinned = m->pins;
+        one = one->next;
+    }
+    n->pinned = n->last;
+}
+
 /* Refer to the letters from `begin` on; -1: there are none. */
-int32_t span_from(rv_monitor *m, const noting *n, int64_t begin)
+int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
 {
     rv_piece *first = n->first;
-    rv_piece *one;
     span_of_letters *made;
     if (first == NULL) {
         return -1;
@@ -132,40 +150,32 @@ int32_t span_from(rv_monitor *m, const noting *n, int64_t begin)
         first = first->next;
     }
     made = (m->span_count > 0) ? &m->spans[m->span_count - 1] : NULL;
-    if ((made != NULL) && (made->first == first) && (made->last == n->last)
-        && (made->last_count == n->last->count)) {
-        return m->span_count - 1;
+    if ((made == NULL) || (made->first != first) || (made->last != n->last)
+        || (made->last_count != n->last->count)) {
+        made = grown(m, m->spans, &m->span_room, (int64_t)m->span_count + 1, sizeof *made);
+        if (made == NULL) {
+            return -1;
+        }
+        m->spans = made;
+        made = &m->spans[m->span_count];
+        made->first = first;
+        made->last = n->last;
+        made->last_count = n->last->count;
+        m->span_count++;
     }
-    made = grown(m, m->spans, &m->span_room, (int64_t)m->span_count + 1, sizeof *made);
-    if (made == NULL) {
-        return -1;
+    if (!m->tells_open) { /* what is told of open attempts is over with the call */
+        pin(m, n, first);
     }
-    m->spans = made;
-    made = &m->spans[m->span_count];
-    made->first = first;
-    made->last = n->last;
-    made->last_count = n->last->count;
-    for (one = first; one != NULL; one = one->next) {
-        one->users++;
-    }
-    m->span_count++;
     return m->span_count - 1;
 }
 
-/* Forget the spans behind some. */
-void forget_spans(rv_monitor *m, int32_t kept)
+/* No note refers to letters any more. */
+void unpin_letters(rv_monitor *m)
 {
-    while (m->span_count > kept) {
-        const span_of_letters *last = &m->spans[m->span_count - 1];
-        rv_piece *one = last->first;
-        bool more = true;
-        while (more) {
-            rv_piece *next = one->next;
-            more = one != last->last;
-            one->users--;
-            drop_if_idle(m, one);
-            one = next;
-        }
-        m->span_count--;
+    while (m->left != NULL) {
+        rv_piece *piece = m->left;
+        m->left = piece->next_left;
+        drop_piece(m, piece);
     }
+    m->pins++;
 }

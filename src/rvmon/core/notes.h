@@ -26,7 +26,10 @@ const int64_t *truths_at(const truths *ring, int32_t words, int64_t t);
 
 /* ---- letters.c */
 void forget_letters(rv_monitor *m, noting *n);
-int32_t span_from(rv_monitor *m, const noting *n, int64_t begin);
-void forget_spans(rv_monitor *m, int32_t kept);
+int32_t span_from(rv_monitor *m, noting *n, int64_t begin);
+void unpin_letters(rv_monitor *m);
+
+/* ---- told.c */
+void drop_told_open(rv_monitor *m);
 
 #endif

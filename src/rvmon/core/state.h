@@ -384,6 +384,8 @@ struct rv_monitor {
     int32_t span_count;
     int32_t span_room;
     span_of_letters *spans;    /* that notes refer to */
+    rv_piece *left;            /* letters that only these refer to */
+    uint32_t pins;             /* the epoch of notes that refer to letters */
     rv_let_go let_go;
     void *let_go_user;
     int64_t settled_notes;     /* so many words are of records; behind them those of open attempts */

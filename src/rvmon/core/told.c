@@ -41,7 +41,7 @@ static int64_t *further_words(rv_monitor *m, int64_t count)
 }
 
 /* What was told of open attempts is over. */
-static void drop_told_open(rv_monitor *m)
+void drop_told_open(rv_monitor *m)
 {
     if (m->told_open && !m->tells_open) {
         forget_notes(m, m->settled_notes, m->settled_spans);
@@ -257,7 +257,10 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
 void forget_notes(rv_monitor *m, int64_t words, int32_t spans)
 {
     m->note_count = words;
-    forget_spans(m, spans);
+    m->span_count = spans;
+    if (words == 0) {
+        unpin_letters(m);
+    }
     m->told_open = false;
     m->epoch++;
 }
