@@ -66,6 +66,24 @@ void forget_letters(rv_monitor *m, noting *n)
     }
 }
 
+/* The first instant of which the letter is needed: from the begin of the oldest attempt on, or as long
+ * before the last letter as a position matters. */
+static int64_t needed_from(const run *r, int32_t index)
+{
+    const judge *j = &r->judges[index];
+    const noting *n = j->noting;
+    const int64_t reach = r->part->forms[r->part->judges[index].form].reach;
+    int64_t found = RV_NO_TIME;
+    if ((reach < LIMIT) && (n->last != NULL) && (n->last->before != NULL)) {
+        found = n->last->before[0] - reach;
+    }
+    if (!watches(r, index) && (j->first >= 0)) {
+        const int64_t begin = attempt_at(r->home, j->first)->triggered;
+        found = (begin > found) ? begin : found;
+    }
+    return found;
+}
+
 /* Take the letter at the position `t`; if it is not known, attempts that are open hang on that. */
 void keep_letter(run *r, int32_t index, int64_t t)
 {
@@ -75,6 +93,7 @@ void keep_letter(run *r, int32_t index, int64_t t)
     const list propositions = r->part->judges[index].propositions;
     const int32_t words = words_for(propositions.count);
     const int32_t stride = words + 1;
+    const int64_t needed = needed_from(r, index);
     int64_t *made;
     if ((j->first < 0) && !watches(r, index)) {
         forget_letters(m, n);
@@ -85,9 +104,7 @@ void keep_letter(run *r, int32_t index, int64_t t)
     }
     while ((n->first != n->last)
            && ((n->pieces > PIECES_MOST)
-               || (!watches(r, index)
-                   && (n->first->next->count > 0)
-                   && (n->first->next->words[0] <= attempt_at(r->home, j->first)->triggered)))) {
+               || ((n->first->next->count > 0) && (n->first->next->words[0] <= needed)))) {
         leave_first(m, n);
     }
     if ((n->last == NULL) || (n->last->count == LETTERS_IN_PIECE * stride)) {

@@ -64,6 +64,16 @@ bool make_notes(run *r)
     return true;
 }
 
+/* Have nothing be noted of a run: not all of it could be made. */
+static void drop_notes(run *r)
+{
+    int32_t i;
+    r->standing = NULL;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        r->judges[i].noting = NULL;
+    }
+}
+
 int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
 {
     int32_t i;
@@ -79,8 +89,15 @@ int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
             done = make_notes(m->homes[i].root) && begin_unknowns(&m->homes[i]);
         }
     }
-    m->keeps_notes = done;
-    return done ? RV_OK : RV_NO_MEMORY;
+    if (!done) {
+        for (i = 0; i < m->plan.part_count; i++) {
+            drop_notes(m->homes[i].root);
+        }
+        m->spoilt = true;
+        return RV_NO_MEMORY;
+    }
+    m->keeps_notes = true;
+    return RV_OK;
 }
 
 /* Forget what a judge remembers. */

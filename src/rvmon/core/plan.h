@@ -254,6 +254,7 @@ typedef struct {
 
 /* A formula for a network: operands first, the last operator is the root. */
 typedef struct {
+    int64_t reach;             /* ticks after which a position only leads on to later ones; NEVER: none */
     list operators;
     int32_t leaves;
     int32_t looks_back;        /* whether it has to see what is before its attempts */
@@ -261,6 +262,7 @@ typedef struct {
     int32_t base;              /* of a chain, what the innermost is over: a leaf, or a junction */
     int32_t left;              /* of a chain that is kept up, the leaf that ends that; -1: none does */
     int32_t excused;           /* and the leaf that is true where the windows do not matter; -1 */
+    int32_t spare;
 } form_plan;
 
 enum { OP_LEAF, OP_JUNCTION, OP_WINDOW, OP_SHIFT, OP_UNTIL, OP_SINCE, OPS };

@@ -266,7 +266,7 @@ bool check_forms(const plan *p, const part_plan *x)
     for (i = 0; i < x->forms.count; i++) {
         const form_plan *f = &p->forms[x->forms.first + i];
         if (!has(p, SEC_OPERATORS, f->operators.first, f->operators.count)
-            || (f->operators.count < 1) || !is_within(f->leaves, 0, (int64_t)f->operators.count + 1)) {
+            || (f->reach < 0) || (f->operators.count < 1) || !is_within(f->leaves, 0, (int64_t)f->operators.count + 1)) {
             return false;
         }
         for (k = 0; k < f->operators.count; k++) {

@@ -15,9 +15,10 @@ from rvmon.dataflow.chain import Windows
 from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import Network
 from rvmon.monitor.attempts.attempt_judge import Open
-from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge
+from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.attempts.network_letters import Clear, Letters, Noted, journal_of
 from rvmon.monitor.attempts.waiting import position_of
+from rvmon.monitor.explained.network import WAITING
 from rvmon.runtime.values import NEVER
 
 

@@ -252,20 +252,8 @@ class Told:
         if words[4] != _NEVER:
             leaves = truths(words[at:], len(self._texts))
             at += self._leaf_words
-        judged: Judged
-        if flags & _NETWORK:
-            position = words[6]
-            worse, better = ((location, (position,)) for location in words[at : at + 2])
-            at += 2
-            judged = at_moment(
-                self.compiled, self._gap, note.letters, position, note.at, words[3] >> 32
-            )
-            worse, better = judged.met(worse, better)
-        else:
-            reached, gap = (note.at - 1) // 2, self._gap or 1
-            judged = MachineRuns(self, reached // gap * gap, self._gap)
-            worse, at = _token(words, at, words[3] & 0xFFFFFFFF)
-            better, at = _token(words, at, words[3] >> 32)
+        runs = self._networks if flags & _NETWORK else self._machines
+        judged, worse, better, at = runs(note, at)
         outages = self._outages(words[at:])
         known = {one.name: one for one in outages if one.until is None}
         doubt = self._doubt(words[4], leaves, outages)
@@ -281,6 +269,24 @@ class Told:
             bool(flags & _HOLLOW),
             bool(flags & _CUT),
         )
+
+    def _networks(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
+        """Networks, two runs in them, and where the words of these end."""
+        words = note.words
+        position = (words[6],)
+        judged = at_moment(
+            self.compiled, self._gap, note.letters, words[6], note.at, words[3] >> 32
+        )
+        worse, better = judged.met((words[at], position), (words[at + 1], position))
+        return judged, worse, better, at + 2
+
+    def _machines(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
+        """The same of an automaton."""
+        words = note.words
+        reached, gap = (note.at - 1) // 2, self._gap or 1
+        worse, at = _token(words, at, words[3] & 0xFFFFFFFF)
+        better, at = _token(words, at, words[3] >> 32)
+        return MachineRuns(self, reached // gap * gap, self._gap), worse, better, at
 
     def _outages(self, words: Sequence[int]) -> Sequence[Outage]:
         """What was not known."""

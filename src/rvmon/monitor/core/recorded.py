@@ -141,7 +141,7 @@ def report_of_run(
         *_, is_complete = own
         complete[name] = bool(is_complete)
         counts[name] = {verdict: own[VERDICTS.index(verdict)] for verdict in _COUNTED}
-    records, numbers, *notes = run.records()
+    records, numbers, words, letters = run.records()
     made = np.frombuffer(records, RECORD)
     captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
     order = _order(made)
@@ -150,9 +150,9 @@ def report_of_run(
             name: fold([one for one, count in own.items() if count], complete=complete[name])
             for name, own in counts.items()
         },
-        attempts=RecordedAttempts(planned, made, captured, (notes[0], notes[1]))
+        attempts=RecordedAttempts(planned, made, captured, (words, letters))
         if order is None
-        else RecordedAttempts(planned, made[order], captured[order], (notes[0], notes[1])),
+        else RecordedAttempts(planned, made[order], captured[order], (words, letters)),
         counts=counts,
         origin=origin,
         end=end,
