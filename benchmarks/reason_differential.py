@@ -36,7 +36,7 @@ from rvmon.verdict.attempt import Attempt
 
 FIELDS = [one.name for one in fields(Attempt)]
 _NETWORK = 1
-_SINCE = re.compile(r" \(since [^)]*\)|it had (not|never|last) .*|(was|became) ")
+_SINCE = re.compile(r" \(since [^)]*\)|it had .*|(was|became) |^left open by the input: ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,10 +126,17 @@ def _begins_elsewhere(pair: Pair) -> bool:
     return pair.is_merged and {"reason", "blame"}.issuperset(pair.differing)
 
 
+def _hears_ahead(pair: Pair) -> bool:
+    """Between two ticks `auto` has heard of the next value, and says no more why there was none."""
+    clocked = pair.spec.checked.gap not in (None, 1)
+    return clocked and pair.differing == ["reason"] and " was not known at " in pair.want.reason
+
+
 RULES: Mapping[str, Callable[[Pair], bool]] = {
     "judged by a network here, by an automaton there": _words_differently,
     "looks back behind the begin of what has values of its own": _looks_back_farther,
     "locations that were merged": _begins_elsewhere,
+    "a value between two ticks": _hears_ahead,
 }
 
 
