@@ -1,4 +1,4 @@
-"""Online monitors that the core runs; their records have no reasons."""
+"""Online monitors that the core runs."""
 
 from __future__ import annotations
 

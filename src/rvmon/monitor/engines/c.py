@@ -1,4 +1,4 @@
-"""The engine `c`: the core, whose records have no reasons."""
+"""The engine `c`: the core."""
 
 from __future__ import annotations
 
