@@ -261,7 +261,7 @@ void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reac
     const bool runs = is_current(r, index, at);
     const bool hollow = x->hollow || (runs && is_true(r, j->unborn));
     bool may_be_over = !x->sure || (runs && x->clouded);
-    const int64_t now = (reached > end) ? 2 * reached : 2 * end + 1;
+    const int64_t now = stamp_of_end(end, reached);
     int32_t state = (!hollow && is_kept(r, index, x, end, reached)) ? 1 : 0;
     may_be_over = may_be_over || ((r->cut < NEVER) && x->clouded);
     state |= (hollow || (x->location == FAILED)) ? 2 : 0;

@@ -23,6 +23,18 @@ static inline int64_t whole_steps(int64_t duration, int64_t step)
     return (step == 1) ? duration : duration / step * step; /* a division takes its time */
 }
 
+static inline int64_t least(int64_t a, int64_t b)
+{
+    return (a < b) ? a : b;
+}
+
+/* The stamp of the end of a trace, when time has come to `reached`: twice the instant, one more if its
+ * letter is known. */
+static inline int64_t stamp_of_end(int64_t end, int64_t reached)
+{
+    return ((reached > end) && (reached < LIMIT)) ? 2 * reached : 2 * least(end, LIMIT - 1) + 1;
+}
+
 /* How many positions of a clock lie within the bounds of time. */
 static inline int64_t positions_within(int64_t step)
 {
@@ -36,11 +48,6 @@ static inline int64_t floored(int64_t t, int64_t step)
         return t;
     }
     return ((t >= 0) || (t % step == 0)) ? t / step : t / step - 1;
-}
-
-static inline int64_t least(int64_t a, int64_t b)
-{
-    return (a < b) ? a : b;
 }
 
 /* Have a judge look at the position at hand. */

@@ -171,7 +171,7 @@ void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
         for (; from < behind; from++) {
             const queued *one = item(g.q, from);
             const attempt *x = attempt_of_queued(r, one, g.q->segments[k].location);
-            const int64_t now = (reached > end) ? 2 * reached : 2 * end + 1;
+            const int64_t now = stamp_of_end(end, reached);
             const int32_t outcome =
                 own->outcomes[holds_at_end(g.a, x->location, x->clocks, end, reached) ? 1 : 0];
             report(r, index, x, x->number, (uint8_t)(outcome & 3), (uint8_t)(outcome >> 2), end,

@@ -215,7 +215,7 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
     const bool networked = is_networked(r, index);
     const int32_t words = words_for(r->part->judges[index].leaves.count);
     const int32_t most = networked ? 0 : r->part->machines[index].clocks;
-    const int64_t until = floored(now + 1, 2) - 1;
+    const int64_t until = floored(now - 1, 2);
     const int64_t stood_at = place_standing(r, index, NEVER);
     const int64_t *doubt = doubt_of(r, index, x);
     const int64_t doubted_at = (doubt != NULL) ? doubt[0] : RV_NO_TIME;
@@ -303,9 +303,13 @@ bool rv_span(const rv_monitor *m, int32_t number, rv_note *note)
 
 bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note)
 {
-    const int64_t *words = &m->notes[(record->note < 0) ? 0 : record->note];
+    const int64_t *words;
     (void)memset(note, 0, sizeof *note);
-    if (!is_told(m, record->note, NOTE_HEAD) || !is_told(m, record->note, words[0] >> 40)) {
+    if (!is_told(m, record->note, NOTE_HEAD)) {
+        return false;
+    }
+    words = &m->notes[record->note];
+    if (!is_told(m, record->note, words[0] >> 40)) {
         return false;
     }
     note->words = words;
