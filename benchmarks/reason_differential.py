@@ -97,6 +97,8 @@ class Pair:
 def _words_differently(pair: Pair) -> bool:
     """What is owed is worded from a network here, from an automaton there: both are right."""
     allowed = {"reason", "owed", "deadline", "forecast", "blame"}
+    if pair.is_apart:  # and names the leaves of the trigger; see below
+        allowed |= {"at_trigger", "at_decision"}
     return pair.is_other_kind and allowed.issuperset(pair.differing)
 
 
