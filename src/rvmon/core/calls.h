@@ -79,6 +79,33 @@ static inline attempt *attempt_at(const home *h, int32_t i)
     return (attempt *)(void *)(h->pool + h->stride * (size_t)i);
 }
 
+/* The place of the lowest bit that is set, and of the highest one; there is one. */
+static inline int32_t lowest_bit(uint64_t word)
+{
+#if defined(__GNUC__)
+    return (int32_t)__builtin_ctzll(word);
+#else
+    int32_t i = 0;
+    while (((word >> i) & 1U) == 0U) {
+        i++;
+    }
+    return i;
+#endif
+}
+
+static inline int32_t highest_bit(uint64_t word)
+{
+#if defined(__GNUC__)
+    return 63 - (int32_t)__builtin_clzll(word);
+#else
+    int32_t i = 63;
+    while (((word >> i) & 1U) == 0U) {
+        i--;
+    }
+    return i;
+#endif
+}
+
 /* A larger array with what stood in the old one; NULL if memory is short, which spoils the run. */
 void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
 

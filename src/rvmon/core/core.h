@@ -191,18 +191,21 @@ rv_sizes rv_sizes_of(const rv_monitor *m);
 /* The first field of an event, and how many it has. */
 int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first);
 
-/* Columns: rows of one recording, in ascending order of time. */
+/* Columns: rows of one recording, in order of time; those of one instant are one sample, in which of the
+ * values of a signal the last one counts. What is real is given as REAL, NaN for unknown; all else as
+ * WHOLE or BYTE. */
 enum { RV_COLUMN_REAL, RV_COLUMN_WHOLE, RV_COLUMN_BYTE };
 
-typedef struct {
-    const void *values;        /* as `kind` says; of an event: NULL */
-    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update */
+typedef struct rv_column {
+    const void *values;        /* as `kind` says; NULL: of an event, or of a field that is unknown */
+    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update; of a field: it is not given */
     int32_t kind;
-    int32_t name;
-    const rv_number *const *fields; /* of an event: a column for each field, or NULL */
+    int32_t name;              /* of a field nothing */
+    const struct rv_column *fields; /* of an event: a column for each field, or NULL; it occurs with a
+                                * payload where one of them is given */
 } rv_column;
 
-/* Judge rows; `done` counts those that were. */
+/* Judge rows; `done` counts those that were. No name has two columns. */
 int rv_rows(rv_monitor *m, const int64_t *times, int64_t rows, const rv_column *columns,
             int32_t count, int64_t *done);
 

@@ -4,19 +4,6 @@
 
 #include <string.h>
 
-static int32_t lowest_bit(uint64_t word)
-{
-#if defined(__GNUC__)
-    return (int32_t)__builtin_ctzll(word);
-#else
-    int32_t i = 0;
-    while (((word >> i) & 1U) == 0U) {
-        i++;
-    }
-    return i;
-#endif
-}
-
 void soil(run *r, int32_t node)
 {
     const int32_t word = node >> 6;

@@ -58,13 +58,18 @@ class Monitor:
         `looked`: it is known that all its occurrences can be judged.
         """
 
-    def rows(self, times: Any, columns: tuple[tuple[int, int, Any, Any], ...], /) -> int:
-        """Judge rows; how many were: fewer than given if one is not later than all before.
+    def rows(self, times: Any, columns: tuple[tuple[Any, ...], ...], /) -> int:
+        """Judge rows; how many were: fewer than given if one is before those above it.
+
+        Fewer, too, before the first instant with two payloads of an event of which only one can be
+        judged.
 
         Args:
-            times: int64[n] ticks.
-            columns: of names number, kind (`RV_COLUMN_…`), of signals values, and uint8[n] of what
-                each row says or `None`.
+            times: int64[n] ticks; those of one instant are one sample.
+            columns: of a signal (number, cells), of an event (number, says, cells of each field or
+                `None`). Cells are (kind, values, says): the `RV_COLUMN_…` of `core.h`, an array of
+                n values, which may be `None` of a field, and uint8[n] of what each row says or
+                `None`.
         """
 
     def advance(self, t: int, /) -> None: ...

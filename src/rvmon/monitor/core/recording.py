@@ -57,15 +57,13 @@ def judge_columns(planned: PlannedCore, columns: Columns, end: int | None) -> Re
     return report_of_run(planned, run, origin or 0, run.finish(end))
 
 
-def _column(
-    planned: PlannedCore, name: str, values: NDArray[Any]
-) -> tuple[int, int, NDArray[Any] | None, NDArray[np.uint8] | None]:
+def _column(planned: PlannedCore, name: str, values: NDArray[Any]) -> tuple[int, Any]:
     """A column as `native.Monitor.rows` takes it."""
     number, kind = planned.numbers[name], planned.packed.signals.get(name)
     if kind is None:
-        return number, 0, None, np.where(values, _YES, _NO)
+        return number, np.where(values, _YES, _NO)
     layout, type_ = _TYPES[kind]
-    return number, layout, np.ascontiguousarray(values, type_), None
+    return number, (layout, np.ascontiguousarray(values, type_), None)
 
 
 def judge_samples(checked: CheckedSpec, planned: PlannedCore, source: Source) -> Report:
