@@ -173,6 +173,24 @@ static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
     return (what == 1) ? rv_found(m, t, lost, count) : rv_late(m, t - 3, lost, count - 1);
 }
 
+/* What is told of formulas that truths are kept of. */
+static uint64_t noted_truths(const rv_monitor *m, uint64_t sum)
+{
+    const rv_range *found;
+    int32_t number;
+    int32_t which;
+    int64_t i;
+    for (number = 0; rv_truths(m, number, false, false, &found) >= 0; number++) {
+        for (which = 0; which < 4; which++) {
+            const int64_t count = rv_truths(m, number, which % 2 == 1, which >= 2, &found);
+            for (i = 0; i < count; i++) {
+                sum = mixed(mixed(sum, found[i].first), found[i].last);
+            }
+        }
+    }
+    return sum;
+}
+
 /* A run by a script, from its begin; returns the sum of all that it says. */
 static uint64_t one_run(rv_monitor *m, script s)
 {
@@ -216,6 +234,7 @@ static uint64_t one_run(rv_monitor *m, script s)
     }
     sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
     sum = noted_records(m, sum, true);
+    sum = noted_truths(m, sum);
     for (i = 0; (i < sizes.requirements) && (i < NAMES_MOST); i++) {
         const int verdict = rv_verdict(m, i);
         sum = mixed(mixed(sum, verdict), rv_count(m, i).failed);

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.tools.guarded import guarded_memory
+from tests.tools.watched import truths_plan
 
 from rvmon.core.plan import pack
 from rvmon.errors import RvmonError
@@ -70,7 +71,8 @@ def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[byte
         next_law = made % 2 == 1  # names can be lost
         try:
             compiled_spec = compile_spec(random_spec(rng, profile), next_law=next_law)
-            data = pack(plan_alone(compiled_spec), next_law=next_law).data
+            plan = truths_plan(compiled_spec) if made % 4 > 1 else plan_alone(compiled_spec)
+            data = pack(plan, next_law=next_law).data
         except RvmonError:
             continue
         if limit is None or len(data) <= limit:

@@ -294,7 +294,10 @@ def _walk_part(plan: Plan, fields: dict[str, Any]) -> list[int]:
     part.listed(fields["stateful"], len(nodes))
     networked = [n for n, judge in enumerate(judges) if judge["automaton"] < 0]
     assert list(plan.listed(fields["networked"])) == networked
-    assert [judges[n]["form"] for n in networked] == list(range(fields["forms"][1]))
+    forms = [judges[n]["form"] for n in networked]
+    forms += [fields["truths"]] if fields["truths"] >= 0 else []
+    assert forms == list(range(fields["forms"][1]))
+    assert fields["truths"] == -1 or fields["captured"] == 0
     _walk_unit(part)
     assert 0 <= fields["requirements"] <= len(judges)
     return [judge["requirement"] for judge in judges[: fields["requirements"]]]

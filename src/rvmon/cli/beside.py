@@ -35,8 +35,8 @@ class Options:
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
         allow_missing: the names that recordings in columns may lack; `True`: all.
-        coverage: whether all that the coverage model has is watched; default: only what of it must
-            not be hit.
+        coverage: whether all that the coverage model has is watched; default: coverpoints and
+            crosses alone.
     """
 
     only: tuple[str, ...] | None = None
@@ -114,15 +114,16 @@ class Beside:
 
     def finished(self, report: Report) -> Report:
         """The report with what was found, when all samples went by."""
-        if self._coverage is not None:
-            report = replace(report, illegal=tuple(self._illegal(self._coverage)))
-        return report
+        if self._coverage is None:
+            return report
+        from rvmon.coverage.hits import covered_groups, illegal
 
-    def _illegal(self, coverage: CoverageMonitor) -> Iterator[IllegalHit]:
-        from rvmon.coverage.hits import illegal
-
-        found = coverage.finish_ns(self._end)
+        found = self._coverage.finish_ns(self._end)
         if self._options.coverage:
             self.hits = found
-        for group, item, hit in illegal(found, self._spec.coverage_model.bin_model):
-            yield IllegalHit(group.name, item.name, hit.count, hit.first or 0)
+        model = self._spec.coverage_model.bin_model
+        wrong = tuple(
+            IllegalHit(group.name, item.name, hit.count, hit.first or 0)
+            for group, item, hit in illegal(found, model)
+        )
+        return replace(report, illegal=wrong, coverage=covered_groups(found, model))

@@ -30,6 +30,9 @@ void begin_blank(run *r, int64_t t)
     }
     remember_unknown(r, t);
     blank_out(r, t);
+    if (r->part->is_watched) {
+        watch(r, t);
+    }
     for (i = 0; i < r->part->plan->judges.count; i++) {
         const int32_t trigger = followed(r, i);
         if (watches(r, i)) {

@@ -332,7 +332,10 @@ typedef struct {
     rv_monitor *monitor;
 } form;
 
-form form_of(const run *r, int32_t index);
+form form_at(const run *r, int32_t number);
+form form_of(const run *r, int32_t index); /* of a judge */
+networks *made_networks(const form *f);
+bool read_leaves(const run *r, const form *f, networks *net, bool *parted);
 int64_t instant_of(const form *f, const network *w, int64_t position);
 int64_t position_by(const form *f, const network *w, int64_t t);
 int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance);
@@ -357,6 +360,11 @@ void network_come_to(run *r, int32_t index, int64_t t);
 bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
 void network_close(run *r, int32_t index, int64_t end, int64_t reached);
 bool network_outlasts(run *r, int32_t index, const attempt *x);
+
+/* ---- watch.c: what is kept beside what becomes of attempts */
+void begin_watch(home *h);
+void watch(run *r, int64_t t);
+void end_watch(run *r, int64_t end);
 
 /* ---- windows.c: attempts that a chain of windows judges */
 bool is_chained(const run *r, int32_t index);

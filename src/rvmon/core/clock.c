@@ -93,6 +93,9 @@ void look_at_all(run *r)
 void have_judged(run *r, int64_t t)
 {
     int32_t i;
+    if (r->part->is_watched) {
+        watch(r, t);
+    }
     for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {
         const int32_t index = r->touched[i];
         if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && runs_on(r, index)) {

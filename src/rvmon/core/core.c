@@ -26,6 +26,7 @@ static bool prepare_part(rv_monitor *m, part *p)
             p->perishable[p->signals[i].perishable] = i;
         }
     }
+    p->is_watched = p->plan->truths >= 0;
     for (i = 0; i < p->plan->judges.count; i++) {
         p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
         p->restarts = p->restarts || (p->judges[i].again >= 0);

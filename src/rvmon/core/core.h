@@ -177,6 +177,19 @@ int rv_verdict(const rv_monitor *m, int32_t requirement);
 /* Whether memory was short in this run. */
 bool rv_spoilt(const rv_monitor *m);
 
+/* Where the formulas of a plan are known that it keeps the truths of (`truths` in plan.md): ranges of
+ * positions at which an operator has a value, the unknown taken for the worse or for the better; ticks,
+ * ticks divided by the gap, or, where only samples are positions, their numbers from 0. They go as far
+ * as the last change, and to the end once the run is finished. Valid until the next call; -1: the plan
+ * keeps none, or has no such operator. */
+typedef struct {
+    int64_t first;
+    int64_t last;
+} rv_range;
+
+int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, bool value,
+                  const rv_range **found);
+
 /* What a plan declares. */
 typedef struct {
     int32_t signals;

@@ -117,6 +117,7 @@ static void clear_home(home *h)
     one->touched_now = false;
     one->doubted = p->each != 0;
     one->stays_busy = false;
+    begin_watch(h);
     clear_run(one);
     for (i = 0; i < p->captured; i++) {
         (void)memset(&one->captured[i], 0, sizeof one->captured[i]);
@@ -347,6 +348,7 @@ void home_close(home *h, int64_t end, int64_t reached)
         pass_all(h, end);
     } else {
         through(h->root, end, false);
+        end_watch(h->root, end);
     }
     for (one = h->root; one != NULL; one = following(h, one)) {
         for (i = 0; i < h->part->plan->judges.count; i++) {

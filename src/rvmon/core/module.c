@@ -5,6 +5,7 @@
 #include "module_outages.h"
 #include "module_results.h"
 #include "module_rows.h"
+#include "module_watch.h"
 
 #ifndef RVMON_SOURCE_HASH
 #define RVMON_SOURCE_HASH "" /* compiled by hand */
@@ -226,6 +227,7 @@ METHOD(counts)
 METHOD(times)
 METHOD(next_due)
 METHOD(rows)
+METHOD(truths)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
 static PyObject *monitor_hold(PyObject *self, PyObject *held)
@@ -297,6 +299,7 @@ static PyMethodDef monitor_methods[] = {
     {"counts", monitor_counts, METH_NOARGS, NULL},
     {"times", monitor_times, METH_NOARGS, NULL},
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
+    {"truths", monitor_truths, METH_O, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},
     {NULL, NULL, 0, NULL},

@@ -6,12 +6,14 @@ from collections.abc import Callable, Iterable, Sequence
 
 from rvmon.core.atoms import Atom, Atoms
 from rvmon.core.automata import Automata
+from rvmon.core.forms import add_form
 from rvmon.core.judges import Judges
 from rvmon.core.nodes import Nodes
 from rvmon.core.packed import Numbering
 from rvmon.core.programs import Names, Programs
 from rvmon.core.sections import Listed, Section, Sections
 from rvmon.core.unit import SHARED, Unit
+from rvmon.dataflow.network_plan import plan_of_all
 from rvmon.plan.instances import keys_of
 from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.plan.plan import Plan, Uses
@@ -63,6 +65,11 @@ class Part:
             return firsts[section], sections.count(section) - firsts[section]
 
         judges = Judges(sections, automata, plan, numbers)
+        truths = -1
+        if plan.truths:
+            truths = added(Section.FORMS)[1]
+            network = plan_of_all(plan.truths, plan.gap)
+            add_form(sections, network, None, plan.graph.index)
         self._add_nodes(judges)
         self._add_atoms()
         perishable = self._add_signals()
@@ -98,6 +105,7 @@ class Part:
             *sections.listed(judges.networked),
             *own,
             *sections.listed(dead),
+            truths,
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:

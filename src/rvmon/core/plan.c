@@ -188,6 +188,7 @@ static bool check_part(const plan *p, const part_plan *x)
            && lists(p, x->varying_atoms, 0, x->atoms.count) && lists(p, x->varying_nodes, 0, nodes)
            && lists(p, x->varying, 0, nodes) && lists(p, x->lapsed, 0, nodes)
            && ((x->captured == 0) || (is_within(judges, 1, 31) && (x->requirements == 1)))
+           && is_within(x->truths, -1, (x->captured == 0) ? x->forms.count : 0)
            && ((x->each == 0)
                || (is_within(x->each_event, 0, x->events.count)
                    && is_within(x->each_field, 0, p->events[x->events.first + x->each_event].fields)));

@@ -103,6 +103,7 @@ typedef struct {
     list varying;              /* all nodes above them */
     list lapsed;               /* nodes LAPSED */
     list dead_timers;          /* nodes with timers that are not needed once the part is settled */
+    int32_t truths;            /* the form of whose operators it is kept where they are known; -1 */
 } part_plan;
 
 /* Lists for the two phases: until all is born and determined, and from then on. */

@@ -68,6 +68,7 @@ typedef struct {
     int32_t networked_count;
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
     bool restarts;             /* whether some failure may be followed by another attempt */
+    bool is_watched;           /* whether somebody asks for more than what becomes of attempts */
 } part;
 
 typedef struct {

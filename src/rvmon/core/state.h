@@ -308,6 +308,8 @@ struct home {
     int32_t newest;
     int32_t over_count;
     uint32_t last_rank;
+    networks *truths;          /* of the form of which it is kept where it is known; NULL till then */
+    bool is_blind;             /* whether positions were missed of that */
 };
 
 struct rv_monitor {

@@ -109,6 +109,15 @@ class Monitor:
         The last number is 1 if its trigger was ever true or false, and nothing came too late.
         """
 
+    def truths(self, operator: int, /) -> tuple[bytes, bytes]:
+        """Where an operator of the plan's truths is surely true, and where surely false.
+
+        Ranges of positions, see `rv_truths`: first and last, int64 each.
+
+        Raises:
+            ValueError: the plan keeps no truths of that.
+        """
+
     def times(self) -> tuple[int | None, int | None, int | None]:
         """The instants of the first and the last sample, and that which time has come to."""
 

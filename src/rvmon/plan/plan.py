@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.alphabet import Alphabet
@@ -11,6 +11,7 @@ from rvmon.formula.core import Core
 from rvmon.formula.state import Leaf, State, Unborn
 from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.trace.sample import Scalar
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,6 +112,8 @@ class Plan:
         uses: by name, of those that are read, here or by what begins with what is remembered here.
         units: of the requirements with captured values, one each.
         asked: all rules, those of the units among them, in the order of the file.
+        truths: formulas of which it is kept where they are true.
+        constants: captured values that are known while the plan is made; `None` is unknown.
     """
 
     spec: CheckedSpec
@@ -122,6 +125,8 @@ class Plan:
     uses: Mapping[str, Uses]
     units: tuple[Plan, ...] = ()
     asked: tuple[PlannedRule, ...] = ()
+    truths: tuple[Core, ...] = ()
+    constants: Mapping[str, Scalar] = field(default_factory=dict)
 
     @property
     def judges(self) -> Sequence[tuple[int, PlannedRule]]:

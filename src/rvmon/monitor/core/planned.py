@@ -143,7 +143,7 @@ def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) ->
         found = None if place is None else _checked(spec, ids, place.read())
         if found is None:
             made = _made(compiled, ids)
-            found = _planned(spec, ids, made)
+            found = planned_as(spec, ids, made)
             if place is not None:
                 place.write(made)
         compiled.forms["core", ids] = found
@@ -164,7 +164,7 @@ def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> Pl
     """What was kept, made ready; `None` if that is nothing, or no plan of these requirements."""
     if before is None:
         return None
-    found = _planned(spec, ids, before)
+    found = planned_as(spec, ids, before)
     try:
         found.monitor(frozenset())
     except ValueError:
@@ -172,7 +172,14 @@ def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> Pl
     return found
 
 
-def _planned(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore:
+def planned_as(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore:
+    """A packed plan made ready.
+
+    Args:
+        spec: declares the names.
+        ids: of its requirements.
+        made: the plan.
+    """
     plan = packed(spec, ids, made.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:

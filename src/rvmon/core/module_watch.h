@@ -1,0 +1,45 @@
+/* What module.c tells of what is kept beside attempts. Included there alone. */
+#ifndef RVMON_MODULE_WATCH_H
+#define RVMON_MODULE_WATCH_H
+
+#include "module_attempts.h"
+
+/* Where an operator has a value, as bytes. */
+static PyObject *known_of(const monitor *c, int32_t number, bool better, bool value)
+{
+    const rv_range *found;
+    const int64_t count = rv_truths(c->m, number, better, value, &found);
+    if (count < 0) {
+        PyErr_SetString(PyExc_ValueError, "the plan keeps no truths of that");
+        return NULL;
+    }
+    return PyBytes_FromStringAndSize((const char *)found,
+                                     (Py_ssize_t)count * (Py_ssize_t)sizeof *found);
+}
+
+/* truths(operator): where it is surely true, and where it is surely false. */
+static PyObject *truths_of(monitor *c, PyObject *number)
+{
+    const long long place = PyLong_AsLongLong(number);
+    PyObject *is;
+    PyObject *is_not;
+    if ((place == -1) && (PyErr_Occurred() != NULL)) {
+        return NULL;
+    }
+    if (rv_spoilt(c->m)) {
+        return PyErr_NoMemory();
+    }
+    if ((place < 0) || (place > INT32_MAX)) {
+        PyErr_SetString(PyExc_ValueError, "the plan keeps no truths of that");
+        return NULL;
+    }
+    is = known_of(c, (int32_t)place, false, true);
+    is_not = (is == NULL) ? NULL : known_of(c, (int32_t)place, true, false);
+    if (is_not == NULL) {
+        Py_XDECREF(is);
+        return NULL;
+    }
+    return Py_BuildValue("NN", is, is_not);
+}
+
+#endif
