@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-import rvmon.core._core as native
+from rvmon import native
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.monitor.core.recorded import NUMBER, RECORD
 from rvmon.readers.coalesce import Conflicts, coalesce, updates_in

@@ -22,7 +22,7 @@ static bool all_with_constants(const run *r, const signal_plan *s)
 
 /* Which updates of a signal can change something in a run; sleeping runs of a part hold what the first
  * one does. */
-static int32_t signal_matters(const home *h, const watch *w, int32_t local)
+static int32_t signal_matters(const home *h, const column_watch *w, int32_t local)
 {
     const run *r = h->root;
     const signal_plan *s = &h->part->signals[local];
@@ -39,7 +39,7 @@ static int32_t signal_matters(const home *h, const watch *w, int32_t local)
     return BY_CONSTANTS;
 }
 
-static void learn_how(const batch *s, watch *w)
+static void learn_how(const batch *s, column_watch *w)
 {
     int32_t i;
     w->how = w->is_event ? OCCURRENCES : BY_CONSTANTS;
@@ -71,7 +71,7 @@ static bool are_alike(const rv_number *a, const rv_number *b)
 }
 
 /* Learn what compares as the last value does: see `learn_span`. */
-static void learn_between(const batch *s, watch *w)
+static void learn_between(const batch *s, column_watch *w)
 {
     int32_t i;
     int32_t k;
@@ -93,7 +93,7 @@ static void learn_between(const batch *s, watch *w)
     }
 }
 
-static bool compares_alike(const watch *w, const rv_number *value)
+static bool compares_alike(const column_watch *w, const rv_number *value)
 {
     const double x = value->as.real;
     if ((value->kind != RV_REAL) || (w->last.kind != RV_REAL)) {
@@ -134,7 +134,7 @@ static inline bool bytes_are(const uint8_t *v, int32_t count, uint8_t last)
 }
 
 /* Whether a column says the same in all these rows, seen at a glance. */
-static bool stays(const watch *w, int64_t first, int32_t count)
+static bool stays(const column_watch *w, int64_t first, int32_t count)
 {
     const rv_column *c = w->column;
     const bool all = count == TOGETHER;
@@ -188,7 +188,7 @@ static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, 
 }
 
 /* Note at which of the rows that say something a signal is told what may change something. */
-static void look_for_news(const batch *s, watch *w, int64_t first)
+static void look_for_news(const batch *s, column_watch *w, int64_t first)
 {
     uint64_t left = w->said;
     while (left != 0U) {
@@ -214,7 +214,7 @@ static void look_for_news(const batch *s, watch *w, int64_t first)
 }
 
 /* Whether nothing awaits that a signal goes stale. */
-static bool is_ageless(const batch *s, const watch *w)
+static bool is_ageless(const batch *s, const column_watch *w)
 {
     bool found = false;
     int32_t i;
@@ -228,7 +228,7 @@ static bool is_ageless(const batch *s, const watch *w)
 }
 
 /* Look through the rows of a column; those at which something may change. */
-static uint64_t look_at_column(const batch *s, watch *w, int64_t first, int32_t count)
+static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, int32_t count)
 {
     const rv_column *c = w->column;
     uint64_t moved;
@@ -327,7 +327,7 @@ void look_ahead(batch *s, int64_t row)
     }
     s->moved = odd_rows(s, row, (int32_t)s->together);
     for (i = 0; i < s->columns; i++) {
-        watch *w = &s->watches[i];
+        column_watch *w = &s->watches[i];
         w->said = 0;
         w->told = 0;
         if (w->how != NO_UPDATES) {

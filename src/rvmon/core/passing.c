@@ -15,13 +15,13 @@ static int64_t alarm_of_all(const rv_monitor *m)
 }
 
 /* The last row before `row` in which a column says something, from `from` on; -1: none. */
-static int64_t last_said(const batch *s, const watch *w, int64_t from, int64_t row)
+static int64_t last_said(const batch *s, const column_watch *w, int64_t from, int64_t row)
 {
     const uint64_t said = w->said & bits_before(row - s->first) & ~bits_before(from - s->first);
     return (said != 0U) ? s->first + highest_bit(said) : -1;
 }
 
-void hold_in_all(const batch *s, const watch *w, int64_t row)
+void hold_in_all(const batch *s, const column_watch *w, int64_t row)
 {
     const rv_number value = number_in(w->column, row);
     int32_t i;
@@ -37,7 +37,7 @@ static void refresh(batch *s, int64_t row)
     int32_t i;
     int32_t k;
     for (i = 0; s->perishes && (i < s->columns); i++) {
-        const watch *w = &s->watches[i];
+        const column_watch *w = &s->watches[i];
         const int64_t last = w->perishable ? last_said(s, w, s->fresh, row) : -1;
         for (k = 0; (last >= 0) && (k < w->reader_count); k++) {
             set_stale(root_of(s, w, k), w->readers[k].local, s->times[last]);
@@ -64,7 +64,7 @@ static void turn_from(batch *s, int64_t row)
     if (s->together > 0) {
         refresh(s, row);
         for (i = 0; i < s->columns; i++) {
-            const watch *w = &s->watches[i];
+            const column_watch *w = &s->watches[i];
             const int64_t last = last_said(s, w, s->first, row);
             if ((last >= 0) && (w->how == BY_CONSTANTS) && !w->perishable) {
                 hold_in_all(s, w, last);
@@ -160,7 +160,7 @@ void note_judged(batch *s, int64_t end)
     int32_t i;
     s->fresh = end;
     for (i = 0; s->perishes && (i < s->columns); i++) {
-        const watch *w = &s->watches[i];
+        const column_watch *w = &s->watches[i];
         stale = stale || (w->perishable
                           && (root_of(s, w, 0)->value[w->readers[0].local].kind == RV_UNKNOWN));
     }
@@ -175,7 +175,7 @@ void note_judged(batch *s, int64_t end)
 
 /* ---- begin and end */
 
-static void begin_watch(const batch *s, watch *w, const rv_column *c)
+static void begin_column(const batch *s, column_watch *w, const rv_column *c)
 {
     const rv_monitor *m = s->m;
     int32_t first;
@@ -197,7 +197,7 @@ bool begin_rows(batch *s, const rv_column *columns)
     int32_t i;
     s->watches = arena_take(&s->m->memory, (size_t)(s->columns + 1) * sizeof *s->watches);
     for (i = 0; (s->watches != NULL) && (i < s->columns); i++) {
-        begin_watch(s, &s->watches[i], &columns[i]);
+        begin_column(s, &s->watches[i], &columns[i]);
     }
     return s->watches != NULL;
 }

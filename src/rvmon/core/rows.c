@@ -25,7 +25,7 @@ rv_number number_in(const rv_column *c, int64_t row)
 }
 
 /* Whether an event brings a payload in a row. */
-static bool has_payload(const watch *w, int64_t row)
+static bool has_payload(const column_watch *w, int64_t row)
 {
     int32_t i;
     for (i = 0; i < w->fields; i++) {
@@ -48,7 +48,7 @@ static rv_update *further(laid *made, int32_t name, int32_t says)
 }
 
 /* Lay out what a signal is told at one instant: the last value in these rows. */
-static void lay_signal(laid *made, const watch *w, int64_t row, int64_t end)
+static void lay_signal(laid *made, const column_watch *w, int64_t row, int64_t end)
 {
     int64_t i;
     for (i = end - 1; i >= row; i--) {
@@ -63,7 +63,7 @@ static void lay_signal(laid *made, const watch *w, int64_t row, int64_t end)
     }
 }
 
-static void lay_payload(laid *made, const watch *w, int64_t row)
+static void lay_payload(laid *made, const column_watch *w, int64_t row)
 {
     rv_number *own = &made->fields[made->field_count];
     int32_t i;
@@ -76,7 +76,7 @@ static void lay_payload(laid *made, const watch *w, int64_t row)
 
 /* Lay out what is said of an event at one instant: all payloads in these rows; if there is none, the
  * surest of what they say. */
-static void lay_event(laid *made, const watch *w, int64_t row, int64_t end)
+static void lay_event(laid *made, const column_watch *w, int64_t row, int64_t end)
 {
     int32_t most = -1;
     bool carried = false;
@@ -151,7 +151,7 @@ static int judge_instant(batch *s, int64_t row, int64_t end)
         return RV_NO_MEMORY;
     }
     for (i = 0; i < s->columns; i++) {
-        const watch *w = &s->watches[i];
+        const column_watch *w = &s->watches[i];
         if (known && !bit_at(w->told, k)) {
             if ((w->how == BY_CONSTANTS) && bit_at(w->said, k)) {
                 hold_in_all(s, w, row);

@@ -34,7 +34,7 @@ typedef struct {
     double high;
     uint64_t said;             /* rows at which it says something */
     uint64_t told;             /* those of which the core has to hear */
-} watch;
+} column_watch;
 
 /* A sample that is laid out. */
 typedef struct {
@@ -49,7 +49,7 @@ typedef struct {
     rv_monitor *m;
     const int64_t *times;
     int64_t count;
-    watch *watches;
+    column_watch *watches;
     int32_t columns;
     laid laid;
     int64_t first;             /* of those that are looked at together */
@@ -60,12 +60,12 @@ typedef struct {
     bool perishes;             /* whether a column is of a signal that goes stale */
 } batch;
 
-static inline home *home_of(const batch *s, const watch *w, int32_t reader)
+static inline home *home_of(const batch *s, const column_watch *w, int32_t reader)
 {
     return &s->m->homes[w->readers[reader].part];
 }
 
-static inline run *root_of(const batch *s, const watch *w, int32_t reader)
+static inline run *root_of(const batch *s, const column_watch *w, int32_t reader)
 {
     return home_of(s, w, reader)->root;
 }
@@ -93,6 +93,6 @@ void end_rows(batch *s, int64_t row);
 int64_t pass_over(batch *s, int64_t row);
 void make_ready(batch *s, int64_t row, int64_t end);
 void note_judged(batch *s, int64_t end);
-void hold_in_all(const batch *s, const watch *w, int64_t row);
+void hold_in_all(const batch *s, const column_watch *w, int64_t row);
 
 #endif
