@@ -104,6 +104,9 @@ class Monitor:
         The last number is 1 if its trigger was ever true or false, and nothing came too late.
         """
 
+    def stale(self) -> list[tuple[int, int, int]]:
+        """Of each signal that went stale its number, how often it did, and when first."""
+
     def times(self) -> tuple[int | None, int | None, int | None]:
         """The instants of the first and the last sample, and that which time has come to."""
 
