@@ -152,7 +152,7 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
 }
 
 void forget(run *r);
-void go_stale(run *r, int32_t perishable);
+void go_stale(run *r, int64_t t, int32_t perishable);
 void lack(run *r, bool event, int32_t local);
 
 /* ---- outages.c: names that may have said anything */

@@ -13,7 +13,7 @@ static void ring(run *r, int64_t t)
         if (id < nodes) {
             soil(r, r->part->timed[id]);
         } else {
-            go_stale(r, id - nodes);
+            go_stale(r, t, id - nodes);
         }
     }
 }

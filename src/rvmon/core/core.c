@@ -51,8 +51,9 @@ static bool prepare(rv_monitor *m)
     m->absent = arena_take(&m->memory, (size_t)names + 1);
     m->losing = arena_take(&m->memory, (size_t)names + 1);
     m->late = arena_take(&m->memory, (size_t)p->header->requirements + 1);
+    m->stale = arena_take(&m->memory, (size_t)(p->header->signals + 1) * sizeof *m->stale);
     if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL) || (m->losing == NULL)
-        || (m->late == NULL)) {
+        || (m->late == NULL) || (m->stale == NULL)) {
         return false;
     }
     for (i = 0; i < p->part_count; i++) {
@@ -94,6 +95,7 @@ static bool begin_run(rv_monitor *m)
     m->dense_end = RV_NO_TIME;
     (void)memset(m->losing, 0, (size_t)names + 1);
     (void)memset(m->late, 0, (size_t)p->header->requirements + 1);
+    (void)memset(m->stale, 0, (size_t)(p->header->signals + 1) * sizeof *m->stale);
     m->finished = false;
     m->spoilt = false;
     for (i = 0; i < p->part_count; i++) {

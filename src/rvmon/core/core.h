@@ -144,6 +144,14 @@ typedef struct {
 
 rv_times rv_times_of(const rv_monitor *m);
 
+/* How often a signal went stale, and when first. */
+typedef struct {
+    int64_t count;
+    int64_t first;
+} rv_staleness;
+
+rv_staleness rv_stale(const rv_monitor *m, int32_t signal);
+
 /* Records since the last `rv_forget_records`, of each call in the order of reports: by decision, then
  * requirement, then number. Valid until the next call. */
 int64_t rv_records(const rv_monitor *m, const rv_record **records);

@@ -224,6 +224,7 @@ METHOD(flush)
 METHOD(open)
 METHOD(records)
 METHOD(counts)
+METHOD(stale)
 METHOD(times)
 METHOD(next_due)
 METHOD(rows)
@@ -297,6 +298,7 @@ static PyMethodDef monitor_methods[] = {
     {"open", monitor_open, METH_NOARGS, NULL},
     {"records", monitor_records, METH_NOARGS, NULL},
     {"counts", monitor_counts, METH_NOARGS, NULL},
+    {"stale", monitor_stale, METH_NOARGS, NULL},
     {"times", monitor_times, METH_NOARGS, NULL},
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
     {"truths", monitor_truths, METH_O, NULL},

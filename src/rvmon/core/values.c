@@ -235,9 +235,22 @@ void take_news(run *r, int64_t t, const incoming *in)
     }
 }
 
-void go_stale(run *r, int32_t perishable)
+/* Count that a signal went stale, once for all that read it. */
+static void count_stale(const run *r, int64_t t, int32_t name)
+{
+    const rv_monitor *m = r->home->monitor;
+    const subscription *first = &m->plan.subscriptions[m->plan.subscription_first[name]];
+    if ((r == r->home->root) && (r->home == &m->homes[first->part])) {
+        rv_staleness *found = &m->stale[name];
+        found->first = (found->count == 0) ? t : found->first;
+        found->count++;
+    }
+}
+
+void go_stale(run *r, int64_t t, int32_t perishable)
 {
     const int32_t local = r->part->perishable[perishable];
+    count_stale(r, t, r->part->signals[local].name);
     if (r->at.lost_count > 0) {
         stay_unknown(r, local);
     }

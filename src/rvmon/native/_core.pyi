@@ -118,6 +118,9 @@ class Monitor:
             ValueError: the plan keeps no truths of that.
         """
 
+    def stale(self) -> list[tuple[int, int, int]]:
+        """Of each signal that went stale its number, how often it did, and when first."""
+
     def times(self) -> tuple[int | None, int | None, int | None]:
         """The instants of the first and the last sample, and that which time has come to."""
 

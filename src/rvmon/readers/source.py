@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import chain, takewhile
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.trace.sample import Recording, Sample
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
 
 Fillable = Callable[[], frozenset[str]]
 """Gives the names of which "no update" may be read as what was there before."""
@@ -76,6 +79,26 @@ class Source:
         if ordered:
             return takewhile(lambda sample: sample.t <= until, samples)
         return (sample for sample in samples if sample.t <= until)
+
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The recording in order: rows as columns where it has such, else samples."""
+        read = getattr(self.recording, "pieces", None)
+        if read is None or self.read is not iter:
+            yield from self.samples(ordered=True)
+            return
+        until = self.until if self.is_cut else None
+        for piece in read():
+            if until is None:
+                yield piece
+            elif isinstance(piece, Sample):
+                if piece.t > until:
+                    return
+                yield piece
+            else:
+                own = piece.up_to(until)
+                yield own
+                if len(own.times) < len(piece.times):
+                    return
 
     def columns(self, fillable: Fillable) -> Columns:
         """The columns; the first block is read.
