@@ -173,13 +173,17 @@ static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
     return (what == 1) ? rv_found(m, t, lost, count) : rv_late(m, t - 3, lost, count - 1);
 }
 
-/* What is told of formulas that truths are kept of. */
-static uint64_t noted_truths(const rv_monitor *m, uint64_t sum)
+/* What is told beside attempts. */
+static uint64_t noted_watch(const rv_monitor *m, uint64_t sum)
 {
     const rv_range *found;
     int32_t number;
     int32_t which;
     int64_t i;
+    const rv_hit *hits = rv_hits(m, &number);
+    for (i = 0; i < number; i++) {
+        sum = mixed(mixed(sum, hits[i].count), hits[i].first);
+    }
     for (number = 0; rv_truths(m, number, false, false, &found) >= 0; number++) {
         for (which = 0; which < 4; which++) {
             const int64_t count = rv_truths(m, number, which % 2 == 1, which >= 2, &found);
@@ -234,7 +238,7 @@ static uint64_t one_run(rv_monitor *m, script s)
     }
     sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
     sum = noted_records(m, sum, true);
-    sum = noted_truths(m, sum);
+    sum = noted_watch(m, sum);
     for (i = 0; (i < sizes.requirements) && (i < NAMES_MOST); i++) {
         const int verdict = rv_verdict(m, i);
         sum = mixed(mixed(sum, verdict), rv_count(m, i).failed);

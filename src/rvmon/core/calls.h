@@ -362,9 +362,14 @@ void network_close(run *r, int32_t index, int64_t end, int64_t reached);
 bool network_outlasts(run *r, int32_t index, const attempt *x);
 
 /* ---- watch.c: what is kept beside what becomes of attempts */
-void begin_watch(home *h);
+bool begin_watch(home *h);
 void watch(run *r, int64_t t);
 void end_watch(run *r, int64_t end);
+
+/* ---- cover.c: what runs hit of coverpoints and crosses */
+bool begin_cover(home *h);
+void call_watch(run *r, int32_t number);
+void cover(run *r, int64_t t);
 
 /* ---- windows.c: attempts that a chain of windows judges */
 bool is_chained(const run *r, int32_t index);

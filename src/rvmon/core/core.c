@@ -26,7 +26,7 @@ static bool prepare_part(rv_monitor *m, part *p)
             p->perishable[p->signals[i].perishable] = i;
         }
     }
-    p->is_watched = p->plan->truths >= 0;
+    p->is_watched = (p->plan->truths >= 0) || (p->plan->watches.count > 0);
     for (i = 0; i < p->plan->judges.count; i++) {
         p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
         p->restarts = p->restarts || (p->judges[i].again >= 0);
@@ -65,6 +65,8 @@ static bool prepare(rv_monitor *m)
         one->nodes = &p->nodes[one->plan->nodes.first];
         one->judges = &p->judges[one->plan->judges.first];
         one->forms = &p->forms[one->plan->forms.first];
+        one->watches = &p->watches[one->plan->watches.first];
+        one->groups = &p->groups[one->plan->groups.first];
         m->homes[i].monitor = m;
         m->homes[i].part = one;
         m->homes[i].alarms.next = NEVER;

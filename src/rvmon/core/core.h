@@ -198,6 +198,15 @@ typedef struct {
 int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, bool value,
                   const rv_range **found);
 
+/* How often each item of the groups of a plan was hit in the run, and when first (0 of none), in their
+ * order; NULL and 0: it has none. */
+typedef struct {
+    int64_t count;
+    int64_t first;
+} rv_hit;
+
+const rv_hit *rv_hits(const rv_monitor *m, int32_t *items);
+
 /* What a plan declares. */
 typedef struct {
     int32_t signals;

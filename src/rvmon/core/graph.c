@@ -112,7 +112,12 @@ static void store(run *r, int32_t place, uint8_t value)
     r->truth[place] = value;
     for (i = 0; i < n->links.count; i++) {
         const link_plan *l = &PLAN(r)->links[n->links.first + i];
-        judge *j = &r->judges[l->judge];
+        judge *j;
+        if (l->kind == LINK_WATCH) {
+            call_watch(r, l->judge);
+            continue;
+        }
+        j = &r->judges[l->judge];
         if ((l->kind & LINK_LETTER) != 0) {
             j->worse += l->worse[value] - l->worse[was];
             j->better += l->better[value] - l->better[was];

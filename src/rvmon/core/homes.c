@@ -117,7 +117,6 @@ static void clear_home(home *h)
     one->touched_now = false;
     one->doubted = p->each != 0;
     one->stays_busy = false;
-    begin_watch(h);
     clear_run(one);
     for (i = 0; i < p->captured; i++) {
         (void)memset(&one->captured[i], 0, sizeof one->captured[i]);
@@ -140,7 +139,7 @@ bool home_begin(home *h)
         }
     }
     clear_home(h);
-    return (p->each == 0) || begin_keys(h);
+    return begin_watch(h) && ((p->each == 0) || begin_keys(h));
 }
 
 /* Make room for so many open attempts, each with a run if it has values of its own. */

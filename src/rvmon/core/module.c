@@ -229,6 +229,7 @@ METHOD(times)
 METHOD(next_due)
 METHOD(rows)
 METHOD(truths)
+METHOD(hits)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
 static PyObject *monitor_hold(PyObject *self, PyObject *held)
@@ -302,6 +303,7 @@ static PyMethodDef monitor_methods[] = {
     {"times", monitor_times, METH_NOARGS, NULL},
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
     {"truths", monitor_truths, METH_O, NULL},
+    {"hits", monitor_hits, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},
     {NULL, NULL, 0, NULL},

@@ -42,4 +42,15 @@ static PyObject *truths_of(monitor *c, PyObject *number)
     return Py_BuildValue("NN", is, is_not);
 }
 
+/* hits(): of each item how often it was hit, and when first, as bytes. */
+static PyObject *hits_of(monitor *c, PyObject *unused)
+{
+    int32_t items;
+    const rv_hit *hits = rv_hits(c->m, &items);
+    (void)unused;
+    return rv_spoilt(c->m) ? PyErr_NoMemory()
+                           : PyBytes_FromStringAndSize((const char *)hits,
+                                                       (Py_ssize_t)items * (Py_ssize_t)sizeof *hits);
+}
+
 #endif

@@ -209,6 +209,7 @@ def _needed(plan: Plan) -> frozenset[int]:
     settled = _settled(plan)
     states = [state for _, rule in plan.judges for state in _asked(rule)]
     states += (one.proposition for core in plan.truths for one in literals(core))
+    states += (watch.state for watch in plan.watches)
     stack = [graph.index[state] for state in states if settled[graph.index[state]] is None]
     needed: set[int] = set()
     while stack:

@@ -20,7 +20,7 @@ def pack(plan: Plan, *, next_law: bool = False) -> Packed:
     Raises:
         RvmonError: there is no requirement, or an expression is beyond the core.
     """
-    if not (plan.asked or plan.truths):
+    if not (plan.asked or plan.truths or plan.watches):
         raise RvmonError("the specification has no requirements: there is nothing to compile")
     sections = Sections()
     automata = Automata(sections)

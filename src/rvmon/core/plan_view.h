@@ -61,6 +61,8 @@ typedef struct {
     const node_plan *nodes;
     const judge_plan *judges;
     const form_plan *forms;
+    const watch_plan *watches;
+    const group_plan *groups;
     machine *machines;         /* by judge that has an automaton */
     int32_t *timed;            /* by timer, the node */
     int32_t *perishable;       /* by number among these, the signal */
@@ -86,6 +88,8 @@ typedef struct {
     const automaton_plan *automata;
     const form_plan *forms;
     const operator_plan *operators;
+    const watch_plan *watches;
+    const group_plan *groups;
     const number_plan *numbers;
     const int32_t *code;
     const int32_t *lists;

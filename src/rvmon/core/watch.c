@@ -10,13 +10,14 @@ static form kept_form(const run *r)
     return form_at(r, r->part->plan->truths);
 }
 
-/* Forget what was kept of the run before. */
-void begin_watch(home *h)
+/* Forget what was kept of the run before; false: memory is short. */
+bool begin_watch(home *h)
 {
     if (h->truths != NULL) {
         h->truths->begun = false;
     }
     h->is_blind = false;
+    return (h->part->plan->watches.count == 0) || begin_cover(h);
 }
 
 /* How many readings there are at present. */
@@ -92,11 +93,18 @@ static void keep_truths(run *r, int64_t t)
  * counts. */
 void watch(run *r, int64_t t)
 {
-    if (r->at.dense) { /* nobody knows which positions there are */
-        r->home->is_blind = true;
-    } else {
+    r->stays_busy = false;
+    if (r->part->plan->watches.count > 0) {
+        cover(r, t);
+        r->stays_busy = r->home->covering->called_count > 0;
+    }
+    if ((r->part->plan->truths >= 0) && r->at.dense) {
+        r->home->is_blind = true; /* nobody knows which positions there are */
+    } else if (r->part->plan->truths >= 0) {
         keep_truths(r, t);
-        r->stays_busy = GAP(r) == 0;
+        r->stays_busy = r->stays_busy || (GAP(r) == 0);
+    } else {
+        /* None are kept. */
     }
 }
 

@@ -6,19 +6,20 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
+from rvmon.coverage.bins import Bins
 from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import Model, model_of
 from rvmon.coverage.requirements import RequirementRun, WatchedRequirements
-from rvmon.coverage.watched import Watched
-from rvmon.coverage.watcher import Bins, WatchingUnit
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.core.monitor import CoreMonitor
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
-from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report, report_of
 
 
 class SpecCoverage:
@@ -119,13 +120,14 @@ class CoverageMonitor:
         sources: frozenset[str] | None,
     ) -> None:
         self._watched = requirements
-        self._bins = _BinRun(bins, settle, sources)
-        self._runs: list[Monitor] = [self._bins]
+        self._bins = _BinRun(bins, settle, sources) if bins.groups else None
+        self._runs: list[Monitor] = []
         self._requirements: RequirementRun | None = None
         if requirements is not None:
             self._requirements, others = requirements.runs(settle, sources)
             # What refuses most comes first: a sample that one refuses none has taken.
-            self._runs = [self._requirements, others, self._bins]
+            self._runs = [self._requirements, others]
+        self._runs += [] if self._bins is None else [self._bins]
 
     def step(self, t: float, values: Mapping[str, Any]) -> None:
         """Take one sample (seconds); see `step_ns`."""
@@ -154,7 +156,7 @@ class CoverageMonitor:
     @property
     def hits(self) -> Hits:
         """The bins and combinations hit so far; what requirements show is known at the end."""
-        return self._bins.hits
+        return {} if self._bins is None else self._bins.hits
 
     def finish(self, t: float | None = None) -> Hits:
         """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
@@ -163,29 +165,26 @@ class CoverageMonitor:
     def finish_ns(self, t_ns: int | None = None) -> Hits:
         """End the run, at `t_ns` if that is later than all so far; returns all that it hit."""
         reports = [run.finish_ns(t_ns) for run in self._runs]
-        hits = dict(self._bins.hits)
+        hits = dict(self.hits)
         if self._requirements is not None and self._watched is not None:
             found = self._watched.hits(self._requirements, reports)
             hits |= {name: items for name, items in found if items}
         return hits
 
 
-class _BinRun(GeneratedMonitor):
+class _BinRun(CoreMonitor):
     """Takes samples as every monitor does, and judges nothing."""
 
     def __init__(self, bins: Bins, settle: str, sources: frozenset[str] | None) -> None:
         self._bins = bins
-        self._groups: Sequence[tuple[int, Watched]] = ()
-        forms, compiled = bins.forms(sources), CompiledSpec(bins.spec)
-        super().__init__(forms, compiled, (), "auto", settle, sources, None)
-
-    def _begin(self) -> None:
-        super()._begin()
-        self._groups = [*self._bins.watched()]
-        if isinstance(self._unit, WatchingUnit):
-            self._unit.groups = self._groups
+        super().__init__(bins.planned, CompiledSpec(bins.spec), settle, sources)
 
     @property
     def hits(self) -> Hits:
         """What was hit so far."""
-        return {one.name: dict(one.hits) for _, one in self._groups if one.hits}
+        return self._bins.hits(self._core.hits())
+
+    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        end = self._core.finish(t_ns)
+        self._note_times()
+        return report_of((), (), end=end), ()

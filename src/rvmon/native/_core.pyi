@@ -121,6 +121,9 @@ class Monitor:
     def stale(self) -> list[tuple[int, int, int]]:
         """Of each signal that went stale its number, how often it did, and when first."""
 
+    def hits(self) -> bytes:
+        """Of each item of the plan's groups how often it was hit, and when first: int64 each."""
+
     def times(self) -> tuple[int | None, int | None, int | None]:
         """The instants of the first and the last sample, and that which time has come to."""
 

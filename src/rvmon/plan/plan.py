@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
+from typing import NamedTuple
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.alphabet import Alphabet
@@ -98,6 +100,36 @@ class Uses:
     birth: bool = False
 
 
+class Watch(NamedTuple):
+    """A formula that is watched.
+
+    Attributes:
+        state: the formula.
+        is_pulse: whether it is over at the next position.
+    """
+
+    state: State
+    is_pulse: bool
+
+
+@dataclass(frozen=True, slots=True)
+class WatchGroup:
+    """A coverpoint, or the cross of several: an item of it is a watch of each axis.
+
+    Attributes:
+        axes: the numbers of watches; items are counted through from the last axis on.
+        occasion: the number of what says where it is looked at; `None`: everywhere.
+    """
+
+    axes: tuple[range, ...]
+    occasion: int | None
+
+    @property
+    def looks_where(self) -> Iterable[int]:
+        """The watches that have it look where they change."""
+        return chain.from_iterable(self.axes) if self.occasion is None else (self.occasion,)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """Some requirements of a specification, to be generated as one unit.
@@ -113,6 +145,8 @@ class Plan:
         units: of the requirements with captured values, one each.
         asked: all rules, those of the units among them, in the order of the file.
         truths: formulas of which it is kept where they are true.
+        watches: formulas that are bins, or occasions at which bins are looked at.
+        groups: what is counted of them.
         constants: captured values that are known while the plan is made; `None` is unknown.
     """
 
@@ -126,6 +160,8 @@ class Plan:
     units: tuple[Plan, ...] = ()
     asked: tuple[PlannedRule, ...] = ()
     truths: tuple[Core, ...] = ()
+    watches: tuple[Watch, ...] = ()
+    groups: tuple[WatchGroup, ...] = ()
     constants: Mapping[str, Scalar] = field(default_factory=dict)
 
     @property

@@ -11,7 +11,7 @@ from rvmon.formula.numeric import operands
 from rvmon.formula.state import UNKNOWN, State, Unborn
 from rvmon.plan.graph import Graph, graph_of
 from rvmon.plan.numbers import inputs_of
-from rvmon.plan.plan import Plan, PlannedRule, Uses
+from rvmon.plan.plan import Plan, PlannedRule, Uses, Watch, WatchGroup
 from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar
@@ -48,6 +48,24 @@ def plan_of_truths(
     names = (tuple(spec.signals), tuple(spec.events))
     uses = uses_of([graph], ())
     return Plan(spec, (), graph, spec.gap, *names, uses, truths=tuple(formulas), constants=captured)
+
+
+def plan_of_watches(
+    spec: CheckedSpec, watches: Sequence[Watch], groups: Sequence[WatchGroup]
+) -> Plan:
+    """The plan of what judges nothing: somebody counts where some formulas come true.
+
+    Args:
+        spec: the specification.
+        watches: the formulas.
+        groups: what is counted of them.
+    """
+    graph = graph_of(watch.state for watch in watches)
+    names = (tuple(spec.signals), tuple(spec.events))
+    uses = uses_of([graph], ())
+    return Plan(
+        spec, (), graph, spec.gap, *names, uses, watches=tuple(watches), groups=tuple(groups)
+    )
 
 
 def plan_of_evaluator(

@@ -2,22 +2,27 @@
 
 import random
 import struct
+from dataclasses import replace
 
 import pytest
+from tests.tools.coverage import with_random_coverage
 from tests.tools.plan_reader import Plan, layouts, walk
 from tests.tools.watched import truths_plan
 
 import rvmon
 from rvmon.core import sections
 from rvmon.core.plan import pack
-from rvmon.core.sections import RECORDS, Section, hash_of
+from rvmon.core.sections import Section, hash_of
+from rvmon.coverage.bins import Bins
 from rvmon.dataflow.network_plan import plan_of_all
+from rvmon.errors import RvmonError
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor import compile_spec
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import planned_as
 from rvmon.monitor.core.watching import known_truths
+from rvmon.plan.plan import WatchGroup
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.trace.sample import Sample
 
@@ -103,24 +108,141 @@ def test_an_operator_that_is_none(place):
         planned.monitor(frozenset()).truths(place)
 
 
-def test_a_form_that_is_none_is_refused():
-    """A part of captured values keeps none; others name one of theirs."""
-    compiled = compile_spec(rvmon.loads(AHEAD).checked)
-    data = pack(truths_plan(compiled)).data
-    fields = layouts()["part_plan"]
-    names = [name for name, _ in fields]
-    before = "".join(form for _, form in fields[: names.index("truths")])
-    at = Plan(data).places[Section.PARTS][0] + struct.calcsize(f"={before}")
-    assert struct.unpack_from("=i", data, at) == (0,)
-    assert struct.calcsize(f"={before}") < RECORDS[Section.PARTS].size
-    for number, is_taken in ((-1, True), (1, False), (-2, False), (1 << 30, False)):
-        changed = bytearray(data)
-        struct.pack_into("=i", changed, at, number)
-        struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
-        kept = Kept(bytes(changed), frozenset(), frozenset())
-        planned = planned_as(compiled.checked, (), kept)
-        if is_taken:
-            planned.monitor(frozenset())
-        else:
-            with pytest.raises(ValueError, match="plan"):
-                planned.monitor(frozenset())
+BINS = """signal p, q : bool
+event e
+coverpoint level = p {yes: true, no: false}
+coverpoint often {e: e, both: p and q}
+coverpoint asked = p {yes: true, no: false}
+  upon q
+cross all = level, often
+"""
+
+
+def bins(text, **law):
+    """What the core counts by, and the plan of it."""
+    made = Bins(rvmon.loads(text).checked)
+    data = pack(made.plan, **law).data
+    return made, planned_as(made.spec, (), Kept(data, frozenset(), frozenset()))
+
+
+def changed(data, section, record, name, value):
+    """A plan with another number in a record."""
+    fields = layouts()[record]
+    names = [one for one, _ in fields]
+    before = "".join(form for _, form in fields[: names.index(name)])
+    made = bytearray(data)
+    at = Plan(data).places[section][0] + struct.calcsize(f"={before}")
+    struct.pack_into(f"={len(value)}i", made, at, *value)
+    struct.pack_into("=Q", made, 24, hash_of(bytes(made[sections.HEADER.size :])))
+    return bytes(made)
+
+
+def is_taken(data):
+    """Whether the core takes a plan."""
+    checked = rvmon.loads(BINS).checked
+    planned = planned_as(checked, (), Kept(data, frozenset(), frozenset()))
+    try:
+        planned.monitor(frozenset())
+    except ValueError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_every_index_of_what_is_counted_is_in_its_bounds(seed):
+    """Whatever bins, occasions and crosses there are."""
+    profile = Profile(requirements=1, captures=False, for_each=False)
+    spec = with_random_coverage(random.Random(seed), profile)
+    plan = Plan(pack(Bins(spec).plan).data)
+    assert plan.records["WATCHES"]
+    assert len(plan.records["GROUPS"]) == len(spec.coverpoints) + len(spec.crosses)
+    walk(plan)
+
+
+@pytest.mark.parametrize(
+    ("section", "record", "name", "value"),
+    [
+        (Section.PARTS, "part_plan", "truths", (1,)),
+        (Section.PARTS, "part_plan", "truths", (-2,)),
+        (Section.PARTS, "part_plan", "watches", (1, 7)),
+        (Section.PARTS, "part_plan", "watches", (0, -1)),
+        (Section.PARTS, "part_plan", "groups", (0, 5)),
+        (Section.WATCHES, "watch_plan", "node", (99,)),
+        (Section.WATCHES, "watch_plan", "node", (-1,)),
+        (Section.WATCHES, "watch_plan", "is_pulse", (2,)),
+        (Section.WATCHES, "watch_plan", "groups", (1 << 30, 1)),
+        (Section.GROUPS, "group_plan", "occasion", (7,)),
+        (Section.GROUPS, "group_plan", "occasion", (-2,)),
+        (Section.GROUPS, "group_plan", "first", (1,)),
+        (Section.GROUPS, "group_plan", "axes", (0, 0)),
+        (Section.GROUPS, "group_plan", "axes", (0, 1)),
+        (Section.GROUPS, "group_plan", "axes", (1 << 30, 2)),
+        (Section.LINKS, "link_plan", "judge", (7,)),
+        (Section.LINKS, "link_plan", "judge", (-1,)),
+        (Section.LINKS, "link_plan", "kind", (9,)),
+        (Section.LINKS, "link_plan", "kind", (1,)),
+    ],
+)
+def test_what_leads_nowhere_is_refused(section, record, name, value):
+    """The core takes the plan as it was packed, and no other number in it."""
+    data = pack(Bins(rvmon.loads(BINS).checked).plan).data
+    assert is_taken(data)
+    assert not is_taken(changed(data, section, record, name, value))
+
+
+def test_axes_that_are_none_are_refused():
+    """So are items that nobody has room for."""
+    data = pack(Bins(rvmon.loads(BINS).checked).plan).data
+    plan = Plan(data)
+    first, count = plan.records["GROUPS"][-1]["axes"]
+    at = plan.places[Section.LISTS][0] + 4 * first
+    assert (count, plan.run("LISTS", first, count)) == (4, (0, 2, 2, 2))
+    for axes in ((0, 0, 2, 2), (-1, 2, 2, 2), (6, 2, 2, 2), (0, 2, 2, 1 << 30)):
+        made = bytearray(data)
+        struct.pack_into("=4i", made, at, *axes)
+        struct.pack_into("=Q", made, 24, hash_of(bytes(made[sections.HEADER.size :])))
+        assert not is_taken(bytes(made))
+    made = Bins(rvmon.loads(BINS).checked).plan
+    large = replace(made, groups=(WatchGroup((range(7),) * 8, None),))
+    with pytest.raises(RvmonError, match="combinations"):
+        pack(large)
+
+
+def test_hits_begin_anew_with_each_run():
+    """And what stands of a run before does not stand any more."""
+    made, planned = bins(BINS)
+    run = planned.monitor(frozenset())
+    for _ in range(2):
+        assert not any(run.hits())
+        for t, values in enumerate([{"p": True, "q": True, "e": True}, {"e": True}, {"p": False}]):
+            assert run.judge(t, values, True)
+        hits = made.hits(run.hits())
+        assert {name: one.count for name, one in hits["all"].items()} == {
+            "yes × e": 2,
+            "yes × both": 1,
+        }
+        assert [one.first for one in hits["level"].values()] == [0, 2]
+        run.reset()
+
+
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 ns"])
+def test_what_is_lost_hits_nothing_and_ends_nothing(time):
+    """Behind an outage it is not known when an occasion came, nor that a stretch had ended."""
+    made, planned = bins(f"time {time}\n{BINS}", next_law=True)
+    run = planned.monitor(frozenset())
+    assert run.judge(0, {"p": True, "q": False}, True)
+    assert run.lose([0, 1], 5)
+    assert run.found([0, 1], 8)
+    assert run.judge(9, {"p": True, "q": True}, True)
+    assert run.judge(12, {"q": False}, True)
+    assert run.judge(15, {"q": True}, True)
+    run.finish(20)
+    hits = made.hits(run.hits())
+    counted = {name: {item: one.count for item, one in own.items()} for name, own in hits.items()}
+    assert counted == {
+        "level": {"yes": 1},
+        "often": {"both": 2},
+        "asked": {"yes": 1},
+        "all": {"yes × both": 2},
+    }
+    assert hits["asked"]["yes"].first == 15

@@ -47,7 +47,7 @@ def known_truths(
     Args:
         spec: the specification.
         formulas: may speak of the future; what the recording ends too early for is not known.
-        samples: the recording, in order.
+        samples: the recording, in order; what the specification does not declare is passed over.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
         captured: the values that the formulas read as captured.
@@ -60,10 +60,14 @@ def known_truths(
     run = planned.monitor(frozenset() if names is None else declared - names)
     validator = Validator(spec, None if names is None else names & declared, frozenset())
     for sample in samples:
-        if not run.judge(sample.t, sample.values, False):
-            values = planned.plain(sample.t, validator.check(sample.t, sample.values))
-            if not run.judge(sample.t, values, True):
-                raise ValueError("the core does not take a sample that was checked")
+        t, values = sample.t, sample.values
+        if run.judge(t, values, False):
+            continue
+        read = {name: values[name] for name in plan.graph.by_name if name in values}
+        if run.judge(t, read, False):
+            continue
+        if not run.judge(t, planned.plain(t, validator.check(t, read)), True):
+            raise ValueError("the core does not take a sample that was checked")
     run.finish(end)
     places = plan_of_all(formulas, plan.gap).places
     return [Known(*(tuple(_ranges(one)) for one in run.truths(places[core]))) for core in formulas]
