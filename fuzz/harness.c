@@ -184,6 +184,13 @@ static uint64_t noted_watch(const rv_monitor *m, uint64_t sum)
     for (i = 0; i < number; i++) {
         sum = mixed(mixed(sum, hits[i].count), hits[i].first);
     }
+    for (number = 0; (number < rv_sizes_of(m).requirements) && (number < NAMES_MOST); number++) {
+        int32_t locations;
+        const rv_hit *moves = rv_moves(m, number, &locations);
+        for (i = 0; i < (int64_t)locations * locations; i++) {
+            sum = mixed(mixed(sum, moves[i].count), moves[i].first);
+        }
+    }
     for (number = 0; rv_truths(m, number, false, false, &found) >= 0; number++) {
         for (which = 0; which < 4; which++) {
             const int64_t count = rv_truths(m, number, which % 2 == 1, which >= 2, &found);

@@ -24,7 +24,7 @@ from pathlib import Path
 
 from tests.tools.coverage import with_random_coverage
 from tests.tools.guarded import guarded_memory
-from tests.tools.watched import truths_plan
+from tests.tools.watched import is_small, truths_plan
 
 from rvmon.core.plan import pack
 from rvmon.coverage.bins import Bins
@@ -70,7 +70,10 @@ def _plan(rng: random.Random, profile: Profile, which: int, *, next_law: bool) -
     if which > 5:
         return Bins(with_random_coverage(rng, profile)).plan
     compiled = compile_spec(random_spec(rng, profile), next_law=next_law)
-    return truths_plan(compiled) if which > 3 else plan_alone(compiled)
+    if which > 3:
+        return truths_plan(compiled)
+    traced = [name for name, one in compiled.requirements.items() if is_small(one.automaton)]
+    return plan_alone(compiled, traced=traced if which > 1 else ())
 
 
 def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[bytes]:

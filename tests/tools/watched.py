@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+from rvmon.automaton.automaton import Automaton
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan
 from rvmon.plan.planning import plan_of_truths
+
+TRACED_MOST = 64
+"""As plan.h has it."""
+
+
+def is_small(automaton: Automaton | None) -> bool:
+    """Whether it may be counted where attempts go in an automaton."""
+    return automaton is not None and len(automaton.locations) <= TRACED_MOST
 
 
 def truths_plan(compiled: CompiledSpec) -> Plan:

@@ -197,6 +197,7 @@ void settle_phase(run *r);
 typedef struct {
     int32_t location;
     int64_t *clocks;
+    rv_hit *moves;             /* where it is counted where it goes; NULL: it is not */
 } token;
 
 int32_t class_of_letter(const run *r, int32_t index, bool better);
@@ -370,6 +371,17 @@ void end_watch(run *r, int64_t end);
 bool begin_cover(home *h);
 void call_watch(run *r, int32_t number);
 void cover(run *r, int64_t t);
+
+/* ---- moves.c: where attempts go in automata */
+bool begin_moves(home *h);
+void count_move(const machine *a, rv_hit *moves, int32_t from, int32_t to, int64_t count, int64_t t);
+void count_begin(run *r, int32_t index, int64_t t);
+
+/* Where it is counted where the attempts of a judge go; NULL: it is not. */
+static inline rv_hit *moves_of(const run *r, int32_t index)
+{
+    return (r->home->moves != NULL) ? r->home->moves[index] : NULL;
+}
 
 /* ---- windows.c: attempts that a chain of windows judges */
 bool is_chained(const run *r, int32_t index);

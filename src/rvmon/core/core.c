@@ -29,6 +29,7 @@ static bool prepare_part(rv_monitor *m, part *p)
     p->is_watched = (p->plan->truths >= 0) || (p->plan->watches.count > 0);
     for (i = 0; i < p->plan->judges.count; i++) {
         p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
+        p->is_traced = p->is_traced || ((p->judges[i].flags & JUDGE_TRACED) != 0);
         p->restarts = p->restarts || (p->judges[i].again >= 0);
         if ((p->judges[i].automaton < 0) && (p->forms[p->judges[i].form].windows.count == 0)) {
             p->networked[p->networked_count] = i;

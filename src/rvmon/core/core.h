@@ -207,6 +207,11 @@ typedef struct {
 
 const rv_hit *rv_hits(const rv_monitor *m, int32_t *items);
 
+/* How often attempts of a requirement went from one location of its automaton to another, and when
+ * first: by `locations` times the one plus the other; one to itself: began, in the first. Those in doubt,
+ * and those of which two readings differ, are left out. NULL and 0: the plan does not ask for it. */
+const rv_hit *rv_moves(const rv_monitor *m, int32_t requirement, int32_t *locations);
+
 /* What a plan declares. */
 typedef struct {
     int32_t signals;

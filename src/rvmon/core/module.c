@@ -230,6 +230,7 @@ METHOD(next_due)
 METHOD(rows)
 METHOD(truths)
 METHOD(hits)
+METHOD(passages)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
 static PyObject *monitor_hold(PyObject *self, PyObject *held)
@@ -303,6 +304,7 @@ static PyMethodDef monitor_methods[] = {
     {"times", monitor_times, METH_NOARGS, NULL},
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
     {"truths", monitor_truths, METH_O, NULL},
+    {"passages", monitor_passages, METH_O, NULL},
     {"hits", monitor_hits, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},

@@ -53,4 +53,24 @@ static PyObject *hits_of(monitor *c, PyObject *unused)
                                                        (Py_ssize_t)items * (Py_ssize_t)sizeof *hits);
 }
 
+/* passages(requirement): how many locations there are, and from each to each how often attempts went, and
+ * when first, as bytes. */
+static PyObject *passages_of(monitor *c, PyObject *requirement)
+{
+    const long long number = PyLong_AsLongLong(requirement);
+    int32_t locations;
+    const rv_hit *moves;
+    if ((number == -1) && (PyErr_Occurred() != NULL)) {
+        return NULL;
+    }
+    if (rv_spoilt(c->m)) {
+        return PyErr_NoMemory();
+    }
+    moves = rv_moves(c->m, ((number < 0) || (number > INT32_MAX)) ? -1 : (int32_t)number, &locations);
+    return Py_BuildValue("iN", locations,
+                         PyBytes_FromStringAndSize((const char *)moves,
+                                                   (Py_ssize_t)locations * (Py_ssize_t)locations
+                                                       * (Py_ssize_t)sizeof *moves));
+}
+
 #endif

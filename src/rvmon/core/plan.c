@@ -117,6 +117,7 @@ machine machine_view(const plan *p, const automaton_plan *a)
     made.gap = p->header->gap;
     made.step = (made.gap > 0) ? made.gap : 1;
     made.initial = a->initial;
+    made.locations = a->locations;
     made.clocks = a->clocks;
     made.classes = a->classes;
     return made;

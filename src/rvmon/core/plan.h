@@ -208,7 +208,7 @@ typedef struct {
 
 enum {
     JUDGE_PULSE = 1, JUDGE_EPISODIC = 2, JUDGE_HIDDEN = 4, JUDGE_BLURS_ANYWHERE = 8,
-    JUDGE_IN_RUNS = 16
+    JUDGE_IN_RUNS = 16, JUDGE_TRACED = 32
 };
 
 /* What judges the attempts of a requirement, or those in doubt. Nodes; -1: there is none. */
@@ -322,5 +322,7 @@ enum {
 #define PAYLOAD_EVENTS_MOST 8
 /* Axes that one group may have. */
 #define AXES_MOST 64
+/* Locations of an automaton whose moves may be counted. */
+#define TRACED_MOST 64
 
 #endif

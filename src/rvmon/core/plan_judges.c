@@ -196,13 +196,14 @@ bool check_judge(const plan *p, const part_plan *x, int32_t number)
         }
     }
     if (j->automaton < 0) {
-        return (j->automaton == -1) && is_within(j->form, 0, x->forms.count) && (j->diagram == -1);
+        return (j->automaton == -1) && ((j->flags & JUDGE_TRACED) == 0) && is_within(j->form, 0, x->forms.count) && (j->diagram == -1);
     }
     if (!is_within(j->automaton, 0, p->counts[SEC_AUTOMATA])) {
         return false;
     }
     a = &p->automata[j->automaton];
-    if (a->clocks > x->clocks) {
+    if ((a->clocks > x->clocks)
+        || (((j->flags & JUDGE_TRACED) != 0) && (a->locations > TRACED_MOST))) {
         return false;
     }
     if (j->diagram >= 0) {

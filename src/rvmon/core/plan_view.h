@@ -49,6 +49,7 @@ typedef struct {
     int64_t gap;
     int64_t step;
     int32_t initial;
+    int32_t locations;
     int32_t clocks;
     int32_t classes;
 } machine;
@@ -70,6 +71,7 @@ typedef struct {
     int32_t networked_count;
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
     bool restarts;             /* whether some failure may be followed by another attempt */
+    bool is_traced;            /* whether it is counted where some attempts go */
     bool is_watched;           /* whether somebody asks for more than what becomes of attempts */
 } part;
 

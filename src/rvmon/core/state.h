@@ -332,6 +332,7 @@ struct home {
     networks *truths;          /* of the form of which it is kept where it is known; NULL till then */
     bool is_blind;             /* whether positions were missed of that */
     covering *covering;        /* of a part with watches; else NULL */
+    rv_hit **moves;            /* by judge, from each location to each; NULL: of none */
 };
 
 struct rv_monitor {

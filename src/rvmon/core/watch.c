@@ -17,7 +17,8 @@ bool begin_watch(home *h)
         h->truths->begun = false;
     }
     h->is_blind = false;
-    return (h->part->plan->watches.count == 0) || begin_cover(h);
+    return ((h->part->plan->watches.count == 0) || begin_cover(h))
+           && (!h->part->is_traced || begin_moves(h));
 }
 
 /* How many readings there are at present. */
@@ -133,6 +134,6 @@ int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, boo
     }
     known = &h->truths->readings[(better && h->truths->parted) ? 1 : 0]
                  .nodes[operator_number].known[value ? 1 : 0];
-    *found = &known->at[known->first];
+    *found = (known->at != NULL) ? &known->at[known->first] : NULL;
     return known->end - known->first;
 }

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
 from rvmon.coverage.bins import Bins
+from rvmon.coverage.core_run import CoverageRun
 from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import Model, model_of
-from rvmon.coverage.requirements import RequirementRun, WatchedRequirements
+from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.monitor import CoreMonitor
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
 from rvmon.monitor.online.monitor import Monitor
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report, report_of
 
 
 class SpecCoverage:
@@ -121,12 +119,9 @@ class CoverageMonitor:
     ) -> None:
         self._watched = requirements
         self._bins = _BinRun(bins, settle, sources) if bins.groups else None
-        self._runs: list[Monitor] = []
-        self._requirements: RequirementRun | None = None
-        if requirements is not None:
-            self._requirements, others = requirements.runs(settle, sources)
-            # What refuses most comes first: a sample that one refuses none has taken.
-            self._runs = [self._requirements, others]
+        self._requirements = [] if requirements is None else requirements.runs(settle, sources)
+        # What refuses most comes first: a sample that one refuses none has taken.
+        self._runs: list[Monitor] = [*self._requirements]
         self._runs += [] if self._bins is None else [self._bins]
 
     def step(self, t: float, values: Mapping[str, Any]) -> None:
@@ -164,16 +159,17 @@ class CoverageMonitor:
 
     def finish_ns(self, t_ns: int | None = None) -> Hits:
         """End the run, at `t_ns` if that is later than all so far; returns all that it hit."""
-        reports = [run.finish_ns(t_ns) for run in self._runs]
+        for run in self._runs:
+            run.finish_ns(t_ns)
         hits = dict(self.hits)
-        if self._requirements is not None and self._watched is not None:
-            found = self._watched.hits(self._requirements, reports)
+        if self._watched is not None:
+            found = self._watched.hits(self._requirements)
             hits |= {name: items for name, items in found if items}
         return hits
 
 
-class _BinRun(CoreMonitor):
-    """Takes samples as every monitor does, and judges nothing."""
+class _BinRun(CoverageRun):
+    """Counts what is hit of bins."""
 
     def __init__(self, bins: Bins, settle: str, sources: frozenset[str] | None) -> None:
         self._bins = bins
@@ -183,8 +179,3 @@ class _BinRun(CoreMonitor):
     def hits(self) -> Hits:
         """What was hit so far."""
         return self._bins.hits(self._core.hits())
-
-    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
-        end = self._core.finish(t_ns)
-        self._note_times()
-        return report_of((), (), end=end), ()

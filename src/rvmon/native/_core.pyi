@@ -121,6 +121,12 @@ class Monitor:
     def stale(self) -> list[tuple[int, int, int]]:
         """Of each signal that went stale its number, how often it did, and when first."""
 
+    def passages(self, requirement: int, /) -> tuple[int, bytes]:
+        """How many locations its automaton has, and from each to each how often attempts went.
+
+        With that, when first: int64 each; see `rv_moves`. 0: the plan does not ask for it.
+        """
+
     def hits(self) -> bytes:
         """Of each item of the plan's groups how often it was hit, and when first: int64 each."""
 

@@ -42,6 +42,7 @@ class PlannedRule:
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
         asked: further state formulas that are asked for their values.
+        traced: whether somebody asks where attempts go in the automaton, which then judges.
     """
 
     requirement: Requirement
@@ -60,6 +61,7 @@ class PlannedRule:
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
+    traced: bool = False
 
     @property
     def states(self) -> Iterator[State]:

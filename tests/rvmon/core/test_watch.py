@@ -19,6 +19,7 @@ from rvmon.errors import RvmonError
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import planned_as
 from rvmon.monitor.core.watching import known_truths
@@ -246,3 +247,82 @@ def test_what_is_lost_hits_nothing_and_ends_nothing(time):
         "all": {"yes × both": 2},
     }
     assert hits["asked"]["yes"].first == 15
+
+
+MANY = "signal a, b : bool\nrequirement {0}\n  upon a\n  then within {1} s b\n"
+
+
+def traced(text):
+    """The plan of requirements of which it is asked where attempts go."""
+    compiled = compile_spec(rvmon.loads(text).checked)
+    plan = plan_alone(compiled, traced=list(compiled.requirements))
+    data = pack(plan).data
+    ids = tuple(compiled.requirements)
+    return compiled, data, planned_as(compiled.checked, ids, Kept(data, frozenset(), frozenset()))
+
+
+def moves(run, number):
+    """From which location to which attempts went: how often, and when first."""
+    locations, counted = run.passages(number)
+    return {
+        divmod(place, locations): hit
+        for place, hit in enumerate(struct.iter_unpack("=qq", counted))
+        if hit[0]
+    }
+
+
+def test_a_segment_adds_its_size():
+    """Many attempts that go the same way at once count as many, for each requirement its own."""
+    text = MANY.format("R", 3000) + MANY.format("S", 5).partition("\n")[2]
+    compiled, data, planned = traced(text)
+    one, other = Plan(data).records["AUTOMATA"][:2]
+    assert one["edges"] == other["edges"]
+    automaton = compiled.requirements["R"].automaton
+    start = automaton.initial
+    (waiting,) = set(range(2, len(automaton.locations))) - {start}
+    run = planned.monitor(frozenset())
+    second = 10**9
+    for k in range(100):
+        assert run.judge(2 * k * second, {"a": True, "b": False}, True)
+        assert run.judge((2 * k + 1) * second, {"a": False}, True)
+    assert run.judge(200 * second, {"b": True}, True)
+    run.finish(None)
+    begun, fast, slow = {(start, start): (100, 0)}, 2, 98
+    assert moves(run, 0) == begun | {(start, waiting): (100, 0), (waiting, 1): (100, 200 * second)}
+    late = 5 * second + 1
+    assert moves(run, 1) == begun | {
+        (start, waiting): (100, 0),
+        (waiting, 0): (slow, late),
+        (waiting, 1): (fast, 200 * second),
+    }
+    run.reset()
+    assert moves(run, 0) == {}
+
+
+def test_an_attempt_in_two_minds_goes_nowhere():
+    """Unknown values that make a difference; what makes none is no other letter."""
+    text = "signal a, b, c : bool\nrequirement R\n  upon a\n  then within 2 s (b and not c)\n"
+    compiled, _, planned = traced(text)
+    start = compiled.requirements["R"].automaton.initial
+    run = planned.monitor(frozenset())
+    for t, values in enumerate(
+        [{"a": True, "b": None, "c": False}, {"a": False, "b": False}, {"a": True, "c": None}]
+    ):
+        assert run.judge(t, values, True)
+    run.finish(3)
+    assert moves(run, 0)[start, start] == (1, 2)
+
+
+@pytest.mark.parametrize(
+    ("record", "name", "value"),
+    [("automaton_plan", "locations", (65,)), ("judge_plan", "automaton", (-1,))],
+)
+def test_moves_are_counted_in_small_automata_alone(record, name, value):
+    """What asks for others is refused."""
+    _, data, planned = traced(MANY.format("R", 3))
+    planned.monitor(frozenset())
+    section = Section.AUTOMATA if record == "automaton_plan" else Section.JUDGES
+    kept = Kept(changed(data, section, record, name, value), frozenset(), frozenset())
+    checked = rvmon.loads(MANY.format("R", 3)).checked
+    with pytest.raises(ValueError, match="plan"):
+        planned_as(checked, ("R",), kept).monitor(frozenset())

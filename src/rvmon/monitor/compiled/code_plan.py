@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
 
 from rvmon.errors import UnknownNameError
 from rvmon.formula.core import Literal
@@ -86,6 +87,12 @@ def _rule(
     )
 
 
+def _traced(one: CompiledRequirement) -> PlannedRule:
+    """A requirement that its whole automaton judges, as people know it."""
+    rule, automaton = _rule(one, explained=False), one.automaton
+    return replace(rule, automaton=automaton, in_runs=one.in_runs(automaton), traced=True)
+
+
 def _blurs(one: CompiledRequirement) -> State | None:
     """What is UNKNOWN where an attempt may have begun with other values than it captured."""
     obligation = one.obligation
@@ -93,12 +100,18 @@ def _blurs(one: CompiledRequirement) -> State | None:
     return obligation.doubt or (obligation.trigger if one.is_beside else None)
 
 
-def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
+def plan_alone(
+    compiled: CompiledSpec,
+    only: Iterable[str] | None = None,
+    *,
+    traced: Collection[str] = (),
+) -> Plan:
     """The plan of what the core judges.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
+        traced: ids of those of which somebody asks where attempts go in their automata.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
@@ -108,5 +121,8 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
     if ids is not None and not ids:
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
-    rules = [_rule(one, explained=False) for one in compiled.chosen(ids)]
+    rules = [
+        _traced(one) if one.requirement.id in traced else _rule(one, explained=False)
+        for one in compiled.chosen(ids)
+    ]
     return plan_in_units(compiled.checked, rules)
