@@ -226,6 +226,19 @@ def test_hits_begin_anew_with_each_run():
         run.reset()
 
 
+def test_what_comes_too_late_is_not_counted():
+    """Nor does it concern anybody where no requirement is."""
+    made, planned = bins(BINS)
+    run = planned.monitor(frozenset())
+    assert run.judge(0, {"p": True, "q": False}, True)
+    assert run.judge(9, {"p": False}, True)
+    assert run.late([0, 1], 5)
+    assert {name: hit.count for name, hit in made.hits(run.hits())["level"].items()} == {
+        "yes": 1,
+        "no": 1,
+    }
+
+
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 ns"])
 def test_what_is_lost_hits_nothing_and_ends_nothing(time):
     """Behind an outage it is not known when an occasion came, nor that a stretch had ended."""
