@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import asked_ids, constants_of
-from rvmon.cli.reading import allowed_names, reading_spec
+from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.loading import load
-from rvmon.readers.recording import FileRecording
+from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.verdict.illegal import IllegalHit
@@ -71,11 +71,12 @@ def spec_and_options(
 
 
 class Beside:
-    """Finds coverage on one recording.
+    """Finds coverage on one recording: when it was judged it is read once more, if it can be.
 
     Args:
         spec: may have coverpoints.
         options: say what is asked for.
+        trace: the path of the recording.
         names: that have a source; `None`: all.
         end: the instant to which the recording is judged, ticks; default its last sample.
 
@@ -84,21 +85,28 @@ class Beside:
     """
 
     def __init__(
-        self, spec: Spec, options: Options, names: frozenset[str] | None, end: int | None
+        self,
+        spec: Spec,
+        options: Options,
+        trace: str,
+        names: frozenset[str] | None,
+        end: int | None,
     ) -> None:
         self.hits: Hits = {}
         self._spec = spec
         self._options = options
+        self._trace = trace
         self._end = end
         self._coverage: CoverageMonitor | None = None
-        if options.coverage or spec.checked.coverpoints:
+        self._is_asked = bool(options.coverage or spec.checked.coverpoints)
+        if self._is_asked and not can_be_read_again(trace):
             self._coverage = spec.coverage_model.monitor(
                 sources=names, requirements=options.coverage
             )
 
     @property
     def is_idle(self) -> bool:
-        """Whether there is nothing to find."""
+        """Whether there is nothing to find while samples go by."""
         return self._coverage is None
 
     def reading(self, read: Read) -> Callable[[FileRecording], Iterator[Sample]]:
@@ -114,11 +122,15 @@ class Beside:
 
     def finished(self, report: Report) -> Report:
         """The report with what was found, when all samples went by."""
-        if self._coverage is None:
+        if not self._is_asked:
             return report
         from rvmon.coverage.hits import covered_groups, illegal
 
-        found = self._coverage.finish_ns(self._end)
+        if self._coverage is not None:
+            found = self._coverage.finish_ns(self._end)
+        else:
+            again, asked = opened(self._spec, self._trace), self._options.coverage
+            found = self._spec.coverage_model.of(again, self._end, requirements=asked)
         if self._options.coverage:
             self.hits = found
         model = self._spec.coverage_model.bin_model

@@ -110,7 +110,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             coverage=True,
         )
         end = recording.end if options.until is None else ticks_of_seconds(options.until)
-        beside = Beside(spec, options, recording.names, end)
+        beside = Beside(spec, options, trace, recording.names, end)
         read = shown_while_reading if is_alone else iter
         source = Source(
             recording,

@@ -6,8 +6,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
+from rvmon import native
 from rvmon.core.plan import pack
-from rvmon.coverage.core_run import Judged, Passages, RequirementRun
+from rvmon.coverage.core_run import Judged, Passages, attempts_of, passages_of
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
 from rvmon.coverage.variants import Variant, variants_of
@@ -145,26 +146,24 @@ class WatchedRequirements:
         self.groups += [group_of(name, Subject.GOAL, [Item(SHOWN)]) for name in self._goals]
 
     @cached_property
-    def _planned(self) -> Mapping[CompiledSpec, PlannedCore]:
+    def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
         """What the core judges by: the requirements, and beside them what else is judged."""
         traced = {name for name, one in self._watched.items() if one.graph is not None}
         specs = [one for one in (self._own, self._others) if one.requirements]
         return {one: _planned(one, traced if one is self._own else ()) for one in specs}
 
-    def runs(self, settle: str, sources: frozenset[str] | None) -> list[RequirementRun]:
-        """What watches one run."""
-        return [
-            RequirementRun(planned, compiled, settle, sources)
-            for compiled, planned in self._planned.items()
-        ]
+    def hits(self, runs: Sequence[native.Monitor]) -> Iterator[tuple[str, Mapping[str, Hit]]]:
+        """What was hit, by group.
 
-    def hits(self, runs: Sequence[RequirementRun]) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-        """What runs that are over have hit, by group."""
+        Args:
+            runs: by what is `planned`, over.
+        """
         attempts: dict[str, list[Judged]] = {}
         passages: dict[str, Passages] = {}
-        for run in runs:
-            attempts |= run.attempts()
-            passages |= run.passages()
+        for compiled, run in zip(self.planned, runs, strict=True):
+            ids = tuple(compiled.requirements)
+            attempts |= attempts_of(ids, run)
+            passages |= passages_of(ids, run)
         for name, watched in self._watched.items():
             own = attempts[name]
             found = dict(_of_attempts(own, watched.deadline))

@@ -44,19 +44,28 @@ def judge_recording(checked: CheckedSpec, planned: PlannedCore, source: Source) 
         TraceError: a name or a value that the specification does not know, or an instant with two
             payloads of one event of which one can be judged.
     """
-    judge = _Judge(checked, planned, source)
+    judge = RecordingRun(checked, planned, source, finds=True)
     for piece in source.pieces():
-        if isinstance(piece, Sample):
-            judge.take_sample(piece)
-        else:
-            judge.take_batch(piece)
+        judge.take(piece)
     return judge.report()
 
 
-class _Judge:
-    """A run of the core, and what it is to be given."""
+class RecordingRun:
+    """A run of the core, and what it is to be given.
 
-    def __init__(self, checked: CheckedSpec, planned: PlannedCore, source: Source) -> None:
+    Args:
+        checked: the specification.
+        planned: the plan that it judges by.
+        source: the recording that the pieces come from.
+        finds: whether somebody asks for the health of the input.
+
+    Attributes:
+        core: the run.
+    """
+
+    def __init__(
+        self, checked: CheckedSpec, planned: PlannedCore, source: Source, *, finds: bool
+    ) -> None:
         declared = frozenset((*checked.signals, *checked.events))
         names = source.names
         absent = frozenset() if names is None else declared - names
@@ -65,35 +74,43 @@ class _Judge:
             checked, None if names is None else names & declared, planned.single_payloads
         )
         self._expected = declared - absent
-        self._findings = Findings(checked, planned, absent)
-        self._run = planned.monitor(absent & planned.numbers.keys())
+        self._findings = Findings(checked, planned, absent) if finds else None
+        self.core = planned.monitor(absent & planned.numbers.keys())
         self._row = 0
         self._end = source.end
 
-    def take_sample(self, sample: Sample) -> None:
-        """Judge a sample."""
+    def take(self, piece: Batch | Sample) -> None:
+        """Judge a piece of the recording, behind those before."""
+        if isinstance(piece, Sample):
+            self._take_sample(piece)
+        else:
+            self._take_batch(piece)
+
+    def _take_sample(self, sample: Sample) -> None:
         t = whole_ticks(sample.t)
         values = sample.values
-        if not self._run.judge(t, values, False):
+        if not self.core.judge(t, values, False):
             values = self._validator.check(t, values)
-            if not self._run.judge(t, self._planned.plain(t, values), True):
+            if not self.core.judge(t, self._planned.plain(t, values), True):
                 raise TimeOrderError(
                     f"row {self._row} at {format_ticks(t)} is not after the one before: sort the "
                     "recording by time"
                 )
-        self._findings.note_sample(t, values)
+        if self._findings is not None:
+            self._findings.note_sample(t, values)
         self._row += 1
 
-    def take_batch(self, batch: Batch) -> None:
+    def _take_batch(self, batch: Batch) -> None:
         """Judge rows; those that take a closer look as samples."""
         count = len(batch.times)
         done = 0
         while done < count:
             rest = batch.cut(done, count) if done else batch
             columns = self._laid(rest)
-            taken = 0 if columns is None else self._run.rows(rest.times, columns)
-            if taken:
+            taken = 0 if columns is None else self.core.rows(rest.times, columns)
+            if taken and self._findings is not None:
                 self._findings.note_batch(rest.cut(0, taken) if taken < len(rest.times) else rest)
+            if taken:
                 self._row += taken
                 done += taken
             if done < count:
@@ -101,7 +118,7 @@ class _Judge:
                 end = int(batch.times.searchsorted(last, "right"))
                 events = self._planned.packed.events
                 for sample in coalesce(batch.rows(done, end), events, Conflicts()):
-                    self.take_sample(sample)
+                    self._take_sample(sample)
                 done = end
 
     def _laid(self, batch: Batch) -> tuple[Any, ...] | None:
@@ -140,9 +157,10 @@ class _Judge:
 
     def report(self) -> Report:
         """End the run."""
-        origin, _, _ = self._run.times()
-        report = report_of_run(self._planned, self._run, origin or 0, self._run.finish(self._end))
-        return replace(report, health=self._findings.found(self._run))
+        origin, _, _ = self.core.times()
+        report = report_of_run(self._planned, self.core, origin or 0, self.core.finish(self._end))
+        health = () if self._findings is None else self._findings.found(self.core)
+        return replace(report, health=health)
 
 
 def _cells(
