@@ -202,6 +202,26 @@ static uint64_t noted_watch(const rv_monitor *m, uint64_t sum)
     return sum;
 }
 
+/* How a run stands at an instant, told in room that is too small, too. */
+static uint64_t noted_situation(rv_monitor *m, uint64_t sum, int64_t now)
+{
+    static int64_t words[1 << 16];
+    const int64_t room = 1 << 16;
+    int64_t next;
+    const int64_t most = rv_situation(m, now, words, 3, &next);
+    int64_t count = rv_situation(m, now, words, room, &next);
+    int64_t i;
+    if ((count > most) || ((most < 0) != (count < 0))) {
+        (void)fprintf(stderr, "there is more to be told than was said\n");
+        abort();
+    }
+    count = (count > room) ? room : count;
+    for (i = 0; i < count; i++) {
+        sum = mixed(sum, words[i]);
+    }
+    return mixed(mixed(sum, count), next);
+}
+
 /* A run by a script, from its begin; returns the sum of all that it says. */
 static uint64_t one_run(rv_monitor *m, script s)
 {
@@ -242,6 +262,9 @@ static uint64_t one_run(rv_monitor *m, script s)
             const int64_t step = step_of(&s);
             t += (t < (INT64_C(1) << 62)) ? step : 0;
         }
+    }
+    if (byte_of(&s) < 64) {
+        sum = noted_situation(m, sum, t);
     }
     sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
     sum = noted_records(m, sum, true);

@@ -452,6 +452,7 @@ void home_lose(home *h, int64_t t);
 void home_begin_blank(home *h, int64_t t);
 void rest_all(home *h);
 void untouch_all(home *h);
+void home_come_to(home *h, int64_t end);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
 run *following(const home *h, const run *r);

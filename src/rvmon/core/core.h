@@ -212,6 +212,12 @@ const rv_hit *rv_hits(const rv_monitor *m, int32_t *items);
  * and those of which two readings differ, are left out. NULL and 0: the plan does not ask for it. */
 const rv_hit *rv_moves(const rv_monitor *m, int32_t requirement, int32_t *locations);
 
+/* How the run stands at `now`, at or after its last sample: words that are equal for runs that go on
+ * alike, each as it is seen from there. Returns how many there are, of which `room` are written; `next`
+ * is the first instant behind at which time alone may change something. Nothing but rv_finish at `now`
+ * may follow. -1: nothing is told, as the run is over, or a chain of windows judges. */
+int64_t rv_situation(rv_monitor *m, int64_t now, int64_t *words, int64_t room, int64_t *next);
+
 /* What a plan declares. */
 typedef struct {
     int32_t signals;

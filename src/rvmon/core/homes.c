@@ -338,7 +338,8 @@ static bool awaits_end(const home *h)
     return false;
 }
 
-void home_close(home *h, int64_t end, int64_t reached)
+/* Let time come to `end`, positions there included, with the letters as they are. */
+void home_come_to(home *h, int64_t end)
 {
     run *one;
     int32_t i;
@@ -354,6 +355,13 @@ void home_close(home *h, int64_t end, int64_t reached)
             pass_to(one, i, end);
         }
     }
+}
+
+void home_close(home *h, int64_t end, int64_t reached)
+{
+    run *one;
+    int32_t i;
+    home_come_to(h, end);
     if (awaits_end(h)) {
         for (one = h->root; one != NULL; one = one->next) {
             begin_at_end(one, end);

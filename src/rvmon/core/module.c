@@ -167,11 +167,6 @@ static PyObject *advance_of(monitor *c, PyObject *until)
     return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
 }
 
-static PyObject *instant(int64_t t, int64_t none)
-{
-    return (t == none) ? Py_NewRef(Py_None) : PyLong_FromLongLong((long long)t);
-}
-
 /* End the run, at an instant or None; gives the last instant, None if there is none. */
 static PyObject *finish_of(monitor *c, PyObject *until)
 {
@@ -230,6 +225,7 @@ METHOD(next_due)
 METHOD(rows)
 METHOD(truths)
 METHOD(hits)
+METHOD(situation)
 METHOD(passages)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
@@ -305,6 +301,7 @@ static PyMethodDef monitor_methods[] = {
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
     {"truths", monitor_truths, METH_O, NULL},
     {"passages", monitor_passages, METH_O, NULL},
+    {"situation", monitor_situation, METH_O, NULL},
     {"hits", monitor_hits, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},

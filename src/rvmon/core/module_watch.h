@@ -4,6 +4,11 @@
 
 #include "module_attempts.h"
 
+static PyObject *instant(int64_t t, int64_t none)
+{
+    return (t == none) ? Py_NewRef(Py_None) : PyLong_FromLongLong((long long)t);
+}
+
 /* Where an operator has a value, as bytes. */
 static PyObject *known_of(const monitor *c, int32_t number, bool better, bool value)
 {
@@ -51,6 +56,44 @@ static PyObject *hits_of(monitor *c, PyObject *unused)
     return rv_spoilt(c->m) ? PyErr_NoMemory()
                            : PyBytes_FromStringAndSize((const char *)hits,
                                                        (Py_ssize_t)items * (Py_ssize_t)sizeof *hits);
+}
+
+/* situation(now): how the run stands, as bytes, and the next instant at which time may change that. */
+static PyObject *situation_of(monitor *c, PyObject *at)
+{
+    const long long now = PyLong_AsLongLong(at);
+    int64_t room = 256;
+    int64_t count = 0;
+    int64_t next = RV_NEVER;
+    int64_t *words = NULL;
+    PyObject *made = NULL;
+    if ((now == -1) && (PyErr_Occurred() != NULL)) {
+        return NULL;
+    }
+    for (;;) {
+        int64_t *larger = PyMem_Realloc(words, (size_t)room * sizeof *words);
+        if (larger == NULL) {
+            PyMem_Free(words);
+            return PyErr_NoMemory();
+        }
+        words = larger;
+        count = rv_situation(c->m, (int64_t)now, words, room, &next);
+        if (count <= room) {
+            break;
+        }
+        room = count;
+    }
+    if (count >= 0) {
+        made = Py_BuildValue("NN", PyBytes_FromStringAndSize((const char *)words,
+                                                             (Py_ssize_t)count * (Py_ssize_t)sizeof *words),
+                             instant(next, RV_NEVER));
+    } else if (rv_spoilt(c->m)) {
+        (void)PyErr_NoMemory();
+    } else {
+        PyErr_SetString(PyExc_ValueError, "the run tells no situation");
+    }
+    PyMem_Free(words);
+    return made;
 }
 
 /* passages(requirement): how many locations there are, and from each to each how often attempts went, and

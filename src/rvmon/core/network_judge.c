@@ -100,7 +100,7 @@ static void tidy_up(judging *g, int64_t position)
 }
 
 /* The instant from `now` on before which nothing is decided if the letter stays. */
-static int64_t soonest(const judging *g, int64_t now)
+int64_t soonest(const judging *g, int64_t now)
 {
     int64_t found = NEVER;
     int32_t i;

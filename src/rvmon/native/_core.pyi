@@ -127,6 +127,15 @@ class Monitor:
         With that, when first: int64 each; see `rv_moves`. 0: the plan does not ask for it.
         """
 
+    def situation(self, now: int, /) -> tuple[bytes, int | None]:
+        """How the run stands; equal for runs that go on alike. See `rv_situation`.
+
+        With that, the next instant at which time alone may change something.
+
+        Raises:
+            ValueError: the run is over, `now` is before its last sample, or the plan has a chain.
+        """
+
     def hits(self) -> bytes:
         """Of each item of the plan's groups how often it was hit, and when first: int64 each."""
 

@@ -42,7 +42,8 @@ class PlannedRule:
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
         asked: further state formulas that are asked for their values.
-        traced: whether somebody asks where attempts go in the automaton, which then judges.
+        stepped: whether no chain of windows is to judge it.
+        traced: whether somebody asks where attempts go in its automaton; it is stepped.
     """
 
     requirement: Requirement
@@ -61,6 +62,7 @@ class PlannedRule:
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
+    stepped: bool = False
     traced: bool = False
 
     @property

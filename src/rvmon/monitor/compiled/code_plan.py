@@ -90,7 +90,15 @@ def _rule(
 def _traced(one: CompiledRequirement) -> PlannedRule:
     """A requirement that its whole automaton judges, as people know it."""
     rule, automaton = _rule(one, explained=False), one.automaton
-    return replace(rule, automaton=automaton, in_runs=one.in_runs(automaton), traced=True)
+    in_runs = one.in_runs(automaton)
+    return replace(rule, automaton=automaton, in_runs=in_runs, stepped=True, traced=True)
+
+
+def _stepped(rule: PlannedRule) -> PlannedRule:
+    hidden, doubted = (
+        None if one is None else _stepped(one) for one in (rule.hidden, rule.doubted)
+    )
+    return replace(rule, hidden=hidden, doubted=doubted, stepped=True)
 
 
 def _blurs(one: CompiledRequirement) -> State | None:
@@ -105,6 +113,7 @@ def plan_alone(
     only: Iterable[str] | None = None,
     *,
     traced: Collection[str] = (),
+    stepped: bool = False,
 ) -> Plan:
     """The plan of what the core judges.
 
@@ -112,6 +121,7 @@ def plan_alone(
         compiled: the specification.
         only: ids of its requirements; default all.
         traced: ids of those of which somebody asks where attempts go in their automata.
+        stepped: whether no chain of windows is to judge any.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
@@ -125,4 +135,6 @@ def plan_alone(
         _traced(one) if one.requirement.id in traced else _rule(one, explained=False)
         for one in compiled.chosen(ids)
     ]
+    if stepped:
+        rules = [_stepped(rule) for rule in rules]
     return plan_in_units(compiled.checked, rules)
