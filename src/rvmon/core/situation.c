@@ -186,7 +186,8 @@ static void sort_told(telling *s, int64_t start, int64_t width)
     int64_t kept = 0;
     int64_t i;
     if (s->count > s->room) {
-        return; /* it is not there */
+        put_word(s, 0); /* what was told is not there */
+        return;
     }
     for (i = 0; i < end; i += width) {
         int64_t at = kept;

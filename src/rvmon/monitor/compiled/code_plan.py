@@ -21,7 +21,6 @@ def plan_requirements(
     requirements: Sequence[CompiledRequirement],
     *,
     measured: bool = False,
-    stepped: bool = False,
 ) -> Plan:
     """The plan of some requirements of a specification, of which somebody will ask what is owed.
 
@@ -31,12 +30,11 @@ def plan_requirements(
         compiled: the specification.
         requirements: chosen from it.
         measured: whether somebody will ask for the values of all that robustness is made of.
-        stepped: whether automata judge where windows are followed else.
     """
-    key = "plan", tuple(one.requirement.id for one in requirements), measured, stepped
+    key = "plan", tuple(one.requirement.id for one in requirements), measured
     made = compiled.forms.get(key)
     if not isinstance(made, Plan):
-        how = {"explained": True, "measured": measured, "stepped": stepped}
+        how = {"explained": True, "measured": measured}
         rules = [_rule(one, **how) for one in requirements]
         made = plan_of(compiled.checked, rules)
         compiled.forms[key] = made
@@ -49,11 +47,10 @@ def _rule(
     explained: bool,
     hidden: bool = False,
     measured: bool = False,
-    stepped: bool = False,
 ) -> PlannedRule:
     if explained:
         # In this process what judges attempts in doubt is made when one comes up.
-        is_judged = hidden or (one.follows_windows and not (measured or stepped))
+        is_judged = hidden or (one.follows_windows and not measured)
         automaton = None if is_judged or of_tables(one) is not None else one.automaton
     else:
         automaton = one.slim
