@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,11 +38,20 @@ def batch_of(times: NDArray[np.int64], layout: Layout, columns: Mapping[Column, 
             payloads.setdefault(column.name, {})
         else:
             payloads.setdefault(column.name, {})[column.field] = columns[column]
-    events = {
-        name: Occurrences(_occurrences(own.get(name), fields.values(), len(times)), fields)
-        for name, fields in payloads.items()
-    }
+    events = {}
+    for name, fields in payloads.items():
+        says = _occurrences(own.get(name), fields.values(), len(times))
+        heard = {field: _where(one, says != NO) for field, one in fields.items()}
+        events[name] = Occurrences(says, heard)
     return Batch(times, signals, events)
+
+
+def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
+    """The same, but that rows say nothing where they are not heard."""
+    if heard.all():
+        return cells
+    says = np.uint8(YES) if cells.says is None else cells.says
+    return replace(cells, says=np.where(heard, says, np.uint8(NO_UPDATE)))
 
 
 def _occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
@@ -164,7 +174,7 @@ def cells_of_values(cells: Iterable[Any], kind: Kind, gaps: Gaps, nothing: objec
     return Cells(
         made,
         None if every else np.array(says, np.uint8),
-        tuple(labels) if kind is Kind.LABEL else None,
+        (tuple(labels) or ("",)) if kind is Kind.LABEL else None,
     )
 
 
@@ -189,9 +199,7 @@ def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
                 raise NotPlainError("a column holds other values than were declared")
             column = column.dictionary_encode()
         places = column.indices.fill_null(0) if given is not None else column.indices
-        labels = column.dictionary.to_pylist()
-        if not len(places):
-            labels = labels or [""]
+        labels = column.dictionary.to_pylist() or [""]
         return cells_of_labels(places.to_numpy(zero_copy_only=False), given, labels, gaps)
     if not (types.is_boolean(type_) or types.is_integer(type_) or types.is_floating(type_)):
         raise NotPlainError("a column holds other values than were declared")

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from typing import BinaryIO
 
+from rvmon.readers import line_chunks
 from rvmon.readers.batch import Batch
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.csv_rows import Layout, csv_samples, split_lines
@@ -17,9 +18,6 @@ from rvmon.readers.rows import Row
 
 LARGE = 1 << 22
 """Bytes from which on a text is worth importing Arrow, if that is installed."""
-
-PIECE = 1 << 20
-"""Bytes that are read at a time; by Arrow four times as many."""
 
 _MARK = b"\xef\xbb\xbf"
 """That some editors begin a text with."""
@@ -71,10 +69,10 @@ def _reader(size: int) -> tuple[ReadPiece, int]:
             if not is_short_of_memory():
                 from rvmon.readers.csv_arrow import arrow_batch
 
-                return arrow_batch, 4 * PIECE
+                return arrow_batch, 4 * line_chunks.BLOCK
     from rvmon.readers.csv_numbers import number_batch
 
-    return number_batch, PIECE
+    return number_batch, line_chunks.BLOCK
 
 
 def _with(body: bytes, texts: Iterator[bytes]) -> Iterator[bytes]:
