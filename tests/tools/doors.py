@@ -304,9 +304,9 @@ def bare(report: Report) -> tuple[object, ...]:
 @contextmanager
 def in_pieces(size: int) -> Iterator[None]:
     """Files are read in pieces of so many bytes, however short they are."""
-    kept = recording.SHORT, line_chunks.BLOCK, parquet.ROWS
-    recording.SHORT, line_chunks.BLOCK, parquet.ROWS = 0, size, 5
+    kept = recording.TINY, line_chunks.BLOCK, parquet.ROWS
+    recording.TINY, line_chunks.BLOCK, parquet.ROWS = 0, size, 5
     try:
         yield
     finally:
-        recording.SHORT, line_chunks.BLOCK, parquet.ROWS = kept
+        recording.TINY, line_chunks.BLOCK, parquet.ROWS = kept
