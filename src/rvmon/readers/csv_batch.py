@@ -6,6 +6,7 @@ import io
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import BinaryIO
 
 from rvmon.readers import line_chunks
@@ -21,6 +22,9 @@ LARGE = 1 << 22
 
 _MARK = b"\xef\xbb\xbf"
 """That some editors begin a text with."""
+
+ODD = 1 << 14
+"""Bytes of a piece that is read row by row if a cell of it is odd."""
 
 ReadPiece = Callable[[bytes, Layout], Batch]
 
@@ -50,16 +54,27 @@ def csv_batches(
     line = 1
     for text in _with(body, texts):
         if text.count(b'"') % 2:  # a cell may go on in the next piece
-            rows = split_lines(_lines(text, texts), line)
-            yield csv_samples(rows, layout)
+            yield csv_samples(split_lines(_lines(text, texts), line), layout)
             return
-        try:
-            batch = read(text, layout)
-        except NotPlainError:
-            yield csv_samples(split_lines(_lines(text, ()), line), layout)
-        else:
-            yield Batch(batch.times, batch.signals, batch.events, line + 1)
+        yield from _batches(text, layout, read, line)
         line += text.count(b"\n")
+
+
+def _batches(
+    text: bytes, layout: Layout, read: ReadPiece, line: int
+) -> Iterator[Batch | Iterator[Row]]:
+    """The rows of a piece behind so many lines; of one with an odd cell by halves."""
+    try:
+        batch = read(text, layout)
+    except NotPlainError:
+        half = text.rfind(b"\n", 0, len(text) // 2) + 1
+        if len(text) < ODD or not half or text.count(b'"', 0, half) % 2:
+            yield csv_samples(split_lines(_lines(text, ()), line), layout)
+            return
+        yield from _batches(text[:half], layout, read, line)
+        yield from _batches(text[half:], layout, read, line + text.count(b"\n", 0, half))
+    else:
+        yield replace(batch, first=line + 1)
 
 
 def _reader(size: int) -> tuple[ReadPiece, int]:
