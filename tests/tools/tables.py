@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from rvmon import native
-from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.monitor.core.planned import DECISIONS, PlannedCore, planned_core
 from rvmon.monitor.core.recorded import NUMBER, RECORD
 from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.core_forms import column_of
 from tests.tools.forms import Compiler
 
@@ -158,7 +158,7 @@ def _differs(one: native.Monitor, other: native.Monitor, looked_at: Sequence[str
     for what in looked_at:
         found = [getattr(run, what)() for run in (one, other)]
         if what == "records":
-            found = [[*_records(*own)] for own in found]
+            found = [sorted(map(str, _records(*own))) for own in found]
         elif what == "open":
             found = [sorted(own, key=by_number) for own in found]
         if found[0] != found[1]:
@@ -172,12 +172,24 @@ def by_number(attempt: Attempt) -> tuple[str, bool, int]:
 
 
 def _records(records: bytes, numbers: bytes) -> Iterator[Any]:
-    """Records with the kinds and bits of what they captured; of what is unknown without them."""
+    """Records with what they captured, less what means nothing.
+
+    That is where captured values stand, when an open attempt was decided, and which number a value
+    is that is unknown.
+    """
     made = np.frombuffer(records, RECORD)
     captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
     for record, values in zip(made, captured, strict=True):
-        place, *rest = record[["captured", *(n for n in RECORD.names or () if n != "captured")]]
-        yield place < 0, rest, [(one["kind"], one["kind"] and one["bits"]) for one in values]
+        found = dict(zip(RECORD.names or (), record.tolist(), strict=True))
+        if found["decision"] == _OPEN:
+            del found["decided"]
+        found["captured"] = found["captured"] < 0 or [
+            (kind, kind and bits) for kind, bits in values.tolist()
+        ]
+        yield sorted(found.items())
+
+
+_OPEN = DECISIONS.index(Decision.OPEN)
 
 
 def planned_for(spec: CheckedSpec, compiler: Compiler) -> PlannedCore:

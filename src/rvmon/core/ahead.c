@@ -2,67 +2,7 @@
  * value comes to compare otherwise, an event occurs or something is due are judged. */
 #include "rows.h"
 
-#include <math.h>
 #include <string.h>
-
-/* ---- which updates can change something */
-
-static bool all_with_constants(const run *r, const signal_plan *s)
-{
-    const list atoms = s->on_change[r->at.phase];
-    const int32_t *place = LIST(PLAN(r), atoms);
-    int32_t i;
-    for (i = 0; i < atoms.count; i++) {
-        if (r->part->atoms[place[i]].op != ATOM_REAL) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Which updates of a signal can change something in a run; sleeping runs of a part hold what the first
- * one does. */
-static int32_t signal_matters(const home *h, const column_watch *w, int32_t local)
-{
-    const run *r = h->root;
-    const signal_plan *s = &h->part->signals[local];
-    const bool apart = h->part->plan->captured > 0;
-    if (((s->flags & (SIGNAL_MARKS | SIGNAL_HISTORY)) != 0) || (r->births[local] < s->births)
-        || (r->absent[local] != 0U) || (apart && (s->perishable >= 0))
-        || (((s->flags & SIGNAL_CAPTURED) != 0) && (GAP(r) != 1))) {
-        return EACH_UPDATE;
-    }
-    if (apart || ((s->flags & SIGNAL_CAPTURED) != 0)
-        || (w->column->kind != RV_COLUMN_REAL) || !all_with_constants(r, s)) {
-        return EACH_VALUE;
-    }
-    return BY_CONSTANTS;
-}
-
-static void learn_how(const batch *s, column_watch *w)
-{
-    int32_t i;
-    w->how = w->is_event ? OCCURRENCES : BY_CONSTANTS;
-    w->perishable = false;
-    for (i = 0; i < w->reader_count; i++) {
-        const home *h = home_of(s, w, i);
-        const int32_t local = w->readers[i].local;
-        int32_t own;
-        if (w->is_event) {
-            own = ((h->part->events[local].flags & EVENT_MARKS) != 0) ? EACH_UPDATE : OCCURRENCES;
-        } else {
-            own = signal_matters(h, w, local);
-            w->perishable = w->perishable || (h->part->signals[local].perishable >= 0);
-        }
-        own = holds_back(h) ? EACH_UPDATE : own;
-        w->how = (own < w->how) ? own : w->how;
-    }
-    if (w->reader_count == 0) {
-        w->how = NO_UPDATES;
-    }
-}
-
-/* ---- looking through rows */
 
 static bool are_alike(const rv_number *a, const rv_number *b)
 {
@@ -70,40 +10,19 @@ static bool are_alike(const rv_number *a, const rv_number *b)
            && ((a->kind == RV_UNKNOWN) || (memcmp(&a->as, &b->as, sizeof a->as) == 0));
 }
 
-/* Learn what compares as the last value does: see `learn_span`. */
-static void learn_between(const batch *s, column_watch *w)
-{
-    int32_t i;
-    int32_t k;
-    w->low = (w->last.kind == RV_REAL) ? -HUGE_VAL : 0.0;
-    w->high = (w->last.kind == RV_REAL) ? HUGE_VAL : 0.0;
-    for (i = 0; (w->last.kind == RV_REAL) && (i < w->reader_count); i++) {
-        const run *r = root_of(s, w, i);
-        const list atoms = r->part->signals[w->readers[i].local].on_change[r->at.phase];
-        const int32_t *place = LIST(PLAN(r), atoms);
-        for (k = 0; k < atoms.count; k++) {
-            const double constant = r->part->atoms[place[k]].constant;
-            if (w->last.as.real <= constant) {
-                w->high = (constant < w->high) ? constant : w->high;
-            }
-            if (w->last.as.real >= constant) {
-                w->low = (constant > w->low) ? constant : w->low;
-            }
-        }
-    }
-}
-
-static bool compares_alike(const column_watch *w, const rv_number *value)
-{
-    const double x = value->as.real;
-    if ((value->kind != RV_REAL) || (w->last.kind != RV_REAL)) {
-        return value->kind == w->last.kind;
-    }
-    return ((w->low < x) && (x < w->high)) || (x == w->last.as.real);
-}
-
 /* Whether so many numbers compare as the last one does; without branches. */
 static inline bool reals_are_within(const double *v, int32_t count, double low, double high, double last)
+{
+    int32_t beyond = 0;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        beyond |= (int32_t)(((v[i] > low) & (v[i] < high)) | (v[i] == last)) ^ 1;
+    }
+    return beyond == 0;
+}
+
+static inline bool wholes_are_within(const int64_t *v, int32_t count, int64_t low, int64_t high,
+                                     int64_t last)
 {
     int32_t beyond = 0;
     int32_t i;
@@ -140,6 +59,12 @@ static bool stays(const column_watch *w, int64_t first, int32_t count)
     const bool all = count == TOGETHER;
     if ((c->says != NULL) || (w->last.kind == RV_UNKNOWN)) {
         return false;
+    }
+    if ((w->how == BY_CONSTANTS) && (c->kind == RV_COLUMN_WHOLE)) {
+        const int64_t *v = &((const int64_t *)c->values)[first];
+        const int64_t last = w->last.as.whole;
+        return all ? wholes_are_within(v, TOGETHER, w->floor, w->ceiling, last)
+                   : wholes_are_within(v, count, w->floor, w->ceiling, last);
     }
     if (w->how == BY_CONSTANTS) {
         const double *v = &((const double *)c->values)[first];
@@ -185,6 +110,25 @@ static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, 
         one[i] = (uint8_t)((says[i] >= least_said) & (says[i] <= most_said));
     }
     return bits_of(one);
+}
+
+/* The rows of truth values at which one is another than before; false if some are no truth values. */
+static bool find_turns(const column_watch *w, int64_t first, int32_t count, uint64_t *found)
+{
+    const uint8_t *v = &((const uint8_t *)w->column->values)[first];
+    uint64_t word;
+    uint8_t most = 0;
+    int32_t i;
+    if ((w->column->kind != RV_COLUMN_BYTE) || (w->column->says != NULL) || (count < TOGETHER)
+        || (w->last.kind != RV_WHOLE) || (w->last.as.whole < 0) || (w->last.as.whole > 1)) {
+        return false;
+    }
+    for (i = 0; i < TOGETHER; i++) {
+        most = (uint8_t)(most | v[i]);
+    }
+    word = bits_of(v);
+    *found = word ^ ((word << 1) | (uint64_t)w->last.as.whole);
+    return most <= 1U;
 }
 
 /* Note at which of the rows that say something a signal is told what may change something. */
@@ -254,7 +198,10 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
         if (c->says != NULL) {
             w->said = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
         }
-        look_for_news(s, w, first);
+        if ((w->how == EACH_UPDATE) || !find_turns(w, first, count, &w->told)) {
+            w->told = 0;
+            look_for_news(s, w, first);
+        }
         moved = w->told;
     }
     if (w->perishable) {

@@ -9,11 +9,12 @@ static void ring(run *r, int64_t t)
     const int32_t nodes = r->part->plan->timers;
     while (timers_next(&r->wake) <= t) {
         const int32_t id = r->wake.ids[0];
+        const int64_t due = r->wake.due[id];
         timers_set(&r->wake, id, NEVER);
         if (id < nodes) {
             soil(r, r->part->timed[id]);
         } else {
-            go_stale(r, t, id - nodes);
+            go_stale(r, due, id - nodes);
         }
     }
 }

@@ -21,7 +21,9 @@ static int64_t last_said(const batch *s, const column_watch *w, int64_t from, in
     return (said != 0U) ? s->first + highest_bit(said) : -1;
 }
 
-void hold_in_all(const batch *s, const column_watch *w, int64_t row)
+/* Have all that read a signal hold what a row says. What compares alike is held at last: nothing but
+ * comparisons with constants looks at it. */
+static void hold_in_all(const batch *s, const column_watch *w, int64_t row)
 {
     const rv_number value = number_in(w->column, row);
     int32_t i;

@@ -153,10 +153,9 @@ static int judge_instant(batch *s, int64_t row, int64_t end)
     for (i = 0; i < s->columns; i++) {
         const column_watch *w = &s->watches[i];
         if (known && !bit_at(w->told, k)) {
-            if ((w->how == BY_CONSTANTS) && bit_at(w->said, k)) {
-                hold_in_all(s, w, row);
-            }
-        } else if (w->is_event) {
+            continue;
+        }
+        if (w->is_event) {
             lay_event(made, w, row, end);
         } else {
             lay_signal(made, w, row, end);

@@ -32,6 +32,8 @@ typedef struct {
     rv_number last;            /* what it said before, while rows are looked through */
     double low;                /* what lies between these, or is the same, compares as that does */
     double high;
+    int64_t floor;             /* the same of whole numbers */
+    int64_t ceiling;
     uint64_t said;             /* rows at which it says something */
     uint64_t told;             /* those of which the core has to hear */
 } column_watch;
@@ -84,6 +86,11 @@ static inline uint64_t bits_before(int64_t place)
 /* ---- rows.c */
 rv_number number_in(const rv_column *c, int64_t row);
 
+/* ---- matters.c */
+void learn_how(const batch *s, column_watch *w);
+void learn_between(const batch *s, column_watch *w);
+bool compares_alike(const column_watch *w, const rv_number *value);
+
 /* ---- ahead.c: at which rows something may change */
 void look_ahead(batch *s, int64_t row);
 
@@ -93,6 +100,5 @@ void end_rows(batch *s, int64_t row);
 int64_t pass_over(batch *s, int64_t row);
 void make_ready(batch *s, int64_t row, int64_t end);
 void note_judged(batch *s, int64_t end);
-void hold_in_all(const batch *s, const column_watch *w, int64_t row);
 
 #endif

@@ -235,7 +235,7 @@ void take_news(run *r, int64_t t, const incoming *in)
     }
 }
 
-/* Count that a signal went stale, once for all that read it. */
+/* Count that a signal went stale at `t`, once for all that read it. */
 static void count_stale(const run *r, int64_t t, int32_t name)
 {
     const rv_monitor *m = r->home->monitor;

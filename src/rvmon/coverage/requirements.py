@@ -18,6 +18,7 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import PlannedCore, planned_as
+from rvmon.monitor.inputs.health import readers_of
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
@@ -179,10 +180,10 @@ class WatchedRequirements:
 
 
 def _planned(compiled: CompiledSpec, traced: Collection[str]) -> PlannedCore:
-    chosen = compiled.requirements.values()
+    chosen = tuple(compiled.requirements.values())
     plan = plan_alone(compiled, traced=traced)
     single = frozenset().union(*(one.single_payloads for one in chosen))
-    made = Kept(pack(plan).data, single, plan.fillable)
+    made = Kept(pack(plan).data, single, readers_of(chosen))
     return planned_as(compiled.checked, tuple(compiled.requirements), made)
 
 

@@ -49,7 +49,7 @@ class Player:
             if name in {one.requirement.id for one in requirements}
         )
         plan = plan_alone(compiled, self._ids, stepped=True)
-        kept = Kept(pack(plan).data, frozenset(), frozenset())
+        kept = Kept(pack(plan).data, frozenset(), {})
         self._planned = planned_as(compiled.checked, self._ids, kept)
         self._run = self._planned.monitor(frozenset())
 

@@ -33,6 +33,14 @@ class Cells:
     says: NDArray[np.uint8] | None = None
     labels: Sequence[str] | None = None
 
+    @property
+    def first_said(self) -> int | None:
+        """The first row that says something, of which there is one."""
+        if self.says is None:
+            return 0
+        said = self.says != NO_UPDATE
+        return int(said.argmax()) if said.any() else None
+
     def cut(self, start: int, stop: int) -> Cells:
         """Some of the rows."""
         says = None if self.says is None else self.says[start:stop]

@@ -50,34 +50,56 @@ def holds_nan(values: NDArray[Any]) -> bool:
 
 def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -> None:
     """Note how unknown values alternate with known ones, and where there are two of one instant."""
-    again = batch.times[1:] == batch.times[:-1]
-    some_again = bool(again.any())
+    some_again = bool((batch.times[1:] == batch.times[:-1]).any())
     for name, cells in batch.signals.items():
         if some_again:
             _note_conflicts(batch, name, cells, conflicts)
-        _note(alternations, name, cells, len(batch.times))
+        said = _last_said(batch, cells) if some_again else _said(cells)
+        _note(alternations, name, unknown_in(cells), said, len(batch.times))
     for name, one in batch.events.items():
-        unknown = one.says == UNKNOWN
-        if unknown.any():
-            alternations.note_column(name, unknown[one.says != NO_UPDATE])
+        bare = one.says != NO_UPDATE
         for field, cells in one.fields.items():
-            _note(alternations, f"{name}.{field}", cells, len(batch.times))
+            said = _said(cells)
+            bare &= cells.says == NO_UPDATE if cells.says is not None else np.False_
+            _note(alternations, f"{name}.{field}", unknown_in(cells), said, len(batch.times))
+        _note(alternations, name, one.says == UNKNOWN, bare, len(batch.times))
 
 
-def _note(alternations: Alternations, name: str, cells: Cells, count: int) -> None:
-    unknown = unknown_in(cells)
+def _note(
+    alternations: Alternations,
+    name: str,
+    unknown: NDArray[np.bool_] | None,
+    said: NDArray[Any] | None,
+    count: int,
+) -> None:
+    """Note what some rows say, of all if `said` is `None`."""
     if unknown is not None:
-        said = slice(None) if cells.says is None else cells.says != NO_UPDATE
-        alternations.note_column(name, unknown[said])
-        return
-    known = count if cells.says is None else int((cells.says != NO_UPDATE).sum())
-    if known:
-        alternations.note_known(name, known)
+        looked_at = unknown if said is None else unknown[said]
+        if looked_at.any():
+            alternations.note_column(name, looked_at)
+            return
+        count = len(looked_at)
+    elif said is not None:
+        count = int(said.sum()) if said.dtype.kind == "b" else len(said)
+    if count:
+        alternations.note_known(name, count)
+
+
+def _said(cells: Cells) -> NDArray[Any] | None:
+    """Which rows say something; `None`: all."""
+    return None if cells.says is None else cells.says != NO_UPDATE
+
+
+def _last_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
+    """The rows that say something, the last of each instant."""
+    rows = _rows_said(batch, cells)
+    times = batch.times[rows]
+    return rows[np.append(times[1:] != times[:-1], True)] if len(rows) else rows
 
 
 def _note_conflicts(batch: Batch, name: str, cells: Cells, conflicts: Conflicts) -> None:
     """Count where neighbours of one instant say different things of a signal."""
-    rows = _said(batch, cells)
+    rows = _rows_said(batch, cells)
     times, values = batch.times[rows], cells.values[rows]
     differs = values[1:] != values[:-1]
     if cells.says is not None:
@@ -88,30 +110,21 @@ def _note_conflicts(batch: Batch, name: str, cells: Cells, conflicts: Conflicts)
         conflicts.add(name, int(times[found[0]]), len(found))
 
 
-def _said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
+def _rows_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
     """The rows that say something."""
     if cells.says is None:
         return np.arange(len(batch.times))
     return np.flatnonzero(cells.says != NO_UPDATE)
 
 
-def first_known(cells: Cells) -> int | None:
-    """The first row with a value."""
-    known = np.ones(len(cells.values), bool) if cells.says is None else cells.says == YES
-    if holds_nan(cells.values):
-        known = known & (cells.values == cells.values)
-    return int(known.argmax()) if known.any() else None
-
-
-def unknown_rows(batch: Batch, cells: Cells) -> Iterator[tuple[bool, NDArray[np.int64]]]:
-    """The instants at which NaN (true), or null, is all that is said of a name."""
+def unknown_rows(
+    batch: Batch, cells: Cells, *, is_signal: bool
+) -> Iterator[tuple[bool, NDArray[np.int64]]]:
+    """The instants at which NaN (true), or null, is the last that is said of a signal, or field."""
     unknown = unknown_in(cells)
     if unknown is None:
         return
-    rows = _said(batch, cells)
-    times = batch.times[rows]
-    last = np.append(times[1:] != times[:-1], True)
-    rows = rows[last]
+    rows = _last_said(batch, cells) if is_signal else _rows_said(batch, cells)
     rows = rows[unknown[rows]]
     for is_nan in (True, False):
         null = np.zeros(len(rows), bool) if cells.says is None else cells.says[rows] == UNKNOWN

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,11 +38,20 @@ def batch_of(times: NDArray[np.int64], layout: Layout, columns: Mapping[Column, 
             payloads.setdefault(column.name, {})
         else:
             payloads.setdefault(column.name, {})[column.field] = columns[column]
-    events = {
-        name: Occurrences(_occurrences(own.get(name), fields.values(), len(times)), fields)
-        for name, fields in payloads.items()
-    }
+    events = {}
+    for name, fields in payloads.items():
+        says = _occurrences(own.get(name), fields.values(), len(times))
+        heard = {field: _where(one, says != NO) for field, one in fields.items()}
+        events[name] = Occurrences(says, heard)
     return Batch(times, signals, events)
+
+
+def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
+    """The same, but that rows say nothing where they are not heard."""
+    if heard.all():
+        return cells
+    says = np.uint8(YES) if cells.says is None else cells.says
+    return replace(cells, says=np.where(heard, says, np.uint8(NO_UPDATE)))
 
 
 def _occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
@@ -128,7 +138,7 @@ def cells_of_labels(
     return Cells(places.astype(np.int32, copy=False), says, tuple(labels))
 
 
-def cells_of_values(cells: Iterable[Any], kind: Kind, gaps: Gaps, nothing: object = None) -> Cells:
+def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: object = None) -> Cells:
     """Values of Python as a column.
 
     Args:
@@ -140,6 +150,9 @@ def cells_of_values(cells: Iterable[Any], kind: Kind, gaps: Gaps, nothing: objec
     Raises:
         NotPlainError: one of them is none of its kind.
     """
+    made = None if gaps else _cells_alike(cells, kind, nothing)
+    if made is not None:
+        return made
     labels: dict[str, int] = {}
     values: list[Any] = []
     says: list[int] = []
@@ -156,16 +169,47 @@ def cells_of_values(cells: Iterable[Any], kind: Kind, gaps: Gaps, nothing: objec
                 value = labels.setdefault(value, len(labels))
         values.append(value or 0)
         says.append(said)
-    try:
-        made: NDArray[Any] = np.array(values, _TYPES[kind])
-    except OverflowError:
-        raise NotPlainError("a number is too large") from None
     every = says.count(YES) == len(says)
     return Cells(
-        made,
+        _array(values, kind),
         None if every else np.array(says, np.uint8),
-        tuple(labels) if kind is Kind.LABEL else None,
+        (tuple(labels) or ("",)) if kind is Kind.LABEL else None,
     )
+
+
+_ALIKE: Mapping[Kind, frozenset[type]] = {
+    Kind.BOOL: frozenset({bool}),
+    Kind.INT: frozenset({int}),
+    Kind.REAL: frozenset({float, int}),
+    Kind.LABEL: frozenset({str}),
+}
+
+
+def _cells_alike(cells: Sequence[Any], kind: Kind, nothing: object) -> Cells | None:
+    """Values of which all are of the kind's own types, or nothing; `None`: they are not."""
+    types = set(map(type, cells))
+    if types <= _ALIKE[kind]:
+        if kind is not Kind.LABEL:
+            return Cells(_array(cells, kind))
+        labels = {label: place for place, label in enumerate(dict.fromkeys(cells))}
+        places = np.fromiter(map(labels.__getitem__, cells), np.int32, len(cells))
+        return Cells(places, None, tuple(labels) or ("",))
+    if type(nothing) not in types or not types - {type(nothing)} <= _ALIKE[kind]:
+        return None
+    given = np.fromiter((cell is not nothing for cell in cells), bool, len(cells))
+    some = _cells_alike([cell for cell in cells if cell is not nothing], kind, nothing)
+    if some is None:
+        return None
+    values = np.zeros(len(cells), some.values.dtype)
+    values[given] = some.values
+    return Cells(values, np.where(given, np.uint8(YES), np.uint8(NO_UPDATE)), some.labels)
+
+
+def _array(values: Sequence[Any], kind: Kind) -> NDArray[Any]:
+    try:
+        return np.array(values, _TYPES[kind])
+    except OverflowError:
+        raise NotPlainError("a number is too large") from None
 
 
 def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
@@ -189,9 +233,7 @@ def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
                 raise NotPlainError("a column holds other values than were declared")
             column = column.dictionary_encode()
         places = column.indices.fill_null(0) if given is not None else column.indices
-        labels = column.dictionary.to_pylist()
-        if not len(places):
-            labels = labels or [""]
+        labels = column.dictionary.to_pylist() or [""]
         return cells_of_labels(places.to_numpy(zero_copy_only=False), given, labels, gaps)
     if not (types.is_boolean(type_) or types.is_integer(type_) or types.is_floating(type_)):
         raise NotPlainError("a column holds other values than were declared")

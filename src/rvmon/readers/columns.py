@@ -117,6 +117,8 @@ class TableRecording:
         stamps = self.layout.stamps
         if stamps.is_stated or stamps.unit != "s":
             return []
+        if self.rows.first:
+            return doubt_unit(self.rows.first, stamps)
         column = self.columns[stamps.column]
         first = cells_of(stamps.column, getattr(column, "iloc", column)[:LOOKED_AT])
         return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)

@@ -164,8 +164,8 @@ def _table(body: bytes, layout: Layout, kinds: Mapping[Kind, Any]) -> Any:
 def _is_like_csv(body: bytes, layout: Layout) -> bool:
     """Whether whoever reads rows finds the same cells.
 
-    Quotes are around whole cells, no cell begins or ends with a space, none is very long, and there
-    is nothing that Arrow alone takes for a number: 0x1F, nan(1).
+    Quotes are around whole cells, none is very long, and nothing is there that Arrow alone takes
+    for a number: 0x1F, nan(1). Spaces around numbers are passed over by both.
     """
     kinds = {column.kind for column in layout.columns}
     if layout.stamps.unit not in _STAMPS or is_long_celled(body):
@@ -177,8 +177,6 @@ def _is_like_csv(body: bytes, layout: Layout) -> bool:
             return _HEXADECIMAL.search(body) is None
         return False
     if b'"' in body and not _is_quoted_whole(body):
-        return False
-    if (b" " in body or b"\t" in body) and _SPACED.search(body):
         return False
     if b"\0" in body or (b"\r" in body and body.count(b"\r") != body.count(b"\r\n")):
         return False
@@ -192,11 +190,12 @@ def _is_like_csv(body: bytes, layout: Layout) -> bool:
 
 def _is_quoted_whole(body: bytes) -> bool:
     """Whether each quote begins a cell or ends one."""
-    begins = body.count(b',"') + body.count(b'\n"') + body.startswith(b'"')
-    ends = body.count(b'",') + body.count(b'"\n') + body.count(b'"\r\n') + body.endswith(b'"')
-    return begins == ends and begins + ends == body.count(b'"')
+    text = np.frombuffer(b"\n%b\n" % body, np.uint8)
+    quotes = np.flatnonzero(text == ord('"'))
+    before, behind = text[quotes - 1], text[quotes + 1]
+    begins = (before == ord(",")) | (before == ord("\n"))
+    ends = (behind == ord(",")) | (behind == ord("\n")) | (behind == ord("\r"))
+    return bool(begins[::2].all() and ends[1::2].all())
 
 
 _HEXADECIMAL = re.compile(rb"0[xX]")
-
-_SPACED = re.compile(rb'(?:^|(?<=[,\n"]))[ \t]|[ \t](?=[,\r\n"]|$)')

@@ -6,8 +6,10 @@ import io
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import BinaryIO
 
+from rvmon.readers import line_chunks
 from rvmon.readers.batch import Batch
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.csv_rows import Layout, csv_samples, split_lines
@@ -18,11 +20,11 @@ from rvmon.readers.rows import Row
 LARGE = 1 << 22
 """Bytes from which on a text is worth importing Arrow, if that is installed."""
 
-PIECE = 1 << 20
-"""Bytes that are read at a time; by Arrow four times as many."""
-
 _MARK = b"\xef\xbb\xbf"
 """That some editors begin a text with."""
+
+ODD = 1 << 14
+"""Bytes of a piece that is read row by row if a cell of it is odd."""
 
 ReadPiece = Callable[[bytes, Layout], Batch]
 
@@ -52,16 +54,27 @@ def csv_batches(
     line = 1
     for text in _with(body, texts):
         if text.count(b'"') % 2:  # a cell may go on in the next piece
-            rows = split_lines(_lines(text, texts), line)
-            yield csv_samples(rows, layout)
+            yield csv_samples(split_lines(_lines(text, texts), line), layout)
             return
-        try:
-            batch = read(text, layout)
-        except NotPlainError:
-            yield csv_samples(split_lines(_lines(text, ()), line), layout)
-        else:
-            yield Batch(batch.times, batch.signals, batch.events, line + 1)
+        yield from _batches(text, layout, read, line)
         line += text.count(b"\n")
+
+
+def _batches(
+    text: bytes, layout: Layout, read: ReadPiece, line: int
+) -> Iterator[Batch | Iterator[Row]]:
+    """The rows of a piece behind so many lines; of one with an odd cell by halves."""
+    try:
+        batch = read(text, layout)
+    except NotPlainError:
+        half = text.rfind(b"\n", 0, len(text) // 2) + 1
+        if len(text) < ODD or not half or text.count(b'"', 0, half) % 2:
+            yield csv_samples(split_lines(_lines(text, ()), line), layout)
+            return
+        yield from _batches(text[:half], layout, read, line)
+        yield from _batches(text[half:], layout, read, line + text.count(b"\n", 0, half))
+    else:
+        yield replace(batch, first=line + 1)
 
 
 def _reader(size: int) -> tuple[ReadPiece, int]:
@@ -71,10 +84,10 @@ def _reader(size: int) -> tuple[ReadPiece, int]:
             if not is_short_of_memory():
                 from rvmon.readers.csv_arrow import arrow_batch
 
-                return arrow_batch, 4 * PIECE
+                return arrow_batch, 4 * line_chunks.BLOCK
     from rvmon.readers.csv_numbers import number_batch
 
-    return number_batch, PIECE
+    return number_batch, line_chunks.BLOCK
 
 
 def _with(body: bytes, texts: Iterator[bytes]) -> Iterator[bytes]:

@@ -18,10 +18,11 @@ import msgspec
 import numpy as np
 
 from rvmon.errors import TraceError
+from rvmon.readers import line_chunks
 from rvmon.readers.batch import NO, YES, Batch, Occurrences
 from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.cells import cells_of_values
-from rvmon.readers.csv_batch import PIECE, whole_pieces
+from rvmon.readers.csv_batch import whole_pieces
 from rvmon.readers.jsonl_rows import jsonl_samples
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
@@ -77,7 +78,7 @@ def jsonl_batches(
         TraceError: with the line's number.
     """
     line = 0
-    for text in whole_pieces(file, PIECE):
+    for text in whole_pieces(file, line_chunks.BLOCK):
         if not line and schema.stamps is None:
             first = text.partition(b"\n")[0]
             found_stamps(stamps_of("t_ns" if b'"t_ns"' in first else "t"))

@@ -46,6 +46,9 @@ FORMATS = {
 SHORT = 1 << 15
 """Bytes of text that are sooner read line by line than NumPy is imported."""
 
+TINY = 1 << 10
+"""Bytes of text that are sooner read line by line than as columns."""
+
 
 class FileRecording:
     """A recording, read as a stream: memory does not grow with its length.
@@ -155,7 +158,8 @@ class FileRecording:
         Raises:
             TraceError: with file and line.
         """
-        if self._messages is not None or self.is_short or not can_be_read_again(self.path):
+        of_columns = self._messages is None and can_be_read_again(self.path)
+        if not of_columns or self._has_less_than(TINY):
             yield from self
             return
         with self._named_errors():
@@ -192,10 +196,14 @@ class FileRecording:
 
     @property
     def is_short(self) -> bool:
-        """Whether it is a file of so little text that columns do not pay."""
+        """Whether it is a file of so little text that NumPy is not worth importing."""
+        return self._has_less_than(SHORT)
+
+    def _has_less_than(self, size: int) -> bool:
+        """Whether it is a file of less text than so many bytes."""
         with suppress(OSError):
             is_text = self._format in ("csv", "jsonl") and can_be_read_again(self.path)
-            return is_text and Path(self.path).stat().st_size < SHORT
+            return is_text and Path(self.path).stat().st_size < size
         return False
 
     def blocks(

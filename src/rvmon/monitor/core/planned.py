@@ -46,7 +46,7 @@ class PlannedCore:
         words: of signals, events, fields: a number for each label, or field.
         kinds: of the same; of events they mean nothing.
         single: of each name, whether only one payload of it can be judged at one instant.
-        fillable: see `rvmon.plan.plan.Plan.fillable`.
+        readers: by name that is read, the ids of the requirements that do.
     """
 
     packed: Packed
@@ -55,7 +55,7 @@ class PlannedCore:
     words: tuple[Mapping[str, int] | None, ...]
     kinds: bytes
     single: bytes
-    fillable: frozenset[str]
+    readers: Mapping[str, tuple[str, ...]]
 
     @property
     def single_payloads(self) -> frozenset[str]:
@@ -154,10 +154,12 @@ def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
     # What makes it is imported now: it is seldom made where it is kept.
     from rvmon.core.plan import pack
     from rvmon.monitor.compiled.code_plan import plan_alone
+    from rvmon.monitor.inputs.health import readers_of
 
     plan = plan_alone(compiled, ids)
-    single = frozenset().union(*(one.single_payloads for one in compiled.chosen(ids)))
-    return Kept(pack(plan, next_law=compiled.next_law).data, single, plan.fillable)
+    chosen = compiled.chosen(ids)
+    single = frozenset().union(*(one.single_payloads for one in chosen))
+    return Kept(pack(plan, next_law=compiled.next_law).data, single, readers_of(chosen))
 
 
 def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> PlannedCore | None:
@@ -202,7 +204,7 @@ def planned_as(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCo
         ),
         bytes(map(_KINDS.index, kinds)),
         bytes(name in made.single for name in names),
-        made.fillable,
+        made.readers,
     )
 
 

@@ -55,7 +55,7 @@ def known_truths(
     Cost: one pass over the samples in C.
     """
     plan = plan_of_truths(spec, formulas, captured)
-    planned = planned_as(spec, (), Kept(pack(plan).data, frozenset(), frozenset()))
+    planned = planned_as(spec, (), Kept(pack(plan).data, frozenset(), {}))
     declared = frozenset(planned.numbers)
     run = planned.monitor(frozenset() if names is None else declared - names)
     validator = Validator(spec, None if names is None else names & declared, frozenset())

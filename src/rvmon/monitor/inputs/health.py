@@ -107,7 +107,7 @@ class HealthLog:
         intake: Intake | None,
     ) -> list[Health]:
         """All findings of the run."""
-        return self.told(_readers(requirements), arrivals, intake)
+        return self.told(readers_of(requirements), arrivals, intake)
 
     def told(
         self, readers: Mapping[str, tuple[str, ...]], arrivals: Arrivals, intake: Intake | None
@@ -127,7 +127,7 @@ class HealthLog:
 
     def seen(self, requirements: Sequence[CompiledRequirement]) -> list[Health]:
         """The unknown values that were counted."""
-        return self._seen_by(_readers(requirements))
+        return self._seen_by(readers_of(requirements))
 
     def _seen_by(self, readers: Mapping[str, tuple[str, ...]]) -> list[Health]:
         return [
@@ -178,8 +178,8 @@ def by_name(entry: Health) -> tuple[str, HealthKind]:
     return entry.name, entry.kind
 
 
-def _readers(requirements: Sequence[CompiledRequirement]) -> dict[str, tuple[str, ...]]:
-    """By name the requirements that read it."""
+def readers_of(requirements: Sequence[CompiledRequirement]) -> dict[str, tuple[str, ...]]:
+    """By name that is read, the ids of the requirements that do."""
     readers: dict[str, tuple[str, ...]] = {}
     for compiled in requirements:
         for name in compiled.reads:
