@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
 
 _ODD = (b'"', b" ", b"\t", b"\0", b"\r")
 
-_READERS = {Kind.BOOL: truth_values, Kind.INT: whole_numbers, Kind.REAL: decimals}
+READERS = {Kind.BOOL: truth_values, Kind.INT: whole_numbers, Kind.REAL: decimals}
+"""What reads the cells of a column, by what its values are."""
 
 
 def number_batch(body: bytes, layout: Layout) -> Batch:
@@ -38,9 +40,25 @@ def number_batch(body: bytes, layout: Layout) -> Batch:
         raise NotPlainError("it has quoted or odd characters")
     if layout.gaps.no_update is not None:
         raise NotPlainError("text may stand for no update")
-    text = np.frombuffer(body if body.endswith(b"\n") else body + b"\n", np.uint8)
+    cells = text_cells(body if body.endswith(b"\n") else body + b"\n", len(layout.header))
+    times = plain_values(instants(cells(layout.time), layout.stamps.unit))
+    return batch_of(
+        times, layout, {one: _cells(cells(one.index), one, layout) for one in layout.columns}
+    )
+
+
+def text_cells(body: bytes, width: int) -> Callable[[int], TextCells]:
+    """What gives the cells of a column by its place.
+
+    Args:
+        body: whole lines, none with a quoted cell, each with its end.
+        width: how many columns they have.
+
+    Raises:
+        NotPlainError: not all lines have so many, or a cell is longer than readers of rows take.
+    """
+    text = np.frombuffer(body, np.uint8)
     ends = np.flatnonzero((text == ord(",")) | (text == ord("\n")))
-    width = len(layout.header)
     rows, rest = divmod(len(ends), width)
     if rest:
         raise NotPlainError("its lines are not all alike")
@@ -51,34 +69,32 @@ def number_batch(body: bytes, layout: Layout) -> Batch:
     starts = np.concatenate(([0], ends[:-1] + 1)).reshape(rows, width)
     if (table - starts).max() > csv.field_size_limit():  # whoever reads rows refuses it
         raise NotPlainError("it has very long cells")
-
-    def cells(index: int) -> TextCells:
-        return TextCells(text, starts[:, index], table[:, index])
-
-    times = _plain(instants(cells(layout.time), layout.stamps.unit))
-    return batch_of(
-        times, layout, {one: _cells(cells(one.index), one, layout) for one in layout.columns}
-    )
+    return lambda index: TextCells(text, starts[:, index], table[:, index])
 
 
 def _cells(cells: TextCells, column: Column, layout: Layout) -> Cells:
     """A column; an empty cell says nothing."""
     if column.kind is Kind.LABEL:
         raise NotPlainError("labels are no numbers")
-    read = _READERS[column.kind]
+    read = READERS[column.kind]
     given = cells.ends > cells.starts
     if given.all():
-        return cells_of_array(_plain(read(cells)), None, column.kind, layout.gaps)
+        return cells_of_array(plain_values(read(cells)), None, column.kind, layout.gaps)
     rows = np.flatnonzero(given)
     some: NDArray[Any] = np.array([], np.float64)
     if len(rows):
-        some = _plain(read(TextCells(cells.text, cells.starts[rows], cells.ends[rows])))
+        some = plain_values(read(TextCells(cells.text, cells.starts[rows], cells.ends[rows])))
     values = np.zeros(len(given), some.dtype)
     values[rows] = some
     return cells_of_array(values, given, column.kind, layout.gaps)
 
 
-def _plain(values: NDArray[Any] | None) -> NDArray[Any]:
+def plain_values(values: NDArray[Any] | None) -> NDArray[Any]:
+    """What a reader of cells found, if it could read them all.
+
+    Raises:
+        NotPlainError: it could not.
+    """
     if values is None:
         raise NotPlainError("a cell is no plain number or truth value")
     return values

@@ -125,7 +125,7 @@ def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
     if len(rows) != lines:
         raise NotPlainError("its lines are not all alike")
     batch = Batch(
-        _instants([row.stamp for row in rows], shape.stamps),
+        instants_of([row.stamp for row in rows], shape.stamps),
         {
             name: cells_of_values(
                 _cells(rows, shape.places[name]), kind, schema.gaps, msgspec.UNSET
@@ -169,7 +169,7 @@ def _shape_of(text: bytes, schema: Schema) -> _Shape:
     fields, names = _fields(whole, "", "", schema, shape)
     fields.insert(0, ("stamp", int | float))
     names["stamp"] = stamps[0]
-    shape.decode = msgspec.json.Decoder(_struct(fields, names)).decode_lines
+    shape.decode = msgspec.json.Decoder(line_struct(fields, names)).decode_lines
     return shape
 
 
@@ -187,7 +187,8 @@ def _join(whole: dict[str, Any], more: Mapping[str, Any], schema: Schema, prefix
             raise NotPlainError("a name is an object, and something else")
 
 
-def _struct(fields: Sequence[Any], names: Mapping[str, str]) -> Any:
+def line_struct(fields: Sequence[Any], names: Mapping[str, str]) -> Any:
+    """The type that lines with these fields, and no others, are decoded to."""
     return msgspec.defstruct(
         "Line", fields, rename=dict(names), forbid_unknown_fields=True, gc=False
     )
@@ -212,7 +213,7 @@ def _fields(
             shape.places[name] = place + own
         elif isinstance(value, dict):
             inside = _fields(value, f"{name}.", f"{place}{own}.", schema, shape)
-            object_ = _struct(*inside)
+            object_ = line_struct(*inside)
             fields.append((own, object_, msgspec.field(default_factory=object_)))
             continue
         else:
@@ -226,7 +227,12 @@ def _cells(rows: Sequence[Any], place: str) -> list[Any]:
     return list(map(attrgetter(place), rows))
 
 
-def _instants(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
+def instants_of(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
+    """The ticks of some stamps.
+
+    Raises:
+        NotPlainError: they are no plain numbers, or out of range.
+    """
     found = np.array(stamps)
     if found.dtype.kind not in ("i" if unit.unit == "ns" else "fi"):
         raise NotPlainError("its stamps are no plain numbers")
