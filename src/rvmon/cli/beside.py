@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from rvmon.coverage.hits import Hits
     from rvmon.coverage.monitor import CoverageMonitor
     from rvmon.verdict.report import Report
-
-Read = Callable[[FileRecording], Iterable[Sample]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,16 +107,12 @@ class Beside:
         """Whether there is nothing to find while samples go by."""
         return self._coverage is None
 
-    def reading(self, read: Read) -> Callable[[FileRecording], Iterator[Sample]]:
-        """How to read a recording: each sample is seen here once it was judged."""
-
-        def samples(recording: FileRecording) -> Iterator[Sample]:
-            for sample in read(recording):
-                yield sample
-                if self._coverage is not None and (self._end is None or sample.t <= self._end):
-                    self._coverage.step_ns(sample.t, sample.values)
-
-        return samples
+    def reading(self, recording: FileRecording) -> Iterator[Sample]:
+        """The samples of a recording: each is seen here once it was judged."""
+        for sample in recording:
+            yield sample
+            if self._coverage is not None and (self._end is None or sample.t <= self._end):
+                self._coverage.step_ns(sample.t, sample.values)
 
     def finished(self, report: Report) -> Report:
         """The report with what was found, when all samples went by."""

@@ -43,6 +43,7 @@ class Source:
         is_cut: whether what comes after that end is left out.
         row_by_row: why columns are not to be looked at; empty if they may be.
         read: gives the samples of the recording.
+        shown: what samples, batches and blocks go through as they are read.
     """
 
     recording: Recording
@@ -50,6 +51,7 @@ class Source:
     is_cut: bool = False
     row_by_row: str = ""
     read: Callable[[Any], Iterable[Sample]] = iter
+    shown: Callable[[Iterator[Any]], Iterator[Any]] = iter
 
     @property
     def names(self) -> frozenset[str] | None:
@@ -73,7 +75,7 @@ class Source:
             ordered: whether what comes behind the first that is too late is too late as well: it is
                 not read, and may be broken.
         """
-        until, samples = self.until, iter(self.read(self.recording))
+        until, samples = self.until, self.shown(iter(self.read(self.recording)))
         if until is None or not self.is_cut:
             return samples
         if ordered:
@@ -87,7 +89,7 @@ class Source:
             yield from self.samples(ordered=True)
             return
         until = self.until if self.is_cut else None
-        for piece in read():
+        for piece in self.shown(read()):
             if until is None:
                 yield piece
             elif isinstance(piece, Sample):
@@ -116,8 +118,7 @@ class Source:
             raise NotPlainError("its samples come one by one")
 
         def read() -> Iterator[Block]:
-            found: Iterator[Block] = blocks(fillable, self.until if self.is_cut else None)
-            return found
+            return self.shown(blocks(fillable, self.until if self.is_cut else None))
 
         begun = read()
         first = next(begun, None)
