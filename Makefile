@@ -65,7 +65,7 @@ fuzz: $(VENV)/.dev  ## feed damaged input to all readers, and to the native core
 	  $(BIN)/python -m $$one --seconds $(or $(SECONDS),600) || code=1; done; exit $$code
 
 clean:  ## remove the environment and all output
-	rm -rf $(VENV) out dist .mypy_cache .pytest_cache .ruff_cache .hypothesis src/rvmon/core/_core.*so
+	rm -rf $(VENV) out dist .mypy_cache .pytest_cache .ruff_cache .hypothesis src/rvmon/native/_core.*so
 
 $(BIN)/python:
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \

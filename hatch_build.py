@@ -1,7 +1,7 @@
 """Compiles the native core when the package is built, and in place: `python hatch_build.py`.
 
 The binding, `src/rvmon/core/module.c`, and all other `src/rvmon/core/*.c` as one unit, which makes
-them faster, are compiled and linked to one extension, `rvmon.core._core`. The compiler is `$CC`,
+them faster, are compiled and linked to one extension, `rvmon.native._core`. The compiler is `$CC`,
 Python's own, `cc`, `gcc` or `clang`; where none works, the build asks for the package `ziglang`,
 which brings one. Where Python's headers are missing, the C takes its own declarations
 (`python_abi.h`). `$CFLAGS` and `$LDFLAGS` are added.
@@ -31,6 +31,7 @@ except ImportError:  # run as a program, which needs Python alone
     BuildHookInterface = object
 
 CORE = Path(__file__).resolve().parent / "src" / "rvmon" / "core"
+NATIVE = CORE.with_name("native")
 ZIG = "ziglang>=0.13,<1"
 LIMITED_API = "0x030B0000"
 """The stable ABI of Python 3.11, which one extension for all later versions needs."""
@@ -40,7 +41,7 @@ PROBE = "#include <math.h>\n#include <stdlib.h>\nint probe(void);\nint probe(voi
 
 
 class CoreBuildHook(BuildHookInterface):
-    """Puts the extension into wheels, and beside its sources for editable installations."""
+    """Puts the extension into wheels, and into the package itself for editable installations."""
 
     PLUGIN_NAME = "custom"
 
@@ -51,11 +52,11 @@ class CoreBuildHook(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Compile before the files of the wheel are collected."""
         if version == "editable":
-            build(CORE)
+            build(NATIVE)
             return
         self._made = tempfile.TemporaryDirectory()
         made = build(Path(self._made.name))
-        build_data["force_include"][str(made)] = f"rvmon/core/{made.name}"
+        build_data["force_include"][str(made)] = f"rvmon/native/{made.name}"
         build_data["pure_python"] = False
         build_data["tag"] = wheel_tag()
 
@@ -152,7 +153,7 @@ def _flags_of_python() -> list[str]:
 
 def _source_hash() -> str:
     """As the package computes it at import; the package itself needs what is not installed yet."""
-    return str(runpy.run_path(str(CORE / "sources.py"))["source_hash"]())
+    return str(runpy.run_path(str(NATIVE / "sources.py"))["source_hash"](str(CORE)))
 
 
 def _unit() -> str:
@@ -195,5 +196,5 @@ def _run(line: Sequence[str]) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Compile the native core.")
-    parser.add_argument("--into", type=Path, default=CORE, metavar="FOLDER", help="else in place")
+    parser.add_argument("--into", type=Path, default=NATIVE, metavar="FOLDER", help="else in place")
     print(build(parser.parse_args().into))

@@ -107,7 +107,7 @@ def _built(tools: Path) -> Path:
         tops = {name.split("/")[0] for name in names if ".dist-info/" not in name}
     if tops != {"rvmon", "handover"} or "handover/specs/handover.rv" not in names:
         raise ReleaseError(f"the wheel holds {sorted(tops)}, or lacks handover/specs")
-    if "-cp311-abi3-" not in wheel.name or "rvmon/core/_core.abi3.so" not in names:
+    if "-cp311-abi3-" not in wheel.name or "rvmon/native/_core.abi3.so" not in names:
         raise ReleaseError(f"{wheel.name} holds no native core for all versions of Python")
     with tarfile.open(sdist) as archive:
         folders = {name.split("/")[1] for name in archive.getnames() if "/" in name}

@@ -213,6 +213,55 @@ static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
     return (what == 1) ? rv_found(m, t, lost, count) : rv_late(m, t - 3, lost, count - 1);
 }
 
+/* What is told beside attempts. */
+static uint64_t noted_watch(const rv_monitor *m, uint64_t sum)
+{
+    const rv_range *found;
+    int32_t number;
+    int32_t which;
+    int64_t i;
+    const rv_hit *hits = rv_hits(m, &number);
+    for (i = 0; i < number; i++) {
+        sum = mixed(mixed(sum, hits[i].count), hits[i].first);
+    }
+    for (number = 0; (number < rv_sizes_of(m).requirements) && (number < NAMES_MOST); number++) {
+        int32_t locations;
+        const rv_hit *moves = rv_moves(m, number, &locations);
+        for (i = 0; i < (int64_t)locations * locations; i++) {
+            sum = mixed(mixed(sum, moves[i].count), moves[i].first);
+        }
+    }
+    for (number = 0; rv_truths(m, number, false, false, &found) >= 0; number++) {
+        for (which = 0; which < 4; which++) {
+            const int64_t count = rv_truths(m, number, which % 2 == 1, which >= 2, &found);
+            for (i = 0; i < count; i++) {
+                sum = mixed(mixed(sum, found[i].first), found[i].last);
+            }
+        }
+    }
+    return sum;
+}
+
+/* How a run stands at an instant, told in room that is too small, too. */
+static uint64_t noted_situation(rv_monitor *m, uint64_t sum, int64_t now)
+{
+    static int64_t words[1 << 16];
+    const int64_t room = 1 << 16;
+    int64_t next;
+    const int64_t most = rv_situation(m, now, words, 3, &next);
+    int64_t count = rv_situation(m, now, words, room, &next);
+    int64_t i;
+    if ((count > most) || ((most < 0) != (count < 0))) {
+        (void)fprintf(stderr, "there is more to be told than was said\n");
+        abort();
+    }
+    count = (count > room) ? room : count;
+    for (i = 0; i < count; i++) {
+        sum = mixed(sum, words[i]);
+    }
+    return mixed(mixed(sum, count), next);
+}
+
 /* A run by a script, from its begin; returns the sum of all that it says. */
 static uint64_t one_run(rv_monitor *m, script s)
 {
@@ -255,8 +304,12 @@ static uint64_t one_run(rv_monitor *m, script s)
             t += (t < (INT64_C(1) << 62)) ? step : 0;
         }
     }
+    if (byte_of(&s) < 64) {
+        sum = noted_situation(m, sum, t);
+    }
     sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
     sum = noted_records(m, sum, true);
+    sum = noted_watch(m, sum);
     for (i = 0; (i < sizes.requirements) && (i < NAMES_MOST); i++) {
         const int verdict = rv_verdict(m, i);
         sum = mixed(mixed(sum, verdict), rv_count(m, i).failed);

@@ -86,6 +86,33 @@ static inline attempt *attempt_at(const home *h, int32_t i)
     return (attempt *)(void *)(h->pool + h->stride * (size_t)i);
 }
 
+/* The place of the lowest bit that is set, and of the highest one; there is one. */
+static inline int32_t lowest_bit(uint64_t word)
+{
+#if defined(__GNUC__)
+    return (int32_t)__builtin_ctzll(word);
+#else
+    int32_t i = 0;
+    while (((word >> i) & 1U) == 0U) {
+        i++;
+    }
+    return i;
+#endif
+}
+
+static inline int32_t highest_bit(uint64_t word)
+{
+#if defined(__GNUC__)
+    return 63 - (int32_t)__builtin_clzll(word);
+#else
+    int32_t i = 63;
+    while (((word >> i) & 1U) == 0U) {
+        i--;
+    }
+    return i;
+#endif
+}
+
 /* A larger array with what stood in the old one; NULL if memory is short, which spoils the run. */
 void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
 
@@ -132,7 +159,7 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
 }
 
 void forget(run *r);
-void go_stale(run *r, int32_t perishable, int64_t t);
+void go_stale(run *r, int64_t t, int32_t perishable);
 void lack(run *r, bool event, int32_t local);
 
 /* ---- outages.c: names that may have said anything */
@@ -177,6 +204,7 @@ void settle_phase(run *r);
 typedef struct {
     int32_t location;
     int64_t *clocks;
+    rv_hit *moves;             /* where it is counted where it goes; NULL: it is not */
 } token;
 
 int32_t class_of_letter(const run *r, int32_t index, bool better);
@@ -349,7 +377,10 @@ typedef struct {
     rv_monitor *monitor;
 } form;
 
-form form_of(const run *r, int32_t index);
+form form_at(const run *r, int32_t number);
+form form_of(const run *r, int32_t index); /* of a judge */
+networks *made_networks(const form *f);
+bool read_leaves(const run *r, const form *f, networks *net, bool *parted);
 int64_t instant_of(const form *f, const network *w, int64_t position);
 int64_t position_by(const form *f, const network *w, int64_t t);
 int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance);
@@ -374,6 +405,27 @@ void network_come_to(run *r, int32_t index, int64_t t);
 bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
 void network_close(run *r, int32_t index, int64_t end, int64_t reached);
 bool network_outlasts(run *r, int32_t index, const attempt *x);
+
+/* ---- watch.c: what is kept beside what becomes of attempts */
+bool begin_watch(home *h);
+void watch(run *r, int64_t t);
+void end_watch(run *r, int64_t end);
+
+/* ---- cover.c: what runs hit of coverpoints and crosses */
+bool begin_cover(home *h);
+void call_watch(run *r, int32_t number);
+void cover(run *r, int64_t t);
+
+/* ---- moves.c: where attempts go in automata */
+bool begin_moves(home *h);
+void count_move(const machine *a, rv_hit *moves, int32_t from, int32_t to, int64_t count, int64_t t);
+void count_begin(run *r, int32_t index, int64_t t);
+
+/* Where it is counted where the attempts of a judge go; NULL: it is not. */
+static inline rv_hit *moves_of(const run *r, int32_t index)
+{
+    return (r->home->moves != NULL) ? r->home->moves[index] : NULL;
+}
 
 /* ---- windows.c: attempts that a chain of windows judges */
 bool is_chained(const run *r, int32_t index);
@@ -444,6 +496,7 @@ void home_lose(home *h, int64_t t);
 void home_begin_blank(home *h, int64_t t);
 void rest_all(home *h);
 void untouch_all(home *h);
+void home_come_to(home *h, int64_t end);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
 run *following(const home *h, const run *r);

@@ -14,7 +14,7 @@ static void ring(run *r, int64_t t)
         if (id < nodes) {
             soil(r, r->part->timed[id]);
         } else {
-            go_stale(r, id - nodes, due);
+            go_stale(r, due, id - nodes);
         }
     }
 }
@@ -36,6 +36,9 @@ int32_t followed(const run *r, int32_t index)
 void touch_all(run *r, uint8_t what)
 {
     int32_t i;
+    for (i = 0; i < r->part->plan->watches.count; i++) {
+        call_watch(r, i);
+    }
     for (i = 0; i < r->part->plan->judges.count; i++) {
         touch(r, i, what);
     }
@@ -94,6 +97,9 @@ void look_at_all(run *r)
 void have_judged(run *r, int64_t t)
 {
     int32_t i;
+    if (r->part->is_watched) {
+        watch(r, t);
+    }
     for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {
         const int32_t index = r->touched[i];
         if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && runs_on(r, index)) {

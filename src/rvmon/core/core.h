@@ -148,6 +148,14 @@ typedef struct {
 
 rv_times rv_times_of(const rv_monitor *m);
 
+/* How often a signal went stale, and when first. */
+typedef struct {
+    int64_t count;
+    int64_t first;
+} rv_staleness;
+
+rv_staleness rv_stale(const rv_monitor *m, int32_t signal);
+
 /* Records since the last `rv_forget_records`, of each call in the order of reports: by decision, then
  * requirement, then number. Valid until the next call. */
 int64_t rv_records(const rv_monitor *m, const rv_record **records);
@@ -215,6 +223,39 @@ int rv_verdict(const rv_monitor *m, int32_t requirement);
 /* Whether memory was short in this run. */
 bool rv_spoilt(const rv_monitor *m);
 
+/* Where the formulas of a plan are known that it keeps the truths of (`truths` in plan.md): ranges of
+ * positions at which an operator has a value, the unknown taken for the worse or for the better; ticks,
+ * ticks divided by the gap, or, where only samples are positions, their numbers from 0. They go as far
+ * as the last change, and to the end once the run is finished. Valid until the next call; -1: the plan
+ * keeps none, or has no such operator. */
+typedef struct {
+    int64_t first;
+    int64_t last;
+} rv_range;
+
+int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, bool value,
+                  const rv_range **found);
+
+/* How often each item of the groups of a plan was hit in the run, and when first (0 of none), in their
+ * order; NULL and 0: it has none. */
+typedef struct {
+    int64_t count;
+    int64_t first;
+} rv_hit;
+
+const rv_hit *rv_hits(const rv_monitor *m, int32_t *items);
+
+/* How often attempts of a requirement went from one location of its automaton to another, and when
+ * first: by `locations` times the one plus the other; one to itself: began, in the first. Those in doubt,
+ * and those of which two readings differ, are left out. NULL and 0: the plan does not ask for it. */
+const rv_hit *rv_moves(const rv_monitor *m, int32_t requirement, int32_t *locations);
+
+/* How the run stands at `now`, at or after its last sample: words that are equal for runs that go on
+ * alike, each as it is seen from there. Returns how many there are, of which `room` are written; `next`
+ * is the first instant behind at which time alone may change something. Nothing but rv_finish at `now`
+ * may follow. -1: nothing is told, as the run is over, or a chain of windows judges. */
+int64_t rv_situation(rv_monitor *m, int64_t now, int64_t *words, int64_t room, int64_t *next);
+
 /* What a plan declares. */
 typedef struct {
     int32_t signals;
@@ -229,18 +270,21 @@ rv_sizes rv_sizes_of(const rv_monitor *m);
 /* The first field of an event, and how many it has. */
 int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first);
 
-/* Columns: rows of one recording, in ascending order of time. */
+/* Columns: rows of one recording, in order of time; those of one instant are one sample, in which of the
+ * values of a signal the last one counts. What is real is given as REAL, NaN for unknown; all else as
+ * WHOLE or BYTE. */
 enum { RV_COLUMN_REAL, RV_COLUMN_WHOLE, RV_COLUMN_BYTE };
 
-typedef struct {
-    const void *values;        /* as `kind` says; of an event: NULL */
-    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update */
+typedef struct rv_column {
+    const void *values;        /* as `kind` says; NULL: of an event, or of a field that is unknown */
+    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update; of a field: it is not given */
     int32_t kind;
-    int32_t name;
-    const rv_number *const *fields; /* of an event: a column for each field, or NULL */
+    int32_t name;              /* of a field nothing */
+    const struct rv_column *fields; /* of an event: a column for each field, or NULL; it occurs with a
+                                * payload where one of them is given */
 } rv_column;
 
-/* Judge rows; `done` counts those that were. */
+/* Judge rows; `done` counts those that were. No name has two columns. */
 int rv_rows(rv_monitor *m, const int64_t *times, int64_t rows, const rv_column *columns,
             int32_t count, int64_t *done);
 

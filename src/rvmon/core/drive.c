@@ -79,6 +79,8 @@ static bool drive_readings(const journey *g, int32_t at, attempt *x)
     token better;
     const bool was_parted = x->parted;
     int64_t own = NEVER;
+    worse.moves = NULL; /* which of both it is nobody knows */
+    better.moves = NULL;
     worse.location = x->location;
     worse.clocks = x->clocks;
     better.location = x->parted ? x->better : x->location;
@@ -127,6 +129,7 @@ static bool drive(const journey *g, int32_t at, attempt *x)
     }
     k.location = x->location;
     k.clocks = x->clocks;
+    k.moves = x->sure ? moves_of(g->r, g->index) : NULL;
     due = drive_token(g, &k, g->j->letter);
     x->location = k.location;
     if (k.location <= PASSED) {
@@ -322,5 +325,9 @@ void reach_judge(run *r, int32_t index, int64_t t)
 bool drive_from(run *r, int32_t index, int32_t at, int64_t t)
 {
     const journey g = journey_of(r, index, BY_STEP, t, t);
-    return drive(&g, at, attempt_at(r->home, at));
+    attempt *x = attempt_at(r->home, at);
+    if (x->sure && (g.j->letter == g.j->other)) {
+        count_begin(r, index, t);
+    }
+    return drive(&g, at, x);
 }

@@ -4,19 +4,6 @@
 
 #include <string.h>
 
-static int32_t lowest_bit(uint64_t word)
-{
-#if defined(__GNUC__)
-    return (int32_t)__builtin_ctzll(word);
-#else
-    int32_t i = 0;
-    while (((word >> i) & 1U) == 0U) {
-        i++;
-    }
-    return i;
-#endif
-}
-
 void soil(run *r, int32_t node)
 {
     const int32_t word = node >> 6;
@@ -128,7 +115,12 @@ static void store(run *r, int32_t place, uint8_t value, int64_t t)
     }
     for (i = 0; i < n->links.count; i++) {
         const link_plan *l = &PLAN(r)->links[n->links.first + i];
-        judge *j = &r->judges[l->judge];
+        judge *j;
+        if (l->kind == LINK_WATCH) {
+            call_watch(r, l->judge);
+            continue;
+        }
+        j = &r->judges[l->judge];
         if ((l->kind & LINK_LETTER) != 0) {
             j->worse += l->worse[value] - l->worse[was];
             j->better += l->better[value] - l->better[was];

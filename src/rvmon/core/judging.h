@@ -38,10 +38,7 @@ typedef struct {
 } turn;
 
 /* Positions at which something is known. */
-typedef struct {
-    int64_t first;
-    int64_t last;
-} range;
+typedef rv_range range;
 
 typedef struct {
     range *at;

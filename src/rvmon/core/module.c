@@ -1,10 +1,11 @@
-/* rvmon.core._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
+/* rvmon.native._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
  * columns, and gives out attempts. The only file of the core that knows of Python. */
 #include "module_attempts.h"
 #include "module_open.h"
 #include "module_outages.h"
 #include "module_results.h"
 #include "module_rows.h"
+#include "module_watch.h"
 
 #ifndef RVMON_SOURCE_HASH
 #define RVMON_SOURCE_HASH "" /* compiled by hand */
@@ -166,11 +167,6 @@ static PyObject *advance_of(monitor *c, PyObject *until)
     return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
 }
 
-static PyObject *instant(int64_t t, int64_t none)
-{
-    return (t == none) ? Py_NewRef(Py_None) : PyLong_FromLongLong((long long)t);
-}
-
 /* End the run, at an instant or None; gives the last instant, None if there is none. */
 static PyObject *finish_of(monitor *c, PyObject *until)
 {
@@ -224,9 +220,14 @@ METHOD(flush)
 METHOD(open)
 METHOD(records)
 METHOD(counts)
+METHOD(stale)
 METHOD(times)
 METHOD(next_due)
 METHOD(rows)
+METHOD(truths)
+METHOD(hits)
+METHOD(situation)
+METHOD(passages)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
 static PyObject *monitor_hold(PyObject *self, PyObject *held)
@@ -299,8 +300,13 @@ static PyMethodDef monitor_methods[] = {
     {"open", monitor_open, METH_NOARGS, NULL},
     {"records", monitor_records, METH_NOARGS, NULL},
     {"counts", monitor_counts, METH_NOARGS, NULL},
+    {"stale", monitor_stale, METH_NOARGS, NULL},
     {"times", monitor_times, METH_NOARGS, NULL},
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
+    {"truths", monitor_truths, METH_O, NULL},
+    {"passages", monitor_passages, METH_O, NULL},
+    {"situation", monitor_situation, METH_O, NULL},
+    {"hits", monitor_hits, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},
     {NULL, NULL, 0, NULL},
@@ -316,7 +322,7 @@ static PyType_Slot monitor_slots[] = {
 };
 
 static PyType_Spec monitor_spec = {
-    "rvmon.core._core.Monitor", sizeof(monitor), 0,
+    "rvmon.native._core.Monitor", sizeof(monitor), 0,
     Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_IMMUTABLETYPE, monitor_slots,
 };
 
@@ -353,8 +359,11 @@ static PyMethodDef core_methods[] = {
 static int execute(PyObject *module)
 {
     PyObject *type = PyType_FromModuleAndSpec(module, &monitor_spec, NULL);
-    const bool done = (type != NULL) && (PyModule_AddObjectRef(module, "Monitor", type) == 0);
+    PyObject *base = record_type(module);
+    const bool done = (type != NULL) && (PyModule_AddObjectRef(module, "Monitor", type) == 0)
+                      && (base != NULL) && (PyModule_AddObjectRef(module, "Record", base) == 0);
     Py_XDECREF(type);
+    Py_XDECREF(base);
     return done ? PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH) : -1;
 }
 

@@ -1,16 +1,11 @@
-/* The monitor as an object of Python, and how module.c gives out its records: as attempts, the fields of
- * which are set by their descriptors. Included there alone. */
+/* The monitor as an object of Python, and how module.c gives out its records: as attempts. Included there
+ * alone. */
 #ifndef RVMON_MODULE_ATTEMPTS_H
 #define RVMON_MODULE_ATTEMPTS_H
 
 #include "module_intake.h"
 #include "module_notes.h"
-
-/* The fields of an attempt that are set here. */
-enum {
-    SLOT_REQUIREMENT, SLOT_NUMBER, SLOT_TRIGGERED, SLOT_DECIDED, SLOT_VERDICT, SLOT_DECISION,
-    SLOT_IN_DOUBT, SLOT_DETAILS, SLOT_NOTED, SLOT_COUNT
-};
+#include "module_record.h"
 
 typedef struct {
     PyObject_HEAD
@@ -25,9 +20,7 @@ typedef struct {
     PyObject *owner;           /* what the rest is borrowed from; NULL: the collector took it away */
     PyObject *look_closer;     /* takes what this does not understand, in seconds */
     PyObject *look_closer_ns;  /* the same in ticks */
-    PyTypeObject *attempt;
-    PyObject *slots[SLOT_COUNT]; /* descriptors of its fields */
-    descrsetfunc set[SLOT_COUNT];
+    PyTypeObject *attempt;     /* derived from Record */
     PyObject *ids;             /* of requirements */
     PyObject *verdicts;
     PyObject *decisions;
@@ -118,19 +111,6 @@ static bool gather(void *user, const rv_record *record, const rv_number *capture
     return true;
 }
 
-/* Set a field of an attempt; the reference is taken over. */
-static bool set_slot(const monitor *c, PyObject *made, int slot, PyObject *value)
-{
-    const bool done = (value != NULL) && (c->set[slot](c->slots[slot], made, value) == 0);
-    Py_XDECREF(value);
-    return done;
-}
-
-static bool share_slot(const monitor *c, PyObject *made, int slot, PyObject *value)
-{
-    return (value != NULL) && (c->set[slot](c->slots[slot], made, value) == 0);
-}
-
 static PyObject *object_of(const rv_number *number)
 {
     switch (number->kind) {
@@ -158,41 +138,40 @@ static PyObject *noted_of(const rv_number *values, int32_t count)
     return made;
 }
 
-static PyObject *attempt_of(monitor *c, const rv_record *record, const rv_number *captured)
+static PyObject *attempt_of(monitor *c, const rv_record *told, const rv_number *captured)
 {
-    PyObject *made = PyType_GenericAlloc(c->attempt, 0);
-    const bool open = record->decision == (uint8_t)RV_OPEN;
-    const int32_t count = (record->captured < 0) ? 0 : c->captured[record->requirement];
+    attempt_record *made = (attempt_record *)PyType_GenericAlloc(c->attempt, 0);
     if (made == NULL) {
         return NULL;
     }
-    if (share_slot(c, made, SLOT_REQUIREMENT, PyTuple_GetItem(c->ids, record->requirement))
-        && share_slot(c, made, SLOT_VERDICT, PyTuple_GetItem(c->verdicts, record->verdict))
-        && share_slot(c, made, SLOT_DECISION, PyTuple_GetItem(c->decisions, record->decision))
-        && share_slot(c, made, SLOT_IN_DOUBT, (record->in_doubt != 0U) ? Py_True : Py_False)
-        && share_slot(c, made, SLOT_DETAILS, c->details)
-        && set_slot(c, made, SLOT_NOTED, noted_with(&c->notes, c->m, record, noted_of(captured, count)))
-        && set_slot(c, made, SLOT_NUMBER, PyLong_FromUnsignedLong(record->number))
-        && set_slot(c, made, SLOT_TRIGGERED, PyLong_FromLongLong(record->triggered))
-        && (open ? share_slot(c, made, SLOT_DECIDED, Py_None)
-                 : set_slot(c, made, SLOT_DECIDED, PyLong_FromLongLong(record->decided)))) {
-        return made;
+    made->requirement = Py_NewRef(PyTuple_GetItem(c->ids, told->requirement));
+    made->verdict = Py_NewRef(PyTuple_GetItem(c->verdicts, told->verdict));
+    made->decision = Py_NewRef(PyTuple_GetItem(c->decisions, told->decision));
+    made->number = told->number;
+    made->triggered = told->triggered;
+    made->decided = (told->decision == (uint8_t)RV_OPEN) ? Py_NewRef(Py_None)
+                                                         : PyLong_FromLongLong(told->decided);
+    made->in_doubt = (told->in_doubt != 0U) ? 1 : 0;
+    made->details = Py_NewRef(c->details);
+    made->noted = noted_with(&c->notes, c->m, told,
+                             noted_of(captured, (captured == NULL) ? 0 : c->captured[told->requirement]));
+    if ((made->decided == NULL) || (made->noted == NULL)) {
+        Py_CLEAR(made);
     }
-    Py_DECREF(made);
-    return NULL;
+    return (PyObject *)made;
 }
 
-/* The attempts that were gathered, as a list; what holds them is given back. */
-static PyObject *listed(gathering *g)
+/* The attempts that were gathered; what holds them is given back. */
+static PyObject *attempts_of(gathering *g)
 {
-    PyObject *made = g->failed ? PyErr_NoMemory() : PyList_New((Py_ssize_t)g->count);
+    PyObject *made = g->failed ? PyErr_NoMemory() : PyTuple_New((Py_ssize_t)g->count);
     int64_t i;
     for (i = 0; (made != NULL) && (i < g->count); i++) {
         const rv_record *record = &g->records[i];
         const rv_number *captured =
             (record->captured < 0) ? NULL : &g->captured[i * g->c->sizes.captured];
         PyObject *one = attempt_of(g->c, record, captured);
-        if ((one == NULL) || (PyList_SetItem(made, (Py_ssize_t)i, one) < 0)) {
+        if ((one == NULL) || (PyTuple_SetItem(made, (Py_ssize_t)i, one) < 0)) {
             Py_CLEAR(made);
         }
     }
@@ -230,7 +209,7 @@ static PyObject *decided_since(monitor *c)
     c->given = count;
     begin_gathering(&g, c);
     gather_records(c, first, false, &g);
-    return listed(&g);
+    return attempts_of(&g);
 }
 
 #endif

@@ -1,4 +1,4 @@
-/* How module.c makes a monitor: from a plan in bytes, the readings of its names and the fields of an attempt.
+/* How module.c makes a monitor: from a plan in bytes, the readings of its names and the type of attempts.
  * Included there alone. */
 #ifndef RVMON_MODULE_OPEN_H
 #define RVMON_MODULE_OPEN_H
@@ -37,32 +37,14 @@ static bool open_plan(monitor *c, PyObject *data)
     return true;
 }
 
-/* Learn what attempts are made of; false with an error. */
-static bool find_slots(monitor *c, PyObject *descriptors)
-{
-    int i;
-    if (PyTuple_Size(descriptors) != SLOT_COUNT) {
-        PyErr_SetString(PyExc_ValueError, "not the fields of an attempt");
-        return false;
-    }
-    for (i = 0; i < SLOT_COUNT; i++) {
-        c->slots[i] = PyTuple_GetItem(descriptors, i);
-        c->set[i] = (descrsetfunc)(uintptr_t)PyType_GetSlot(Py_TYPE(c->slots[i]),
-                                                           Py_tp_descr_set);
-        if (c->set[i] == NULL) {
-            PyErr_SetString(PyExc_TypeError, "no field of an attempt");
-            return false;
-        }
-    }
-    return true;
-}
-
 /* Learn how many values each requirement captures; false with an error. */
 static bool find_captured(monitor *c)
 {
     int32_t i;
-    if (PyTuple_Size(c->ids) != c->sizes.requirements) {
-        PyErr_SetString(PyExc_ValueError, "not the requirements of the plan");
+    if ((PyTuple_Size(c->ids) != c->sizes.requirements)
+        || (PyTuple_Size(c->verdicts) != RV_NOT_TRIGGERED + 1)
+        || (PyTuple_Size(c->decisions) != RV_OPEN + 1)) {
+        PyErr_SetString(PyExc_ValueError, "not the requirements, verdicts, decisions of the plan");
         return false;
     }
     c->captured = PyMem_Calloc((size_t)c->sizes.requirements + 1U, sizeof *c->captured);
@@ -93,7 +75,7 @@ static bool set_absent(const monitor *c, PyObject *absent)
 }
 
 /* Monitor(plan, (numbers, words, kinds, single), absent, (look_closer, look_closer_ns),
- *         (attempt, descriptors, ids, verdicts, decisions, details)) */
+ *         (attempt, ids, verdicts, decisions, details)) */
 static PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
 {
     PyObject *data;
@@ -102,21 +84,20 @@ static PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unuse
     PyObject *kinds;
     PyObject *single;
     PyObject *absent;
-    PyObject *descriptors;
     monitor *c = (monitor *)PyType_GenericAlloc(type, 0);
     (void)unused;
     if (c == NULL) {
         return NULL;
     }
-    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O!O)", &PyBytes_Type, &data,
+    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O)", &PyBytes_Type, &data,
                          &PyDict_Type, &numbers, &PyTuple_Type, &words, &PyBytes_Type, &kinds,
                          &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->look_closer,
-                         &c->look_closer_ns, &PyType_Type, &c->attempt, &PyTuple_Type, &descriptors,
+                         &c->look_closer_ns, &PyType_Type, &c->attempt,
                          &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
                          &c->decisions, &c->details)) {
         c->owner = Py_NewRef(args);
         if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
-            && find_slots(c, descriptors) && find_captured(c) && set_absent(c, absent)) {
+            && is_record(c->attempt) && find_captured(c) && set_absent(c, absent)) {
             return (PyObject *)c;
         }
     }

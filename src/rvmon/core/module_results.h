@@ -22,7 +22,7 @@ static PyObject *open_of(monitor *c, PyObject *unused)
     if (!g.failed) {
         rv_each_open(c->m, gather, &g);
     }
-    made = listed(&g);
+    made = attempts_of(&g);
     forget_standing(&c->notes);
     return made;
 }
@@ -99,6 +99,26 @@ static PyObject *counts_of(monitor *c, PyObject *unused)
             Py_CLEAR(made);
         }
         Py_XDECREF(own);
+    }
+    return made;
+}
+
+/* Of each signal that went stale its number, how often it did, and when first. */
+static PyObject *stale_of(monitor *c, PyObject *unused)
+{
+    PyObject *made = PyList_New(0);
+    int32_t i;
+    (void)unused;
+    for (i = 0; (made != NULL) && (i < c->sizes.signals); i++) {
+        const rv_staleness found = rv_stale(c->m, i);
+        PyObject *own;
+        if (found.count > 0) {
+            own = Py_BuildValue("iLL", (int)i, (long long)found.count, (long long)found.first);
+            if ((own == NULL) || (PyList_Append(made, own) < 0)) {
+                Py_CLEAR(made);
+            }
+            Py_XDECREF(own);
+        }
     }
     return made;
 }

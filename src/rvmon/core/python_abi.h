@@ -3,7 +3,7 @@
 
    With RVMON_OWN_PYTHON_H defined the declarations below are taken. The layouts that they state are
    fixed by the stable ABI for all later versions of Python 3 with a GIL; a free-threaded build has
-   another layout of objects and needs the real header. tests/rvmon/core/test_build.py compares
+   another layout of objects and needs the real header. tests/rvmon/native/test_build.py compares
    each line of here with the real header, and so what is added in the way of its neighbours. */
 #ifndef RVMON_PYTHON_ABI_H
 #define RVMON_PYTHON_ABI_H
@@ -15,6 +15,7 @@
 #ifndef RVMON_OWN_PYTHON_H
 
 #include <Python.h>
+#include <structmember.h>
 
 #endif
 
@@ -44,7 +45,6 @@ typedef ptrdiff_t Py_ssize_t;
 typedef struct _longobject PyLongObject;
 typedef struct _ts PyThreadState;
 typedef PyObject *(*PyCFunction)(PyObject *, PyObject *);
-typedef int (*descrsetfunc)(PyObject *, PyObject *, PyObject *);
 typedef int (*inquiry)(PyObject *);
 typedef int (*visitproc)(PyObject *, void *);
 typedef int (*traverseproc)(PyObject *, visitproc, void *);
@@ -59,6 +59,14 @@ typedef struct PyMethodDef {
     int ml_flags;
     const char *ml_doc;
 } PyMethodDef;
+
+typedef struct PyMemberDef {
+    const char *name;
+    int type;
+    Py_ssize_t offset;
+    int flags;
+    const char *doc;
+} PyMemberDef;
 
 typedef struct PyType_Slot {
     int slot;
@@ -121,15 +129,21 @@ typedef struct bufferinfo {
 
 #define Py_mod_exec 2
 
+#define T_BOOL 14
+#define T_OBJECT_EX 16
+#define T_LONGLONG 17
+
+#define Py_tp_base 48
 #define Py_tp_clear 51
 #define Py_tp_dealloc 52
-#define Py_tp_descr_set 55
 #define Py_tp_methods 64
 #define Py_tp_new 65
 #define Py_tp_traverse 71
+#define Py_tp_members 72
 
 #define Py_TPFLAGS_DEFAULT 0UL
 #define Py_TPFLAGS_IMMUTABLETYPE (1UL << 8)
+#define Py_TPFLAGS_BASETYPE (1UL << 10)
 #define Py_TPFLAGS_HAVE_GC (1UL << 14)
 
 #define PyBUF_SIMPLE 0
@@ -184,6 +198,7 @@ int PyType_IsSubtype(PyTypeObject *, PyTypeObject *);
 PyObject *PyObject_Call(PyObject *, PyObject *, PyObject *);
 void PyObject_GC_Del(void *);
 void PyObject_GC_UnTrack(void *);
+int PyObject_SetAttrString(PyObject *, const char *, PyObject *);
 int PyObject_GetBuffer(PyObject *, Py_buffer *, int);
 void PyBuffer_Release(Py_buffer *);
 
@@ -200,7 +215,6 @@ double PyFloat_AsDouble(PyObject *);
 PyObject *PyFloat_FromDouble(double);
 
 int PyList_Append(PyObject *, PyObject *);
-int PyList_SetItem(PyObject *, Py_ssize_t, PyObject *);
 PyObject *PyList_New(Py_ssize_t);
 
 long PyLong_AsLong(PyObject *);

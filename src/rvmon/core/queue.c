@@ -84,6 +84,8 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     token k;
     k.location = g.a->initial;
     k.clocks = &clock;
+    k.moves = moves_of(r, index);
+    count_begin(r, index, t);
     (void)step_token(g.a, &k, t, g.j->letter);
     x.triggered = t;
     g.j->count++;

@@ -56,6 +56,15 @@ static void tell_decided(const queueing *g, int32_t location, int32_t from, int3
     }
 }
 
+/* So many of a segment go somewhere. */
+static void count_segment(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t)
+{
+    rv_hit *moves = moves_of(g->r, g->index);
+    if ((moves != NULL) && (target != location)) {
+        count_move(g->a, moves, location, target, count, t);
+    }
+}
+
 /* The segments that are made while the queue is gone through: what stays moves up. */
 typedef struct {
     segment made[SEGMENTS_MOST];
@@ -165,6 +174,7 @@ static void step_queue(const queueing *g, int64_t t)
             const int32_t until = end_of_region(g, location, from, end, t, &region);
             const int32_t row = row_of_region(g->a, location, region);
             const int32_t target = g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]];
+            count_segment(g, location, target, until - from, t);
             if (target <= PASSED) {
                 tell_decided(g, location, from, until, target == PASSED, t);
             } else {
@@ -192,6 +202,7 @@ static void settle_queue(const queueing *g, int64_t t)
             const int32_t until = end_of_region(g, location, from, end, t, &region);
             const int32_t truth = g->a->time_values[row_of_region(g->a, location, region)];
             if (truth != IS_UNKNOWN) {
+                count_segment(g, location, (truth == IS_TRUE) ? PASSED : FAILED, until - from, t);
                 tell_decided(g, location, from, until, truth == IS_TRUE, t);
             } else {
                 keep_items(g, &s, location, from, until);

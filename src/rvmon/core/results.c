@@ -16,6 +16,11 @@ const rv_number *rv_captured(const rv_monitor *m, const rv_record *record)
     return (record->captured < 0) ? NULL : &m->captured[record->captured];
 }
 
+rv_staleness rv_stale(const rv_monitor *m, int32_t signal)
+{
+    return m->stale[signal];
+}
+
 int32_t rv_captured_of(const rv_monitor *m, int32_t requirement)
 {
     int32_t i;

@@ -290,6 +290,27 @@ typedef struct {
     bool last;                 /* of its sample */
 } past_update;
 
+/* What is known of a group of items. */
+typedef struct {
+    int32_t standing;          /* so many items are true, or may still be since they were */
+    uint8_t before;            /* the truth of its occasion at the position before */
+    bool called;               /* whether it looks at the position at hand */
+} covered;
+
+/* What was hit in a run. */
+typedef struct {
+    rv_hit *hits;              /* by item */
+    int32_t *standing;         /* items, of each group from its first on */
+    uint8_t *stands;           /* by item, whether it is one of those */
+    covered *groups;
+    int32_t *groups_called;
+    int32_t *called;           /* watches whose groups look at the next position */
+    uint8_t *is_called;        /* by watch */
+    int32_t *bins;             /* room for those of all axes that are true */
+    int32_t items;
+    int32_t called_count;
+} covering;
+
 /* What the runs of a part share. */
 struct home {
     rv_monitor *monitor;
@@ -349,6 +370,10 @@ struct home {
     int32_t newest;
     int32_t over_count;
     uint32_t last_rank;
+    networks *truths;          /* of the form of which it is kept where it is known; NULL till then */
+    bool is_blind;             /* whether positions were missed of that */
+    covering *covering;        /* of a part with watches; else NULL */
+    rv_hit **moves;            /* by judge, from each location to each; NULL: of none */
 };
 
 /* Letters that a note refers to. */
@@ -396,6 +421,7 @@ struct rv_monitor {
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    rv_staleness *stale;       /* by signal */
     uint8_t *late;             /* by requirement, whether something came too late for it */
     /* Where only samples are positions. */
     uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */

@@ -131,7 +131,7 @@ static int64_t *behind_trigger(const run *r, int32_t index, int64_t note)
     return &r->home->monitor->notes[note + NOTE_HEAD + words_for(r->part->judges[index].leaves.count)];
 }
 
-static void put_token(int64_t *to, int32_t location, const int64_t *clocks, int32_t width)
+static void write_token(int64_t *to, int32_t location, const int64_t *clocks, int32_t width)
 {
     to[0] = location;
     if (width > 0) {
@@ -162,7 +162,7 @@ int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
         m->notes[note + 3] = span_from(m, r->judges[index].noting, m->notes[note + 6]);
     } else {
         m->notes[note + 3] = was->width;
-        put_token(behind_trigger(r, index, note), was->location, was->clocks, was->width);
+        write_token(behind_trigger(r, index, note), was->location, was->clocks, was->width);
     }
     return note;
 }
@@ -202,7 +202,7 @@ static int32_t put_by_now(run *r, int32_t index, int32_t location, const int64_t
     const machine *a = &r->part->machines[index];
     hold_token(m, a, location, clocks);
     hold_until(m, a, letter, r->judges[index].position + a->step, until + 1);
-    put_token(to, m->before.location, m->before.clocks, m->before.width);
+    write_token(to, m->before.location, m->before.clocks, m->before.width);
     return m->before.width;
 }
 

@@ -242,11 +242,24 @@ void take_news(run *r, int64_t t, const incoming *in)
     }
 }
 
-void go_stale(run *r, int32_t perishable, int64_t t)
+/* Count that a signal went stale at `t`, once for all that read it. */
+static void count_stale(const run *r, int64_t t, int32_t name)
+{
+    const rv_monitor *m = r->home->monitor;
+    const subscription *first = &m->plan.subscriptions[m->plan.subscription_first[name]];
+    if ((r == r->home->root) && (r->home == &m->homes[first->part])) {
+        rv_staleness *found = &m->stale[name];
+        found->first = (found->count == 0) ? t : found->first;
+        found->count++;
+    }
+}
+
+void go_stale(run *r, int64_t t, int32_t perishable)
 {
     const int32_t local = r->part->perishable[perishable];
     rv_number stale = UNKNOWN_NUMBER;
     stale.as.whole = IS_STALE;
+    count_stale(r, t, r->part->signals[local].name);
     if (r->at.lost_count > 0) {
         stay_unknown(r, local);
     }

@@ -11,11 +11,11 @@ from textwrap import wrap
 from rvmon import __version__
 from rvmon.codegen.comment import comment
 from rvmon.core import amalgamate
-from rvmon.core._core import memory_of
 from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
 from rvmon.errors import RvmonError
 from rvmon.export.c_names import identifiers, prefix_of, string
+from rvmon.native import memory_of
 from rvmon.plan.plan import Plan
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.schema import Kind

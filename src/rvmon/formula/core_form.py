@@ -33,6 +33,7 @@ class Lowering:
         measured: see `rvmon.formula.four.Reader`.
         next_law: see there.
         sampled: whether only samples are positions.
+        opened: whether the windows of all that has to be kept up open at once.
 
     Attributes:
         origins: where what was made comes from.
@@ -47,12 +48,14 @@ class Lowering:
         measured: bool = False,
         next_law: bool = False,
         sampled: bool = False,
+        opened: bool = False,
     ) -> None:
         self.factory = factory
         self.reader = Reader(factory, period, measured=measured, next_law=next_law)
         self.favour = favour
         self._looks_back_at_blanks = next_law
         self._meets_blanks = next_law and sampled
+        self._opened = opened
         self.origins: dict[Core, Origin] = {}
         self._made_up: dict[int, Formula] = {}
 
@@ -132,6 +135,8 @@ class Lowering:
 
     def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
+        if self._opened and not positive:
+            low = 0
         make = self.factory.until if positive else self.factory.release
         if not isinstance(left, CoreConstant):
             left = self.owed(left)

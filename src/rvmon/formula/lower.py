@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import assert_never
 
 from rvmon.formula.core import And, Core, Literal, Next, Or, Previous, Release, Sense, Since, Until
@@ -49,9 +50,10 @@ def lower(
         UnmonitorableError: the trigger speaks of the future.
     """
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
-    lowering = Lowering(
-        factory, period, favour, measured=measured, next_law=next_law, sampled=sampled
+    begin = partial(
+        Lowering, factory, period, favour, measured=measured, next_law=next_law, sampled=sampled
     )
+    lowering = begin()
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
             return Obligation(None, lowering.core(requirement.consequent, True), lowering.origins)
@@ -66,7 +68,7 @@ def lower(
         running = _running(trigger, requirement, factory)
         implied = lowering.join_signed(parts, False, [factory.negation(running)])
         owed = lowering.episode(running, lowering.owed(implied), requirement.consequent)
-        ahead = lowering.core(requirement.consequent, True)
+        ahead = begin(opened=True).core(requirement.consequent, True)
         again = None if _looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
         doubt = None
@@ -151,7 +153,9 @@ def _looks_back(core: Core) -> bool:
 def _at_once(core: Core, factory: Factory) -> State:
     """A state formula that is FALSE where a position alone makes what is owed there FALSE.
 
-    The windows of all that has to be kept up are taken to open at once.
+    Args:
+        core: the windows of all that has to be kept up open at once in it.
+        factory: where it is made.
 
     Source: SEMANTICS, section 3 (After a failure).
     """

@@ -8,6 +8,7 @@ from enum import StrEnum
 from importlib import import_module
 from typing import Any
 
+from rvmon.native import Record
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
@@ -48,27 +49,8 @@ class Blame:
     at: tuple[int, ...] = ()
 
 
-class _Later:
-    """Fields that are filled in when someone first looks at one of them."""
-
-    __slots__ = ("_details", "_noted")
-
-    _details: Callable[[Attempt, Any], Mapping[str, Any]]
-    _noted: Any
-
-    def __getattr__(self, name: str) -> Any:
-        """Called for a field that was never set."""
-        if name in ("_details", "_noted") or not hasattr(self, "_details"):
-            raise AttributeError(f"an attempt has no `{name}`")
-        details: Any = self._details
-        for field_name, value in details(self, self._noted).items():
-            setattr(self, field_name, value)
-        del self._details, self._noted
-        return getattr(self, name)
-
-
 @dataclass(slots=True)
-class Attempt(_Later):
+class Attempt(Record):
     """One obligation that a trigger started; a record, which is not to be changed.
 
     It is not frozen: to make one would take three times as long.
@@ -112,6 +94,15 @@ class Attempt(_Later):
     forecast: Verdict | None = None
     robustness: float | None = None
     in_doubt: bool = False
+
+    def __getattr__(self, name: str) -> Any:
+        """Called for a field that was never set: those are worked out when one is asked for."""
+        if name in ("_details", "_noted") or not hasattr(self, "_details"):
+            raise AttributeError(f"an attempt has no `{name}`")
+        for field_name, value in self._details(self, self._noted).items():
+            setattr(self, field_name, value)
+        del self._details, self._noted
+        return getattr(self, name)
 
     def __reduce__(self) -> tuple[type[Attempt], tuple[Any, ...]]:
         """What copies and other processes get: all fields, worked out."""

@@ -231,7 +231,7 @@ def test_seconds_are_rounded_as_by_every_monitor(spec, seconds):
 def test_advance_finish_reset(spec):
     """Time passes without samples; a finished run takes nothing; another one begins afresh."""
     monitor = spec.monitor(engine="c")
-    assert monitor.open == []
+    assert monitor.open == ()
     assert monitor.next_due is None
     for _ in range(2):
         monitor.step(0.0, FIRST)

@@ -13,7 +13,7 @@ from tests.tools.late import after_late
 from tests.tools.law import judge
 
 import rvmon
-import rvmon.core._core as native
+from rvmon import native
 from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.monitor.core.recorded import report_of_run

@@ -33,6 +33,13 @@ ENDS = [
 ]
 
 CASES = {
+    "what can hold nowhere, were its window open at once": case_of(
+        "held",
+        "whenever true then e xor true R[1 ns, 1 ns] false",
+        (0, {"e": True}),
+        (5, {}),
+        (9, {"e": True}),
+    ),
     "two readings with clocks of different ages in one location": case_of(
         "held",
         "upon e then G[0 ns, 20 ns] (p -> F[0 ns, 3 ns] q)",

@@ -11,12 +11,12 @@ from tests.tools.exported import HEAP, Exported
 from tests.tools.hostile import FORGERIES, hostile_names
 
 import rvmon
-from rvmon.core._core import memory_of
 from rvmon.core.plan import pack
 from rvmon.export.c_files import FEWEST, c_files
 from rvmon.export.c_names import identifiers
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.native import memory_of
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile

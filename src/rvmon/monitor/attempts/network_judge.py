@@ -341,16 +341,6 @@ class NetworkJudge(AttemptJudge):
         self._moments = [*self._moments[-1:], (network, stands, made)]
         return made
 
-    def situation(self, t: int) -> object:
-        """What is known as seen from `t`; equal for runs that go on alike."""
-        self._look(2 * self.position + 1)
-        standing = frozenset(
-            (attempt.token[0], attempt.better and attempt.better[0], position_of(attempt) - t)
-            for attempt in self.attempts
-        )
-        networks = (self.worse, self.better)
-        return standing, tuple(network and network.relative(t) for network in networks)
-
     def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
         """Whether the rule for the end of a trace makes an attempt true; to be asked last."""
         if attempt.token[0] != WAITING or self.worse is None:

@@ -200,12 +200,6 @@ class WindowJudge(NetworkJudge):
         """See `NetworkJudge`."""
         return super().next_due if self._windows is None else self.due
 
-    def situation(self, t: int) -> object:
-        """See `NetworkJudge`."""
-        if self._windows is not None:
-            self._fall_back()
-        return super().situation(t)
-
     def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
         """See `NetworkJudge`."""
         if self._windows is not None:

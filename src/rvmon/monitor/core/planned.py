@@ -6,12 +6,12 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import rvmon.core._core as native
+from rvmon import native
 from rvmon.core.packed import packed
 from rvmon.errors import TraceError
 from rvmon.monitor.core.captured import CapturedValues
 from rvmon.monitor.core.packed_cache import Kept, Place
-from rvmon.spec.checked.specification import Type
+from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks
@@ -30,11 +30,8 @@ DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OP
 _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
 """In the order of `module_intake.h`."""
 
-_SLOTS = (
-    *("requirement", "number", "triggered", "decided", "verdict", "decision"),
-    *("in_doubt", "_details", "_noted"),
-)
-"""The fields of an attempt that are set in C, in the order of `module_attempts.h`."""
+_TOLD = ("requirement", "number", "triggered", "decided", "verdict", "decision", "in_doubt")
+"""The fields of an attempt that the core tells."""
 
 Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | None]
 """What an attempt keeps: captured values, its note, how all stood then, letters but for the last
@@ -52,8 +49,8 @@ class PlannedCore:
         words: of signals, events, fields: a number for each label, or field.
         kinds: of the same; of events they mean nothing.
         single: of each name, whether only one payload of it can be judged at one instant.
-        fillable: see `rvmon.plan.plan.Plan.fillable`.
-        compiled: the specification.
+        readers: by name that is read, the ids of the requirements that do.
+        compiled: the specification, to tell of attempts; `None`: there are none.
     """
 
     packed: Packed
@@ -62,8 +59,14 @@ class PlannedCore:
     words: tuple[Mapping[str, int] | None, ...]
     kinds: bytes
     single: bytes
-    fillable: frozenset[str]
-    compiled: CompiledSpec
+    readers: Mapping[str, tuple[str, ...]]
+    compiled: CompiledSpec | None
+
+    @property
+    def _specification(self) -> CompiledSpec:
+        if self.compiled is None:
+            raise ValueError("a plan of watches has no attempts to tell of")
+        return self.compiled
 
     @property
     def single_payloads(self) -> frozenset[str]:
@@ -86,7 +89,6 @@ class PlannedCore:
         coming = {name: number for name, number in self.numbers.items() if name not in absent}
         attempts = (
             Attempt,
-            tuple(getattr(Attempt, name) for name in _SLOTS),
             self.packed.ids,
             VERDICTS,
             DECISIONS,
@@ -126,7 +128,7 @@ class PlannedCore:
 
     def instance(self, attempt: Attempt) -> object:
         """What is the same of attempts of one instance, or one alone with values of its own."""
-        one = self.compiled.checked.requirements[attempt.requirement]
+        one = self._specification.checked.requirements[attempt.requirement]
         if one.captures:
             return attempt.requirement, attempt.in_doubt, attempt.number
         each = None if one.for_each is None else attempt.captured[one.for_each.name]
@@ -153,10 +155,11 @@ class PlannedCore:
         from rvmon.monitor.core.notes import NotesReader
 
         ids = self.packed.ids
-        reader = self.compiled.forms.get(("told", ids))
+        compiled = self._specification
+        reader = compiled.forms.get(("told", ids))
         if not isinstance(reader, NotesReader):
-            reader = NotesReader(self.compiled, ids)
-            self.compiled.forms["told", ids] = reader
+            reader = NotesReader(compiled, ids)
+            compiled.forms["told", ids] = reader
         values = () if captured is None else captured
         return {
             **reader.details(attempt, note),
@@ -183,7 +186,7 @@ def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) ->
         found = None if place is None else _checked(compiled, ids, place.read())
         if found is None:
             made = _made(compiled, ids)
-            found = _planned(compiled, ids, made)
+            found = planned_as(spec, ids, made, compiled)
             if place is not None:
                 place.write(made)
         compiled.forms["core", ids] = found
@@ -194,10 +197,12 @@ def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
     # What makes it is imported now: it is seldom made where it is kept.
     from rvmon.core.plan import pack
     from rvmon.monitor.compiled.code_plan import plan_alone
+    from rvmon.monitor.inputs.health import readers_of
 
     plan = plan_alone(compiled, ids)
-    single = frozenset().union(*(one.single_payloads for one in compiled.chosen(ids)))
-    return Kept(pack(plan, next_law=compiled.next_law).data, single, plan.fillable)
+    chosen = compiled.chosen(ids)
+    single = frozenset().union(*(one.single_payloads for one in chosen))
+    return Kept(pack(plan, next_law=compiled.next_law).data, single, readers_of(chosen))
 
 
 def _checked(
@@ -206,7 +211,7 @@ def _checked(
     """What was kept, made ready; `None` if that is nothing, or no plan of these requirements."""
     if before is None:
         return None
-    found = _planned(compiled, ids, before)
+    found = planned_as(compiled.checked, ids, before, compiled)
     try:
         found.monitor(frozenset())
     except ValueError:
@@ -214,8 +219,17 @@ def _checked(
     return found
 
 
-def _planned(compiled: CompiledSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore:
-    spec = compiled.checked
+def planned_as(
+    spec: CheckedSpec, ids: tuple[str, ...], made: Kept, compiled: CompiledSpec | None = None
+) -> PlannedCore:
+    """A packed plan made ready.
+
+    Args:
+        spec: declares the names.
+        ids: of its requirements.
+        made: the plan.
+        compiled: the specification, if attempts are asked for.
+    """
     plan = packed(spec, ids, made.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:
@@ -238,7 +252,7 @@ def _planned(compiled: CompiledSpec, ids: tuple[str, ...], made: Kept) -> Planne
         ),
         bytes(map(_KINDS.index, kinds)),
         bytes(name in made.single for name in names),
-        made.fillable,
+        made.readers,
         compiled,
     )
 

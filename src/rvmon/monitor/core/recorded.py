@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-import rvmon.core._core as native
+from rvmon import native
 from rvmon.monitor.core.planned import DECISIONS, VERDICTS, PlannedCore
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.attempt_json import attempt_text

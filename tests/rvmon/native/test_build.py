@@ -13,8 +13,8 @@ from types import ModuleType
 import pytest
 from tests.tools.python_abi import HEADER, comparison, declared
 
-import rvmon.core
-import rvmon.core.sources
+import rvmon.native
+import rvmon.native.sources
 from rvmon.errors import CoreError
 
 ROOT = Path(__file__).parents[3]
@@ -35,8 +35,8 @@ def copied(hook, monkeypatch, tmp_path):
     """A folder that the hook builds from, with the binding alone: it links, and is quick."""
     folder = tmp_path / "core"
     folder.mkdir()
-    for source in Path(rvmon.core.sources.FOLDER).iterdir():
-        if source.suffix == ".h" or source.name in {"amalgamate.py", "module.c", "sources.py"}:
+    for source in Path(rvmon.native.sources.FOLDER).iterdir():
+        if source.suffix == ".h" or source.name in {"amalgamate.py", "module.c"}:
             shutil.copy(source, folder)
     monkeypatch.setattr(hook, "CORE", folder)
     return folder
@@ -52,7 +52,7 @@ def loaded(path: Path) -> ModuleType:
 
 def test_the_core_is_of_its_sources():
     """What is imported says of itself that it was built from the sources beside it."""
-    assert rvmon.core._core.source_hash == rvmon.core.sources.source_hash() != ""
+    assert rvmon.native._core.source_hash == rvmon.native.sources.source_hash() != ""
 
 
 @pytest.mark.parametrize(
@@ -73,33 +73,33 @@ def test_hash_sees_each_change(change, tmp_path):
     """A source that is changed, added, removed, renamed or moved on changes the hash."""
     (tmp_path / "a.c").write_bytes(b"int one;")
     (tmp_path / "b.h").write_bytes(b"int two;")
-    before = rvmon.core.sources.source_hash(str(tmp_path))
+    before = rvmon.native.sources.source_hash(str(tmp_path))
     change(tmp_path)
-    assert rvmon.core.sources.source_hash(str(tmp_path)) != before
+    assert rvmon.native.sources.source_hash(str(tmp_path)) != before
 
 
 def test_hash_is_of_sources_alone(tmp_path):
     """Other files, and when sources were written, do not matter; without sources it is empty."""
-    assert rvmon.core.sources.source_hash(str(tmp_path)) == ""
+    assert rvmon.native.sources.source_hash(str(tmp_path)) == ""
     source = tmp_path / "a.c"
     source.write_bytes(b"int one;")
-    before = rvmon.core.sources.source_hash(str(tmp_path))
+    before = rvmon.native.sources.source_hash(str(tmp_path))
     (tmp_path / "plan.md").write_bytes(b"What the sections mean.")
     source.touch()
-    assert rvmon.core.sources.source_hash(str(tmp_path)) == before
+    assert rvmon.native.sources.source_hash(str(tmp_path)) == before
 
 
 @pytest.fixture
 def reloading():
-    """Import the package of the core anew, and again as it was when the test is over."""
-    yield lambda: importlib.reload(rvmon.core)
-    importlib.reload(rvmon.core)
+    """Import the package of the extension anew, and again as it was when the test is over."""
+    yield lambda: importlib.reload(rvmon.native)
+    importlib.reload(rvmon.native)
 
 
 def test_stale_core_is_refused(monkeypatch, reloading):
     """Sources that are not those of the extension make an import error, which says what to run."""
     with monkeypatch.context() as patched:
-        patched.setattr(rvmon.core.sources, "source_hash", lambda: "0123abcd")
+        patched.setattr(rvmon.native.sources, "source_hash", lambda: "0123abcd")
         with pytest.raises(
             CoreError, match=r"older than its sources .*pip install -e \."
         ) as caught:
@@ -110,7 +110,7 @@ def test_stale_core_is_refused(monkeypatch, reloading):
 def test_missing_core_is_told(monkeypatch, reloading):
     """Where nothing was built, the import says so, and what to run."""
     with monkeypatch.context() as patched:
-        patched.setitem(sys.modules, "rvmon.core._core", None)
+        patched.setitem(sys.modules, "rvmon.native._core", None)
         with pytest.raises(CoreError, match=r"is not built .*pip install -e \."):
             reloading()
 
@@ -118,8 +118,8 @@ def test_missing_core_is_told(monkeypatch, reloading):
 def test_no_sources_no_check(monkeypatch, reloading):
     """Where no sources lie beside the extension there is nothing to compare it with."""
     with monkeypatch.context() as patched:
-        patched.setattr(rvmon.core.sources, "source_hash", lambda: "")
-        assert reloading()._core is rvmon.core._core
+        patched.setattr(rvmon.native.sources, "source_hash", lambda: "")
+        assert reloading()._core is rvmon.native._core
 
 
 def test_named_compiler_is_taken(hook, monkeypatch):
@@ -173,18 +173,18 @@ def test_builds_without_headers(hook, monkeypatch, tmp_path):
     """Where Python's headers are missing the core is built all the same, and can be imported."""
     monkeypatch.setattr(hook.sysconfig, "get_path", lambda _name: str(tmp_path))
     built = loaded(hook.build(tmp_path))
-    assert built.source_hash == rvmon.core.sources.source_hash()
-    assert set(dir(built)) == set(dir(rvmon.core._core))
+    assert built.source_hash == rvmon.native.sources.source_hash()
+    assert set(dir(built)) == set(dir(rvmon.native._core))
 
 
 @pytest.mark.compiler
 def test_changed_source_is_built_anew(copied, hook, tmp_path):
     """A build from other sources carries another hash."""
-    before = rvmon.core.sources.source_hash(str(copied))
+    before = rvmon.native.sources.source_hash(str(copied))
     assert before.encode() in hook.build(tmp_path).read_bytes()
     with (copied / "module.c").open("ab") as file:
         file.write(b"/* more */\n")
-    after = rvmon.core.sources.source_hash(str(copied))
+    after = rvmon.native.sources.source_hash(str(copied))
     built = hook.build(tmp_path).read_bytes()
     assert after.encode() in built
     assert before.encode() not in built

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import zlib
 
-FOLDER = os.path.dirname(os.path.abspath(__file__))
+FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "core")
 BLOCK = 1 << 17
 """Bytes that are read at once: more than any source has."""
 
