@@ -158,7 +158,7 @@ def _differs(one: native.Monitor, other: native.Monitor, looked_at: Sequence[str
     for what in looked_at:
         found = [getattr(run, what)() for run in (one, other)]
         if what == "records":
-            found = [sorted(map(str, _records(*own))) for own in found]
+            found = [sorted(map(str, _records(*own[:2]))) for own in found]
         elif what == "open":
             found = [sorted(own, key=by_number) for own in found]
         if found[0] != found[1]:

@@ -278,6 +278,7 @@ static void monitor_dealloc(PyObject *self)
     free_intake(&c->in);
     PyMem_Free(c->captured);
     free(c->plan);
+    Py_XDECREF(c->data);
     PyObject_GC_Del(self);
     Py_DECREF(type);
 }

@@ -11,6 +11,7 @@ typedef struct {
     PyObject_HEAD
     rv_monitor *m;
     void *plan;                /* a copy, if Python's bytes are not aligned to 8; else NULL */
+    PyObject *data;            /* the plan in Python's bytes: the core reads it to its end */
     rv_sizes sizes;
     int64_t given;             /* records that were given out, or are of attempts that stay open */
     bool held;                 /* whether Python is amid a call */

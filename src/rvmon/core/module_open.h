@@ -11,6 +11,7 @@ static bool open_plan(monitor *c, PyObject *data)
     const rv_memory heap = {malloc, free, NULL, 0};
     const size_t size = (size_t)PyBytes_Size(data);
     const void *plan = PyBytes_AsString(data);
+    c->data = Py_NewRef(data);
     if ((uintptr_t)plan % 8U != 0U) {
         c->plan = malloc(size + 1U);
         if (c->plan == NULL) {

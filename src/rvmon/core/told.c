@@ -187,6 +187,7 @@ void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, 
     token k;
     k.location = was->location;
     k.clocks = was->clocks;
+    k.moves = NULL; /* they are counted where the attempt itself moves */
     if ((a->gap > 0) && (first <= t - 1) && (k.location > PASSED)) {
         (void)run_token(a, &k, letter, first, t - 1, &slides);
         was->location = k.location;
