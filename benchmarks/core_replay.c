@@ -242,66 +242,80 @@ static told by_steps(rv_monitor *m, const story *s, bool asks)
     return x;
 }
 
+/* What rows say of a name or field. */
+typedef struct {
+    uint8_t says[ROWS_MOST];
+    double reals[ROWS_MOST];
+    int64_t whole[ROWS_MOST];
+    bool is_real;
+} cells;
+
 /* Columns of some samples. */
 typedef struct {
     int64_t times[ROWS_MOST];
     int64_t rows;
-    uint8_t says[NAMES_MOST][ROWS_MOST];
-    double reals[NAMES_MOST][ROWS_MOST];
-    int64_t whole[NAMES_MOST][ROWS_MOST];
-    rv_number fields[NAMES_MOST][FIELDS_MOST][ROWS_MOST];
-    bool is_real[NAMES_MOST];
+    cells names[NAMES_MOST];
+    cells fields[NAMES_MOST][FIELDS_MOST];
 } table;
+
+static void put(cells *c, int64_t row, int32_t says, const rv_number *value)
+{
+    c->says[row] = (uint8_t)says;
+    c->is_real = c->is_real || (value->kind == RV_REAL);
+    c->reals[row] = value->as.real;
+    c->whole[row] = value->as.whole;
+}
 
 static void lay(table *made, const rv_monitor *m, const sample *s)
 {
     const int32_t signals = rv_sizes_of(m).signals;
     const int64_t row = made->rows++;
     int32_t i;
+    int32_t k;
     made->times[row] = s->t;
     for (i = 0; i < NAMES_MOST; i++) {
-        made->says[i][row] = 255;
+        made->names[i].says[row] = 255;
+        for (k = 0; k < FIELDS_MOST; k++) {
+            made->fields[i][k].says[row] = 255;
+        }
     }
     for (i = 0; i < s->count; i++) {
         const rv_update *u = &s->updates[i];
-        made->says[u->name][row] = (uint8_t)u->says;
-        if (u->name < signals) {
-            made->is_real[u->name] = made->is_real[u->name] || (u->value.kind == RV_REAL);
-            made->reals[u->name][row] = u->value.as.real;
-            made->whole[u->name][row] = u->value.as.whole;
-        } else {
-            int32_t first;
-            const int32_t own = rv_fields_of(m, u->name - signals, &first);
-            int32_t k;
-            for (k = 0; k < own; k++) {
-                (void)memset(&made->fields[u->name][k][row], 0, sizeof(rv_number));
-                if (u->fields != NULL) {
-                    made->fields[u->name][k][row] = u->fields[k];
-                }
-            }
+        int32_t first;
+        put(&made->names[u->name], row, u->says, &u->value);
+        for (k = 0; (u->name >= signals) && (u->fields != NULL)
+                    && (k < rv_fields_of(m, u->name - signals, &first)); k++) {
+            const bool known = u->fields[k].kind != RV_UNKNOWN;
+            put(&made->fields[u->name][k], row, known ? RV_SAYS_YES : RV_SAYS_UNKNOWN, &u->fields[k]);
         }
     }
+}
+
+static rv_column column_of(const cells *c)
+{
+    rv_column made;
+    (void)memset(&made, 0, sizeof made);
+    made.kind = c->is_real ? RV_COLUMN_REAL : RV_COLUMN_WHOLE;
+    made.values = c->is_real ? (const void *)c->reals : (const void *)c->whole;
+    made.says = c->says;
+    return made;
 }
 
 static void judge_table(told *x, rv_monitor *m, table *made)
 {
     static rv_column columns[NAMES_MOST];
-    static const rv_number *fields[NAMES_MOST][FIELDS_MOST];
+    static rv_column fields[NAMES_MOST][FIELDS_MOST];
     const rv_sizes sizes = rv_sizes_of(m);
     int64_t done = 0;
     int32_t i;
     int32_t k;
     for (i = 0; i < sizes.signals + sizes.events; i++) {
-        rv_column *c = &columns[i];
-        const bool event = i >= sizes.signals;
-        c->name = i;
-        c->kind = made->is_real[i] ? RV_COLUMN_REAL : RV_COLUMN_WHOLE;
-        c->values = event ? NULL : (made->is_real[i] ? (void *)made->reals[i] : (void *)made->whole[i]);
-        c->says = made->says[i];
-        for (k = 0; k < FIELDS_MOST; k++) {
-            fields[i][k] = made->fields[i][k];
+        columns[i] = column_of(&made->names[i]);
+        columns[i].name = i;
+        for (k = 0; (i >= sizes.signals) && (k < FIELDS_MOST); k++) {
+            fields[i][k] = column_of(&made->fields[i][k]);
         }
-        c->fields = event ? fields[i] : NULL;
+        columns[i].fields = (i >= sizes.signals) ? fields[i] : NULL;
     }
     if ((rv_rows(m, made->times, made->rows, columns, sizes.signals + sizes.events, &done) != RV_OK)
         || (done != made->rows)) {

@@ -16,13 +16,14 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from itertools import count, islice
 from pathlib import Path
 from typing import Any
 
 from tests.tools.differential import cases_of
-from tests.tools.doors import Content, content_of, doors, whole
+from tests.tools.doors import Content, bare, content_of, doors, in_pieces, whole
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
@@ -33,13 +34,15 @@ EACH = 5
 """Recordings of a specification."""
 
 
-def told(spec: Spec, trace: object, arguments: dict[str, Any], engine: str) -> str:
-    """The report as JSON, or what was refused."""
+def told(
+    spec: Spec, trace: object, arguments: dict[str, Any], engine: str, *, is_bare: bool
+) -> str:
+    """The report as JSON, or bare; or what was refused."""
     try:
         report = spec.evaluate(trace, engine=engine, allow_missing=True, **arguments)
-        return replace(report, trace="").to_json()
+        return str(bare(report)) if is_bare else replace(report, trace="").to_json()
     except RvmonError as error:
-        return f"{type(error).__name__}"
+        return type(error).__name__
 
 
 def contents(seed: int, samples: int) -> Iterator[tuple[str, Spec, Content]]:
@@ -62,18 +65,28 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=int, default=12, help="of a recording, at most")
     parser.add_argument("--engine", default="auto")
+    parser.add_argument("--pieces", type=int, metavar="BYTES", help="read files in such pieces")
     options = parser.parse_args(argv)
+    with in_pieces(options.pieces) if options.pieces else nullcontext():
+        return judge_all(options)
+
+
+def judge_all(options: argparse.Namespace) -> int:
+    """Judge so many recordings through every door."""
     ways = doors()
+    is_bare = options.engine == "c"
     agreeing, refused = Counter[str](), Counter[str]()
     found = contents(options.seed, options.samples)
     with tempfile.TemporaryDirectory() as name:
         for seed, spec, content in islice(found, options.recordings):
             expected = None
             for door, write in ways.items():
-                text = told(spec, *write(content, Path(name)), options.engine)
-                expected = expected or text
+                given = write(content, Path(name))
+                text = told(spec, *given, options.engine, is_bare=is_bare)
+                if expected is None:
+                    expected = told(spec, *given, "auto", is_bare=True) if is_bare else text
                 agreeing[door] += text == expected
-                refused[door] += not text.startswith("{")
+                refused[door] += text.isidentifier()
                 if text != expected:
                     print(f"seed {seed}, {door}:\n  {text}\n  first door: {expected}")
     print(

@@ -85,6 +85,43 @@ static uint64_t mixed(uint64_t sum, int64_t what)
     return (sum ^ (uint64_t)what) * UINT64_C(0x100000001b3);
 }
 
+/* Read all that is noted with a record. */
+static uint64_t read_note(const rv_monitor *m, const rv_record *record)
+{
+    rv_note note;
+    uint64_t sum = 0;
+    if (rv_note_of(m, record, &note)) {
+        const rv_piece *piece = note.first;
+        int64_t i;
+        for (i = 0; i < note.count; i++) {
+            sum = mixed(sum, note.words[i]);
+        }
+        for (i = 0; i < note.standing_count; i++) {
+            sum = mixed(sum, note.standing[i]);
+        }
+        while (piece != NULL) {
+            int32_t count;
+            const int64_t *words = rv_piece_words(piece, &count);
+            count = (piece == note.last) ? note.last_count : count;
+            for (i = 0; i < count; i++) {
+                sum = mixed(sum, words[i]);
+            }
+            piece = (piece == note.last) ? NULL : rv_piece_next(piece);
+        }
+    }
+    return sum;
+}
+
+/* Read the notes of open attempts; what they say has no say in anything. */
+static bool read_open(void *user, const rv_record *record, const rv_number *captured)
+{
+    static volatile uint64_t last;
+    (void)captured;
+    last = read_note((const rv_monitor *)user, record);
+    (void)last;
+    return true;
+}
+
 static bool note_open(void *user, const rv_record *record, const rv_number *captured)
 {
     uint64_t *sum = user;
@@ -102,6 +139,9 @@ static uint64_t noted_records(rv_monitor *m, uint64_t sum, bool finished)
     for (i = 0; i < count; i++) {
         const rv_record *one = &records[i];
         const rv_number *captured = rv_captured(m, one);
+        static volatile uint64_t last;
+        last = read_note(m, one);
+        (void)last;
         if (finished || (one->decision != RV_OPEN)) {
             sum = mixed(mixed(mixed(sum, one->triggered), one->decided), one->number);
         }
@@ -173,6 +213,55 @@ static int one_loss(rv_monitor *m, script *s, int64_t t, uint8_t what)
         return rv_lose(m, t, lost, count);
     }
     return (what == 1) ? rv_found(m, t, lost, count) : rv_late(m, t - 3, lost, count - 1);
+}
+
+/* What is told beside attempts. */
+static uint64_t noted_watch(const rv_monitor *m, uint64_t sum)
+{
+    const rv_range *found;
+    int32_t number;
+    int32_t which;
+    int64_t i;
+    const rv_hit *hits = rv_hits(m, &number);
+    for (i = 0; i < number; i++) {
+        sum = mixed(mixed(sum, hits[i].count), hits[i].first);
+    }
+    for (number = 0; (number < rv_sizes_of(m).requirements) && (number < NAMES_MOST); number++) {
+        int32_t locations;
+        const rv_hit *moves = rv_moves(m, number, &locations);
+        for (i = 0; i < (int64_t)locations * locations; i++) {
+            sum = mixed(mixed(sum, moves[i].count), moves[i].first);
+        }
+    }
+    for (number = 0; rv_truths(m, number, false, false, &found) >= 0; number++) {
+        for (which = 0; which < 4; which++) {
+            const int64_t count = rv_truths(m, number, which % 2 == 1, which >= 2, &found);
+            for (i = 0; i < count; i++) {
+                sum = mixed(mixed(sum, found[i].first), found[i].last);
+            }
+        }
+    }
+    return sum;
+}
+
+/* How a run stands at an instant, told in room that is too small, too. */
+static uint64_t noted_situation(rv_monitor *m, uint64_t sum, int64_t now)
+{
+    static int64_t words[1 << 16];
+    const int64_t room = 1 << 16;
+    int64_t next;
+    const int64_t most = rv_situation(m, now, words, 3, &next);
+    int64_t count = rv_situation(m, now, words, room, &next);
+    int64_t i;
+    if ((count > most) || ((most < 0) != (count < 0))) {
+        (void)fprintf(stderr, "there is more to be told than was said\n");
+        abort();
+    }
+    count = (count > room) ? room : count;
+    for (i = 0; i < count; i++) {
+        sum = mixed(sum, words[i]);
+    }
+    return mixed(mixed(sum, count), next);
 }
 
 /* What a monitor is made of. */
@@ -260,6 +349,7 @@ static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from
             sum = mixed(sum, rv_next_due(m));
         } else if (what < 205) {
             rv_each_open(m, note_open, &sum);
+            rv_each_open(m, read_open, m);
         } else if (what < 215) {
             sum = noted_records(m, sum, false);
         } else if (what < 220) {
@@ -276,8 +366,12 @@ static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from
             t += (t < (INT64_C(1) << 62)) ? step : 0;
         }
     }
+    if (byte_of(&s) < 64) {
+        sum = noted_situation(m, sum, t);
+    }
     sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
     sum = noted_records(m, sum, true);
+    sum = noted_watch(m, sum);
     for (i = 0; (i < sizes.requirements) && (i < NAMES_MOST); i++) {
         const int verdict = rv_verdict(m, i);
         sum = mixed(mixed(sum, verdict), rv_count(m, i).failed);
@@ -306,6 +400,9 @@ static void judge(const void *bytes, size_t size, script s)
     const rv_memory memory = {malloc, free, NULL, 0};
     const source from = {bytes, size, false};
     rv_monitor *m = rv_new(bytes, size, memory);
+    if ((m != NULL) && (size / 8U % 2U == 0U) && (rv_keep_notes(m, NULL, NULL) != RV_OK)) {
+        (void)fprintf(stderr, "notes take more memory than there is\n");
+    }
     if (m != NULL) {
         const uint64_t first = one_run(&m, s, NULL);
         if ((rv_sizes_of(m).signals + rv_sizes_of(m).events <= NAMES_MOST) && !rv_spoilt(m)) {
@@ -325,6 +422,7 @@ static void judge(const void *bytes, size_t size, script s)
     guarded_left = byte_of(&s) % 64;
     m = rv_new(bytes, size, memory);
     if (m != NULL) {
+        (void)rv_keep_notes(m, NULL, NULL);
         (void)one_run(&m, s, NULL);
         guarded_left = -1;
         (void)rv_reset(m);

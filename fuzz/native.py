@@ -23,14 +23,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from tests.tools.coverage import with_random_coverage
 from tests.tools.guarded import guarded_memory
 from tests.tools.put_away import HEAD, Twins, actions_of
+from tests.tools.watched import is_small, truths_plan
 
 from rvmon.core.plan import pack
+from rvmon.coverage.bins import Bins
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.core.planned import planned_core
+from rvmon.plan.plan import Plan
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 
@@ -65,16 +69,30 @@ class Found:
     bad: tuple[Path, ...]
 
 
+def _plan(rng: random.Random, profile: Profile, which: int, *, next_law: bool) -> Plan:
+    """A plan that judges, or one by which formulas are watched, or bins."""
+    if which > 5:
+        return Bins(with_random_coverage(rng, profile)).plan
+    compiled = compile_spec(random_spec(rng, profile), next_law=next_law)
+    if which > 3:
+        return truths_plan(compiled)
+    traced = [name for name, one in compiled.requirements.items() if is_small(one.automaton)]
+    return plan_alone(compiled, traced=traced if which > 1 else ())
+
+
 def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[bytes]:
     """So many packed plans of random specifications, of at most so many bytes."""
     rng = random.Random(str(seed))
     made = 0
     while made < most:
-        profile = Profile(requirements=1 if limit else 3, depth=rng.randint(1, 3), wide=10)
+        limits = {"captures": False, "for_each": False} if made % 8 > 5 else {}
+        profile = Profile(
+            requirements=1 if limit else 3, depth=rng.randint(1, 3), wide=10, **limits
+        )
         next_law = made % 2 == 1  # names can be lost
         try:
-            compiled_spec = compile_spec(random_spec(rng, profile), next_law=next_law)
-            data = pack(plan_alone(compiled_spec), next_law=next_law).data
+            plan = _plan(rng, profile, made % 8, next_law=next_law)
+            data = pack(plan, next_law=next_law).data
         except RvmonError:
             continue
         if limit is None or len(data) <= limit:

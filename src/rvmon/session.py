@@ -123,8 +123,8 @@ class Spec:
 
         Args:
             only: ids of the requirements to judge; default all.
-            engine: `auto` or the name of one; `c`, the native core, gives records without reasons
-                and of input health only what concerns the order of samples.
+            engine: `auto` or the name of one; `c`, the native core, tells of input health only
+                what concerns the order of samples.
             settle: `now` judges each sample at once; `next` merges samples with equal stamps and
                 judges each when the next stamp settles it.
             sources: the signals and events that can arrive; the others are unknown throughout.
@@ -171,7 +171,7 @@ class Spec:
             trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
                 too), a table (arrays or lists by name, an Arrow table, a data frame), a
                 `Recording`, or an iterable of `(t, values)` with t in seconds.
-            engine: `auto` or the name of one; `c`, the native core, gives records without reasons.
+            engine: `auto` or the name of one, such as `c`, the native core.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -114,7 +114,8 @@ class Stepped:
 class ByRows:
     """A run of the core that is fed columns, several rows at once; it says nothing before the end.
 
-    Columns hold no payloads: a sample with one is taken by itself.
+    A sample now and then comes by itself. One is told in several rows of its instant if an event
+    brings several payloads, and now and then without that.
 
     Args:
         compiled: judged by.
@@ -130,15 +131,16 @@ class ByRows:
         self._planned = planned_core(compiled)
         self._run = self._planned.monitor(absent)
         self._waiting: list[Sample] = []
+        self._rng = random.Random(len(case.actions))
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
         """Take a sample."""
-        if any(isinstance(value, Mapping | tuple) for value in values.values()):
+        if self._rng.random() < 0.1:
             self._feed()
             if not self._run.judge(t_ns, self._planned.plain(t_ns, values), True):
                 raise TimeOrderError(f"the sample at {t_ns} was not taken")
         else:
-            self._waiting.append(Sample(t_ns, values))
+            self._waiting += _rows_of(Sample(t_ns, values), self._rng)
         return ()
 
     def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
@@ -167,27 +169,63 @@ class ByRows:
     def _feed(self) -> None:
         samples, self._waiting = self._waiting, []
         names = dict.fromkeys(name for sample in samples for name in sample.values)
-        columns = tuple(_column(self._planned, name, samples) for name in names)
+        columns = tuple(column_of(self._planned, name, samples) for name in names)
         taken = self._run.rows(np.array([sample.t for sample in samples], "i8"), columns)
         if taken < len(samples):
             raise TimeOrderError(f"row {taken} was not taken")
 
 
-def _column(
-    planned: PlannedCore, name: str, samples: Sequence[Sample]
-) -> tuple[int, int, NDArray[Any] | None, NDArray[np.uint8]]:
+def _rows_of(sample: Sample, rng: random.Random) -> Iterator[Sample]:
+    """A sample as rows of its instant."""
+    payloads = {name: value for name, value in sample.values.items() if isinstance(value, tuple)}
+    first = {name: value[0] if value else False for name, value in payloads.items()}
+    values: dict[str, Value] = {**sample.values, **first}
+    apart = [name for name in values if rng.random() < 0.1]
+    yield Sample(sample.t, {name: values[name] for name in values if name not in apart})
+    for name in apart:
+        yield Sample(sample.t, {name: values[name]})
+    for name, more in payloads.items():
+        yield from (Sample(sample.t, {name: payload}) for payload in more[1:])
+
+
+def column_of(planned: PlannedCore, name: str, samples: Sequence[Sample]) -> tuple[Any, ...]:
     """What samples say of a name, as `rows` of the core takes it."""
     number, kind = planned.numbers[name], planned.packed.signals.get(name)
-    values = [sample.values.get(name) for sample in samples]
-    states = (_YES if kind or value else _NO for value in values)
-    said = (_UNKNOWN if value is None else how for value, how in zip(values, states, strict=True))
-    known = (
-        how if name in one.values else _NOTHING for one, how in zip(samples, said, strict=True)
+    said = [sample.values.get(name, _ABSENT) for sample in samples]
+    if kind is not None:
+        return number, _cells(planned, kind, said)
+    fields = [field for event, field in planned.packed.fields if event == name]
+    laid = [
+        _cells(
+            planned,
+            planned.packed.fields[name, field],
+            [one.get(field, _ABSENT) if isinstance(one, Mapping) else _ABSENT for one in said],
+        )
+        for field in fields
+    ]
+    return number, _says(said), tuple(laid) if fields else None
+
+
+_ABSENT = object()
+
+
+def _says(values: Sequence[Any]) -> NDArray[np.uint8]:
+    """What rows say of an event."""
+    found = (
+        _NOTHING if one is _ABSENT else _UNKNOWN if one is None else _NO if one is False else _YES
+        for one in values
     )
-    says = np.fromiter(known, np.uint8, len(samples))
-    if kind is None:
-        return number, 0, None, says
+    return np.fromiter(found, np.uint8, len(values))
+
+
+def _cells(
+    planned: PlannedCore, kind: Kind, values: Sequence[Any]
+) -> tuple[int, NDArray[Any], NDArray[np.uint8] | None]:
+    """The values of a signal or field, and what rows say of it."""
     layout, type_ = _LAYOUTS[kind]
+    known = [0 if one is _ABSENT or one is None else one for one in values]
     if kind is Kind.LABEL:
-        values = [planned.packed.labels.get(str(value)) for value in values]
-    return number, layout, np.array([value or 0 for value in values], type_), says
+        known = [planned.packed.labels[one] if isinstance(one, str) else 0 for one in known]
+    says = [_NOTHING if one is _ABSENT else _UNKNOWN if one is None else _YES for one in values]
+    every = all(one == _YES for one in says)
+    return layout, np.array(known, type_), None if every else np.array(says, np.uint8)

@@ -6,6 +6,7 @@ import csv
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,11 +14,14 @@ from typing import Any
 
 import numpy as np
 
+from rvmon.readers import line_chunks, parquet, recording
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.generate.rng import Rng, chance
+from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind
+from rvmon.verdict.report import Report
 
 NAN = float("nan")
 ABSENT = "gone"
@@ -279,3 +283,30 @@ def _polars(content: Content) -> Any:
     import polars
 
     return polars.from_arrow(_arrow(content))
+
+
+def bare(report: Report) -> tuple[object, ...]:
+    """Verdicts, records without reasons, and input health.
+
+    Of what no requirement reads the core does not tell that it went stale.
+    """
+    attempts = [
+        (
+            *(one.requirement, one.number, one.in_doubt, one.triggered, one.decided),
+            *(one.verdict, one.decision, dict(one.captured)),
+        )
+        for one in report.attempts
+    ]
+    told = [one for one in report.health if one.kind is not HealthKind.STALE or one.requirements]
+    return dict(report.verdicts), attempts, told, report.origin, report.end, dict(report.counts)
+
+
+@contextmanager
+def in_pieces(size: int) -> Iterator[None]:
+    """Files are read in pieces of so many bytes, however short they are."""
+    kept = recording.TINY, line_chunks.BLOCK, parquet.ROWS
+    recording.TINY, line_chunks.BLOCK, parquet.ROWS = 0, size, 5
+    try:
+        yield
+    finally:
+        recording.TINY, line_chunks.BLOCK, parquet.ROWS = kept

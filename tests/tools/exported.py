@@ -60,14 +60,18 @@ class Exported:
         line = [*command, "-I.", *sources, "-o", self._program.name, "-lm"]
         subprocess.run(line, cwd=self._program.parent, check=True)  # noqa: S603
 
-    def judge(self, runs: Sequence[tuple[int, int]], reserved: int = 0) -> list[list[str]]:
+    def judge(
+        self, runs: Sequence[tuple[int, int]], reserved: int = 0, *, notes: bool = False
+    ) -> list[list[str]]:
         """What is printed of each case, which is run twice, by one monitor.
 
         Args:
             runs: the number of a case, and the size of its block, or `HEAP`.
             reserved: for so many open attempts room is made at once.
+            notes: whether notes are kept, and read.
         """
-        told = "\n".join(line for run in runs for line in self._lines(*run, reserved)) + "\n"
+        lines = (line for run in runs for line in self._lines(*run, reserved, notes=notes))
+        told = "\n".join(lines) + "\n"
         done = subprocess.run(  # noqa: S603
             [self._program], input=told, check=True, stdout=subprocess.PIPE, text=True
         )
@@ -75,9 +79,11 @@ class Exported:
         assert not rest
         return [text.splitlines() for text in found]
 
-    def _lines(self, number: int, size: int, reserved: int) -> Iterator[str]:
+    def _lines(self, number: int, size: int, reserved: int, *, notes: bool) -> Iterator[str]:
         case, planned = self.cases[number], self.planned[number]
         yield f"c {number} {size}"
+        if notes:
+            yield "n 0"
         yield f"m {reserved}"
         for name, place in planned.numbers.items():
             if case.names is not None and name not in case.names:
@@ -107,7 +113,7 @@ class Exported:
             else:
                 monitor.advance(action)
         monitor.finish(case.end)
-        records, numbers = monitor.records()
+        records, numbers, *_ = monitor.records()
         rows = np.frombuffer(records, RECORD)
         values = np.frombuffer(numbers, NUMBER).reshape(len(rows), -1 if len(rows) else 0)
         return [_record(*one) for one in zip(rows, values, strict=True)]

@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rvmon.monitor import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
+from rvmon.readers.batch import NO, YES, Batch, Cells, Occurrences
 from rvmon.readers.blocks import Block, up_to
 from rvmon.readers.source import Fillable, Source
 from rvmon.testing.case import Case
@@ -57,8 +60,6 @@ def judge_columns(
     Returns:
         `None` if the specification, or a trace without samples, is not evaluated by columns.
     """
-    import numpy as np
-
     names = sorted(case.names or ())
     if not case.samples or compiled.checked.max_delay is not None:
         return None
@@ -75,7 +76,7 @@ def judge_columns(
         Block(times[start:stop], {name: column[start:stop] for name, column in columns.items()})
         for start, stop in pairwise((0, *cuts, len(times)))
     ]
-    source = Source(BlockRecording(blocks), case.end)
+    source = Source(BlockRecording(blocks, events=frozenset(compiled.checked.events)), case.end)
     return engine_named(engine).judge(compiled, source, Asked())
 
 
@@ -85,6 +86,7 @@ class BlockRecording:
 
     held: Sequence[Block]
     end: int | None = None
+    events: frozenset[str] = frozenset()
 
     @property
     def names(self) -> frozenset[str]:
@@ -94,6 +96,19 @@ class BlockRecording:
     def blocks(self, _: Fillable, until: int | None = None) -> Iterator[Block]:
         """See `rvmon.readers.recording.FileRecording.blocks`."""
         return (up_to(until, block) for block in self.held)
+
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """See `rvmon.readers.recording.FileRecording.pieces`."""
+        for block in self.held:
+            events = {name: block.columns[name] for name in block.columns if name in self.events}
+            yield Batch(
+                block.times,
+                {name: Cells(one) for name, one in block.columns.items() if name not in events},
+                {
+                    name: Occurrences(np.where(one, np.uint8(YES), np.uint8(NO)))
+                    for name, one in events.items()
+                },
+            )
 
     def __iter__(self) -> Iterator[Sample]:
         """The rows."""

@@ -7,6 +7,8 @@ import struct
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import chain
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +35,8 @@ SECTIONS = {
     "AUTOMATA": "automaton_plan",
     "FORMS": "form_plan",
     "OPERATORS": "operator_plan",
+    "WATCHES": "watch_plan",
+    "GROUPS": "group_plan",
     "NUMBERS": "number_plan",
 }
 """What type of C the records of a section have; of the others they are numbers."""
@@ -166,6 +170,8 @@ def walk(plan: Plan, *, is_whole: bool = True) -> None:
         ("NODES", "nodes"),
         ("JUDGES", "judges"),
         ("FORMS", "forms"),
+        ("WATCHES", "watches"),
+        ("GROUPS", "groups"),
     ):
         _is_partition(plan, section, [part[places] for part in plan.records["PARTS"]])
     _is_partition(plan, "LINKS", [node["links"] for node in plan.records["NODES"]])
@@ -294,10 +300,36 @@ def _walk_part(plan: Plan, fields: dict[str, Any]) -> list[int]:
     part.listed(fields["stateful"], len(nodes))
     networked = [n for n, judge in enumerate(judges) if judge["automaton"] < 0]
     assert list(plan.listed(fields["networked"])) == networked
-    assert [judges[n]["form"] for n in networked] == list(range(fields["forms"][1]))
+    forms = [judges[n]["form"] for n in networked]
+    forms += [fields["truths"]] if fields["truths"] >= 0 else []
+    assert forms == list(range(fields["forms"][1]))
+    assert fields["truths"] == -1 or fields["captured"] == 0
+    _walk_groups(part)
     _walk_unit(part)
     assert 0 <= fields["requirements"] <= len(judges)
     return [judge["requirement"] for judge in judges[: fields["requirements"]]]
+
+
+def _walk_groups(part: _Part) -> None:
+    watches, groups = part.own("watches"), part.own("groups")
+    items = 0
+    looks: list[list[int]] = [[] for _ in watches]
+    for number, group in enumerate(groups):
+        assert group["first"] == items
+        axes = part.plan.listed(group["axes"])
+        assert len(axes) % 2 == 0
+        bins = [
+            range(first, first + count) for first, count in zip(axes[::2], axes[1::2], strict=True)
+        ]
+        assert all(bins)
+        occasion = group["occasion"]
+        for watch in chain(*bins) if occasion < 0 else [occasion]:
+            looks[watch].append(number)
+        items += prod(map(len, bins))
+    for watch, own in zip(watches, looks, strict=True):
+        assert list(part.listed(watch["groups"], len(groups))) == own
+        _within([watch["node"]], part.fields["nodes"][1])
+        _within([watch["is_pulse"]], 2)
 
 
 def _walk_unit(part: _Part) -> None:
@@ -448,6 +480,12 @@ def _walk_node(part: _Part, place: int, node: dict[str, Any]) -> None:
     if node["timer"] >= 0:
         part.remember("timers", node["timer"])
     links = part.plan.own("LINKS", node["links"])
+    watching = [link for link in links if link["kind"] == e["LINK_WATCH"]]
+    watches = part.own("watches")
+    assert [link["judge"] for link in watching] == [
+        number for number, watch in enumerate(watches) if watch["node"] == place
+    ]
+    links = links[: len(links) - len(watching)]
     _within((link["judge"] for link in links), part.fields["judges"][1])
     _within((link["kind"] for link in links), 8, 1)
     assert len({link["judge"] for link in links}) == len(links)
@@ -463,6 +501,7 @@ def _walk_judge(part: _Part, judge: dict[str, Any]) -> None:
     _within([judge["form"]], part.fields["forms"][1], -1)
     _within(judge["outcomes"], 16)
     assert (judge["automaton"] >= 0) == (judge["form"] < 0)
+    part.listed(judge["leaves"], nodes)
     if judge["automaton"] < 0:
         return
     automaton = plan.records["AUTOMATA"][judge["automaton"]]
@@ -477,7 +516,7 @@ def _walk_judge(part: _Part, judge: dict[str, Any]) -> None:
         link
         for node in part.own("nodes")
         for link in plan.own("LINKS", node["links"])
-        if link["judge"] == own
+        if link["judge"] == own and link["kind"] != e["LINK_WATCH"]
     ]
     for reading in ("worse", "better"):
         assert min(min(link[reading]) for link in links) >= 0 if links else True

@@ -1,5 +1,7 @@
 """Automata of formulas that differ in their propositions and bounds alone: constructed once.
 
+What is owed in a location is told apart, so that a run can be explained by where it stood.
+
 Bounds matter to an automaton by their order, and by how far they lie apart where that is little: an
 age that `construct` meets is 0 or a bound, and as many ticks more as steps were taken behind it.
 So bounds that lie far apart are replaced by others in the same order, and put back afterwards.
@@ -29,6 +31,7 @@ from rvmon.formula.core import (
     Since,
     Until,
 )
+from rvmon.formula.residual import Residual
 
 _APART = 1 << 10
 """Bounds that are replaced lie so many ticks apart, and from 0, or more."""
@@ -44,28 +47,42 @@ class Shapes:
 
     def __init__(self) -> None:
         self._shapes: dict[_Key, tuple[Automaton | None, Sequence[Core]] | None] = {}
-        self._automata: dict[_Key, Automaton | None] = {}
+        self._automata: dict[_Key, tuple[Automaton | None, Sequence[Core]]] = {}
 
     def reduced(self, owed: Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
-        """The smallest automaton of a formula; `None` if it has none, or that does not close.
+        """The automaton of a formula; `None` if it has none, or that does not close.
 
         Its alphabet and residuals speak of the propositions of whichever formula was first asked
-        for, of those that are equal but for propositions.
+        for, of those that are equal but for propositions; see `residuals`.
 
         Args:
             owed: see `rvmon.automaton.construct.construct`; so are the others.
             alphabet: of that formula.
             budget: when to give up.
         """
+        return self._found(owed, alphabet, budget)[0]
+
+    def residuals(self, owed: Next, alphabet: Alphabet, budget: Budget) -> Sequence[Residual]:
+        """What a formula owes in each location of its automaton, which it has; see `reduced`."""
+        automaton, nodes = self._found(owed, alphabet, budget)
+        if automaton is None:
+            raise ValueError("it has no automaton")
+        own = {id(node): mine for node, mine in zip(nodes, _nodes(owed), strict=True)}
+        return [_renamed(location.residual, own) for location in automaton.locations]
+
+    def _found(
+        self, owed: Next, alphabet: Alphabet, budget: Budget
+    ) -> tuple[Automaton | None, Sequence[Core]]:
         nodes = _nodes(owed)
         if any(isinstance(node, Since | Previous) for node in nodes):
-            return None
+            return None, nodes
         bounds = sorted({bound for node in nodes for bound in _bounds(node)})
         stand_ins = _stand_ins(bounds)
         shape = (budget, *_description(nodes, alphabet, stand_ins))
         key = (shape, *bounds)
         if key not in self._automata:
-            self._automata[key] = self._made(shape, nodes, stand_ins, alphabet, budget)
+            made = self._made(shape, nodes, stand_ins, alphabet, budget)
+            self._automata[key] = made, nodes
         return self._automata[key]
 
     def _made(
@@ -99,10 +116,14 @@ def _constructed(
     """The reduced automaton of the last of some nodes, and how far behind a bound an age was."""
     ages: set[int] = set()
     try:
-        made = reduce(construct(cast(Next, nodes[-1]), alphabet, budget, ages))
+        made = reduce(construct(cast(Next, nodes[-1]), alphabet, budget, ages), _itself)
     except DoesNotCloseError:
         made = None
     return made, max((age % _STRIDE for age in ages), default=0)
+
+
+def _itself(residual: Residual) -> Residual:
+    return residual
 
 
 def _nodes(owed: Core) -> list[Core]:
@@ -195,14 +216,18 @@ def _with_bounds(nodes: Sequence[Core], stand_ins: Mapping[int, int]) -> Sequenc
     return tuple(made.values())
 
 
+def _renamed(residual: Residual, own: Mapping[int, Any]) -> Residual:
+    """A residual with the nodes that others stood in for, which are found by their `id`."""
+    return frozenset(
+        frozenset((own[id(node)], clock) for node, clock in clause) for clause in residual
+    )
+
+
 def _put_back(automaton: Automaton, own: Mapping[int, Any], bounds: Mapping[int, int]) -> Automaton:
     """An automaton with the nodes and bounds of a formula that others stood in for."""
     locations = tuple(
         Location(
-            frozenset(
-                frozenset((own[id(node)], clock) for node, clock in clause)
-                for clause in location.residual
-            ),
+            _renamed(location.residual, own),
             tuple(tuple(bounds[cut] for cut in cuts) for cuts in location.cuts),
         )
         for location in automaton.locations

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import asked_ids, constants_of
-from rvmon.cli.reading import allowed_names, reading_spec
+from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.loading import load
-from rvmon.readers.recording import FileRecording
+from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.verdict.illegal import IllegalHit
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from rvmon.coverage.hits import Hits
     from rvmon.coverage.monitor import CoverageMonitor
     from rvmon.verdict.report import Report
-
-Read = Callable[[FileRecording], Iterable[Sample]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +33,8 @@ class Options:
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
         allow_missing: the names that recordings in columns may lack; `True`: all.
-        coverage: whether all that the coverage model has is watched; default: only what of it must
-            not be hit.
+        coverage: whether all that the coverage model has is watched; default: coverpoints and
+            crosses alone.
     """
 
     only: tuple[str, ...] | None = None
@@ -71,11 +69,12 @@ def spec_and_options(
 
 
 class Beside:
-    """Finds coverage on one recording.
+    """Finds coverage on one recording: when it was judged it is read once more, if it can be.
 
     Args:
         spec: may have coverpoints.
         options: say what is asked for.
+        trace: the path of the recording.
         names: that have a source; `None`: all.
         end: the instant to which the recording is judged, ticks; default its last sample.
 
@@ -84,45 +83,53 @@ class Beside:
     """
 
     def __init__(
-        self, spec: Spec, options: Options, names: frozenset[str] | None, end: int | None
+        self,
+        spec: Spec,
+        options: Options,
+        trace: str,
+        names: frozenset[str] | None,
+        end: int | None,
     ) -> None:
         self.hits: Hits = {}
         self._spec = spec
         self._options = options
+        self._trace = trace
         self._end = end
         self._coverage: CoverageMonitor | None = None
-        if options.coverage or spec.checked.coverpoints:
+        self._is_asked = bool(options.coverage or spec.checked.coverpoints)
+        if self._is_asked and not can_be_read_again(trace):
             self._coverage = spec.coverage_model.monitor(
                 sources=names, requirements=options.coverage
             )
 
     @property
     def is_idle(self) -> bool:
-        """Whether there is nothing to find."""
+        """Whether there is nothing to find while samples go by."""
         return self._coverage is None
 
-    def reading(self, read: Read) -> Callable[[FileRecording], Iterator[Sample]]:
-        """How to read a recording: each sample is seen here once it was judged."""
-
-        def samples(recording: FileRecording) -> Iterator[Sample]:
-            for sample in read(recording):
-                yield sample
-                if self._coverage is not None and (self._end is None or sample.t <= self._end):
-                    self._coverage.step_ns(sample.t, sample.values)
-
-        return samples
+    def reading(self, recording: FileRecording) -> Iterator[Sample]:
+        """The samples of a recording: each is seen here once it was judged."""
+        for sample in recording:
+            yield sample
+            if self._coverage is not None and (self._end is None or sample.t <= self._end):
+                self._coverage.step_ns(sample.t, sample.values)
 
     def finished(self, report: Report) -> Report:
         """The report with what was found, when all samples went by."""
+        if not self._is_asked:
+            return report
+        from rvmon.coverage.hits import covered_groups, illegal
+
         if self._coverage is not None:
-            report = replace(report, illegal=tuple(self._illegal(self._coverage)))
-        return report
-
-    def _illegal(self, coverage: CoverageMonitor) -> Iterator[IllegalHit]:
-        from rvmon.coverage.hits import illegal
-
-        found = coverage.finish_ns(self._end)
+            found = self._coverage.finish_ns(self._end)
+        else:
+            again, asked = opened(self._spec, self._trace), self._options.coverage
+            found = self._spec.coverage_model.of(again, self._end, requirements=asked)
         if self._options.coverage:
             self.hits = found
-        for group, item, hit in illegal(found, self._spec.coverage_model.bin_model):
-            yield IllegalHit(group.name, item.name, hit.count, hit.first or 0)
+        model = self._spec.coverage_model.bin_model
+        wrong = tuple(
+            IllegalHit(group.name, item.name, hit.count, hit.first or 0)
+            for group, item, hit in illegal(found, model)
+        )
+        return replace(report, illegal=wrong, coverage=covered_groups(found, model))

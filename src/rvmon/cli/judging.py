@@ -110,14 +110,14 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             coverage=True,
         )
         end = recording.end if options.until is None else ticks_of_seconds(options.until)
-        beside = Beside(spec, options, recording.names, end)
-        read = shown_while_reading if is_alone else iter
+        beside = Beside(spec, options, trace, recording.names, end)
         source = Source(
             recording,
             end,
             is_cut=True,
             row_by_row="" if beside.is_idle else "coverage is found sample by sample",
-            read=read if beside.is_idle else beside.reading(read),
+            read=iter if beside.is_idle else beside.reading,
+            shown=partial(shown_while_reading, recording) if is_alone else iter,
         )
         try:
             report = spec.judge(

@@ -7,13 +7,16 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
+
+from rvmon.trace.sample import Sample
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
     from rvmon.readers.recording import FileRecording
-    from rvmon.trace.sample import Sample
+
+T = TypeVar("T")
 
 PATIENCE_S = 1.0
 """Work shorter than this shows no bar."""
@@ -68,11 +71,16 @@ def busy(what: str) -> AbstractContextManager[object]:
     return Terminal(stderr=True).status(what)
 
 
-def shown_while_reading(recording: FileRecording) -> Iterator[Sample]:
-    """The recording's samples, and how far it is read."""
-    samples = iter(recording)
+def shown_while_reading(recording: FileRecording, found: Iterator[T]) -> Iterator[T]:
+    """What is read of a recording, and how far that is.
+
+    Args:
+        recording: says how far.
+        found: its samples, or pieces of it with many rows each.
+    """
     with bar(recording.path, 1.0) as show:
-        for sample in samples:
-            yield sample
-            yield from islice(samples, SAMPLES_PER_LOOK)
+        for one in found:
+            yield one
+            if isinstance(one, Sample):
+                yield from islice(found, SAMPLES_PER_LOOK)
             show(recording.fraction_read)

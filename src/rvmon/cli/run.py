@@ -75,8 +75,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--engine",
         metavar="NAME",
         default="auto",
-        help=f"how to evaluate: auto (default), {', '.join(ENGINES[1:-1])}, or c: "
-        "the native core, without reasons",
+        help=f"how to evaluate: auto (default), {', '.join(ENGINES[1:-1])}, or c: the native core",
     )
     parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"

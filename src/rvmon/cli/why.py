@@ -74,7 +74,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     mapped = spec.schema.named
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
     until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
-    samples = in_order(shown_while_reading(recording))
+    samples = in_order(shown_while_reading(recording, iter(recording)))
     samples = [one for one in samples if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)
     with busy(f"evaluating {name}"):

@@ -5,9 +5,9 @@ from __future__ import annotations
 import heapq
 import math
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
-from types import CodeType, MappingProxyType
+from types import CodeType
 from typing import Any, TypeVar
 
 from rvmon.codegen.python_evaluator import evaluator_source
@@ -55,7 +55,6 @@ def unit_class(
     plan: Plan,
     arriving: frozenset[str] | None,
     base: type[MadeUnit],
-    rule: type[Rule] | None = None,
 ) -> type[MadeUnit]:
     """The class of a plan's generated monitors.
 
@@ -63,11 +62,8 @@ def unit_class(
         plan: what to judge.
         arriving: the names that have a source; `None`: all.
         base: what it derives from.
-        rule: judges attempts one by one, also those that are judged by counts else; `None`: as
-            suits each requirement.
     """
-    rules = {} if rule is None else dict.fromkeys(("Rule", "BulkRule", "SoloRule"), rule)
-    return _made(unit_source(plan, arriving), base, rules)
+    return _made(unit_source(plan, arriving), base)
 
 
 def evaluator_class(plan: Plan, base: type[Made]) -> type[Made]:
@@ -92,10 +88,8 @@ def margins_function(
     return found
 
 
-def _made(
-    source: str, base: type[Made], rules: Mapping[str, type[Rule]] = MappingProxyType({})
-) -> type[Made]:
-    namespace = {**_NAMES, "Base": base, "Unit": base, **rules}
+def _made(source: str, base: type[Made]) -> type[Made]:
+    namespace = {**_NAMES, "Base": base, "Unit": base}
     exec(_code(source), namespace)  # noqa: S102
     made: type[Made] = namespace["Generated"]
     return made

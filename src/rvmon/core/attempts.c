@@ -128,18 +128,20 @@ void look_at(run *r, int32_t index, int64_t t)
 }
 
 /* Be done with an attempt. */
-void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t)
+void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t,
+              int64_t note)
 {
     if (r->part->plan->captured > 0) {
         turn *own = &r->home->turns[at];
         own->verdict = verdict;
         own->decision = decision;
         own->decided = t;
+        own->note = note;
         own->rule = index;
         note_done(r, at);
     } else {
         report(r, index, attempt_at(r->home, at), attempt_at(r->home, at)->number, verdict, decision,
-               t);
+               t, note);
     }
 }
 
@@ -160,10 +162,12 @@ void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
         }
     }
     if (passed ? x->hollow : !x->sure) {
-        conclude(r, index, at, RV_INCONCLUSIVE, RV_OPEN, t);
+        conclude(r, index, at, RV_INCONCLUSIVE, RV_OPEN, t,
+                 (r->standing != NULL) ? note_nothing(r, index, x) : -1);
     } else {
+        const bool noted = (r->standing != NULL) && x->sure; /* else it was met, triggered or not */
         conclude(r, index, at, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX,
-                 (j->trigger < 0) ? x->triggered : t);
+                 (j->trigger < 0) ? x->triggered : t, noted ? note_decision(r, index, x, t) : -1);
     }
 }
 
@@ -200,10 +204,19 @@ bool is_moot(const attempt *x)
 /* Put an attempt that stays open for good where nobody comes by until the end. */
 void lay_aside(run *r, int32_t index, int32_t before, int32_t at)
 {
-    judge *j = &r->judges[index];
     unlink(r, index, before, at);
+    lay_down(r, index, at);
+}
+
+/* Put an attempt there that is in no list. */
+void lay_down(run *r, int32_t index, int32_t at)
+{
+    judge *j = &r->judges[index];
     attempt_at(r->home, at)->next = j->moot;
     j->moot = at;
+    if (r->standing != NULL) {
+        note_moot(r, index, attempt_at(r->home, at)->triggered);
+    }
 }
 
 /* The open attempt of a judge behind another, those for good last; -1 before the first, and behind
@@ -248,10 +261,12 @@ void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reac
     const bool runs = is_current(r, index, at);
     const bool hollow = x->hollow || (runs && is_true(r, j->unborn));
     bool may_be_over = !x->sure || (runs && x->clouded);
+    const int64_t now = stamp_of_end(end, reached);
     int32_t state = (!hollow && is_kept(r, index, x, end, reached)) ? 1 : 0;
     may_be_over = may_be_over || ((r->cut < NEVER) && x->clouded);
     state |= (hollow || (x->location == FAILED)) ? 2 : 0;
     state |= (may_be_over || (x->parted && (x->better == PASSED))) ? 4 : 0;
     report(r, index, x, told_number(r, at), (uint8_t)(j->outcomes[state] & 3),
-           (uint8_t)(j->outcomes[state] >> 2), end);
+           (uint8_t)(j->outcomes[state] >> 2), end,
+           (r->standing == NULL) ? -1 : note_open(r, index, x, now, hollow, end));
 }

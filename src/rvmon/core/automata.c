@@ -61,6 +61,9 @@ bool step_token(const machine *a, token *k, int64_t t, int32_t letter)
     const int32_t *sources = &a->sources[number * a->clocks];
     const int32_t width = a->widths[target];
     bool moved = target != k->location;
+    if (moved && (k->moves != NULL)) {
+        count_move(a, k->moves, k->location, target, 1, t);
+    }
     k->location = target;
     if (width == 1) { /* as mostly */
         const int64_t anchor = (sources[0] < 0) ? t : k->clocks[sources[0]];
@@ -143,7 +146,11 @@ int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until)
         int64_t next;
         const int32_t truth = a->time_values[row_of(a, k, cut, &next)];
         if (truth != IS_UNKNOWN) {
-            k->location = (truth == IS_TRUE) ? PASSED : FAILED;
+            const int32_t target = (truth == IS_TRUE) ? PASSED : FAILED;
+            if (k->moves != NULL) {
+                count_move(a, k->moves, k->location, target, 1, cut);
+            }
+            k->location = target;
             break;
         }
         cut = next;

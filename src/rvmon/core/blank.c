@@ -30,6 +30,10 @@ void begin_blank(run *r, int64_t t)
     }
     remember_unknown(r, t);
     blank_out(r, t);
+    if (r->part->is_watched) {
+        touch_all(r, 0);
+        watch(r, t);
+    }
     for (i = 0; i < r->part->plan->judges.count; i++) {
         const int32_t trigger = followed(r, i);
         if (watches(r, i)) {

@@ -23,6 +23,18 @@ static inline int64_t whole_steps(int64_t duration, int64_t step)
     return (step == 1) ? duration : duration / step * step; /* a division takes its time */
 }
 
+static inline int64_t least(int64_t a, int64_t b)
+{
+    return (a < b) ? a : b;
+}
+
+/* The stamp of the end of a trace, when time has come to `reached`: twice the instant, one more if its
+ * letter is known. */
+static inline int64_t stamp_of_end(int64_t end, int64_t reached)
+{
+    return ((reached > end) && (reached < LIMIT)) ? 2 * reached : 2 * least(end, LIMIT - 1) + 1;
+}
+
 /* How many positions of a clock lie within the bounds of time. */
 static inline int64_t positions_within(int64_t step)
 {
@@ -36,11 +48,6 @@ static inline int64_t floored(int64_t t, int64_t step)
         return t;
     }
     return ((t >= 0) || (t % step == 0)) ? t / step : t / step - 1;
-}
-
-static inline int64_t least(int64_t a, int64_t b)
-{
-    return (a < b) ? a : b;
 }
 
 /* Have a judge look at the position at hand. */
@@ -77,6 +84,33 @@ static inline int64_t moved(int64_t position, int64_t distance)
 static inline attempt *attempt_at(const home *h, int32_t i)
 {
     return (attempt *)(void *)(h->pool + h->stride * (size_t)i);
+}
+
+/* The place of the lowest bit that is set, and of the highest one; there is one. */
+static inline int32_t lowest_bit(uint64_t word)
+{
+#if defined(__GNUC__)
+    return (int32_t)__builtin_ctzll(word);
+#else
+    int32_t i = 0;
+    while (((word >> i) & 1U) == 0U) {
+        i++;
+    }
+    return i;
+#endif
+}
+
+static inline int32_t highest_bit(uint64_t word)
+{
+#if defined(__GNUC__)
+    return 63 - (int32_t)__builtin_clzll(word);
+#else
+    int32_t i = 63;
+    while (((word >> i) & 1U) == 0U) {
+        i--;
+    }
+    return i;
+#endif
 }
 
 /* A larger array with what stood in the old one; NULL if memory is short, which spoils the run. */
@@ -125,7 +159,7 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
 }
 
 void forget(run *r);
-void go_stale(run *r, int32_t perishable);
+void go_stale(run *r, int64_t t, int32_t perishable);
 void lack(run *r, bool event, int32_t local);
 
 /* ---- outages.c: names that may have said anything */
@@ -171,6 +205,7 @@ void settle_phase(run *r);
 typedef struct {
     int32_t location;
     int64_t *clocks;
+    rv_hit *moves;             /* where it is counted where it goes; NULL: it is not */
 } token;
 
 int32_t class_of_letter(const run *r, int32_t index, bool better);
@@ -194,10 +229,12 @@ bool is_sure(const run *r, int32_t index);
 bool runs_on(const run *r, int32_t index);
 void leave_episode(run *r, int32_t index);
 void look_at(run *r, int32_t index, int64_t t);
-void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t);
+void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t,
+              int64_t note);
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
 void leave(run *r, int32_t index, int32_t before, int32_t at);
 bool is_moot(const attempt *x);
+void lay_down(run *r, int32_t index, int32_t at);
 void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
 int32_t next_open(const run *r, int32_t index, int32_t at);
 uint32_t told_number(const run *r, int32_t at);
@@ -208,7 +245,7 @@ bool grow_records(rv_monitor *m, int64_t wanted);
 void keep_record(rv_monitor *m, const rv_record *record);
 int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count);
 void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
-            uint8_t decision, int64_t t);
+            uint8_t decision, int64_t t, int64_t note);
 void sort_records(rv_monitor *m);
 
 /* ---- drive.c: attempts of a judge through time */
@@ -227,6 +264,40 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
 void begin(run *r, int32_t index, int64_t t, int64_t triggered);
 void enter(run *r, int32_t index, int32_t at, int64_t t);
 
+/* ---- notes.c: what is kept so that notes can be told */
+bool make_notes(run *r);
+void clear_noting(run *r, int32_t index);
+void stand_at_first(run *r, int64_t t);
+void stand_like(run *made, const run *r);
+void note_node(run *r, int32_t node, uint8_t was, int64_t t);
+void note_trigger(run *r, int32_t index, int64_t t);
+void note_begin(run *r, int32_t index, attempt *x, int64_t t);
+void note_parting(run *r, int32_t index, attempt *x);
+void note_doubt(run *r, int32_t index, int64_t t);
+void note_open_count(run *r, int32_t index);
+bool is_in_doubt(const run *r, int32_t index);
+void note_moot(run *r, int32_t index, int64_t t);
+int64_t begin_of(const run *r, int32_t index, const attempt *x);
+const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
+
+/* ---- unknowns.c: what was not known of signals */
+bool begin_unknowns(home *h);
+void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value);
+int64_t unknowns_count(const run *r, int64_t doubt);
+void put_unknowns(const run *r, int64_t doubt, int64_t *to);
+
+/* ---- letters.c: the letters by which a network judges */
+void keep_letter(run *r, int32_t index, int64_t t);
+
+/* ---- told.c: notes of decisions and of open attempts */
+int64_t note_nothing(run *r, int32_t index, const attempt *x);
+int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t);
+int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hollow, int64_t end);
+void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t *clocks);
+void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, int64_t t);
+void tell_open(rv_monitor *m, bool begins);
+void forget_notes(rv_monitor *m, int64_t words, int32_t spans);
+
 /* ---- queue.c: attempts of which age alone decides */
 bool make_queue(run *r, int32_t index);
 void clear_queue(judge *j);
@@ -239,6 +310,7 @@ bool queue_begin(run *r, int32_t index, int64_t t);
 void loosen_queue(run *r, int32_t index);
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
 const queued *queue_item(const judge *j, int32_t i);
+const attempt *queued_attempt(const run *r, int32_t index, int32_t i);
 
 /* Whether a judge has attempts that a position may concern. */
 static inline bool has_attempts(const judge *j)
@@ -309,7 +381,10 @@ typedef struct {
     rv_monitor *monitor;
 } form;
 
-form form_of(const run *r, int32_t index);
+form form_at(const run *r, int32_t number);
+form form_of(const run *r, int32_t index); /* of a judge */
+networks *made_networks(const form *f);
+bool read_leaves(const run *r, const form *f, networks *net, bool *parted);
 int64_t instant_of(const form *f, const network *w, int64_t position);
 int64_t position_by(const form *f, const network *w, int64_t t);
 int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance);
@@ -334,6 +409,27 @@ void network_come_to(run *r, int32_t index, int64_t t);
 bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
 void network_close(run *r, int32_t index, int64_t end, int64_t reached);
 bool network_outlasts(run *r, int32_t index, const attempt *x);
+
+/* ---- watch.c: what is kept beside what becomes of attempts */
+bool begin_watch(home *h);
+void watch(run *r, int64_t t);
+void end_watch(run *r, int64_t end);
+
+/* ---- cover.c: what runs hit of coverpoints and crosses */
+bool begin_cover(home *h);
+void call_watch(run *r, int32_t number);
+void cover(run *r, int64_t t);
+
+/* ---- moves.c: where attempts go in automata */
+bool begin_moves(home *h);
+void count_move(const machine *a, rv_hit *moves, int32_t from, int32_t to, int64_t count, int64_t t);
+void count_begin(run *r, int32_t index, int64_t t);
+
+/* Where it is counted where the attempts of a judge go; NULL: it is not. */
+static inline rv_hit *moves_of(const run *r, int32_t index)
+{
+    return (r->home->moves != NULL) ? r->home->moves[index] : NULL;
+}
 
 /* ---- windows.c: attempts that a chain of windows judges */
 bool is_chained(const run *r, int32_t index);
@@ -408,6 +504,7 @@ void home_lose(home *h, int64_t t);
 void home_begin_blank(home *h, int64_t t);
 void rest_all(home *h);
 void untouch_all(home *h);
+void home_come_to(home *h, int64_t end);
 void home_close(home *h, int64_t end, int64_t reached);
 int64_t home_due(home *h);
 run *following(const home *h, const run *r);

@@ -144,7 +144,7 @@ void flush_turns(home *h)
         turn *own = &h->turns[at];
         const int32_t next = own->next_done;
         report(own->judge, own->rule, attempt_at(h, at), told_number(own->judge, at), own->verdict,
-               own->decision, own->decided);
+               own->decision, own->decided, own->note);
         own->judge = NULL;
         give_back(h, at);
         at = next;

@@ -9,11 +9,12 @@ static void ring(run *r, int64_t t)
     const int32_t nodes = r->part->plan->timers;
     while (timers_next(&r->wake) <= t) {
         const int32_t id = r->wake.ids[0];
+        const int64_t due = r->wake.due[id];
         timers_set(&r->wake, id, NEVER);
         if (id < nodes) {
             soil(r, r->part->timed[id]);
         } else {
-            go_stale(r, id - nodes);
+            go_stale(r, due, id - nodes);
         }
     }
 }
@@ -35,6 +36,9 @@ int32_t followed(const run *r, int32_t index)
 void touch_all(run *r, uint8_t what)
 {
     int32_t i;
+    for (i = 0; i < r->part->plan->watches.count; i++) {
+        call_watch(r, i);
+    }
     for (i = 0; i < r->part->plan->judges.count; i++) {
         touch(r, i, what);
     }
@@ -49,7 +53,6 @@ static void call_up(run *r, int64_t t)
     for (i = 0; i < r->repeating_count; i++) {
         touch(r, r->repeating[i], TOUCHED_TRIGGER);
     }
-    r->repeating_count = 0;
     for (i = 0; i < r->restless_count; i++) {
         const int32_t index = r->restless[i];
         if (r->judges[index].restless) {
@@ -93,6 +96,10 @@ void look_at_all(run *r)
 void have_judged(run *r, int64_t t)
 {
     int32_t i;
+    r->repeating_count = 0; /* each judge may be put there once now, and no more than once */
+    if (r->part->is_watched) {
+        watch(r, t);
+    }
     for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {
         const int32_t index = r->touched[i];
         if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && runs_on(r, index)) {
@@ -176,6 +183,9 @@ void visit(run *r, int64_t t)
     }
     call_up(r, t);
     work_out(r, t);
+    if ((r->standing != NULL) && (r->at.starting == IS_TRUE)) {
+        stand_at_first(r, t);
+    }
     r->at.position = t;
     r->at.awaited = NEVER;
     have_judged(r, t);
@@ -290,6 +300,9 @@ void settle_all(run *r, int64_t end, int64_t reached)
     for (i = 0; i < r->part->plan->judges.count; i++) {
         if (is_networked(r, i) && !is_chained(r, i)) {
             network_close(r, i, end, reached);
+        }
+        if (r->standing != NULL) {
+            note_open_count(r, i);
         }
         if (!queue_is_empty(&r->judges[i])) {
             queue_close(r, i, end, reached);

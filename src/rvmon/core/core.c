@@ -26,8 +26,10 @@ static bool prepare_part(rv_monitor *m, part *p)
             p->perishable[p->signals[i].perishable] = i;
         }
     }
+    p->is_watched = (p->plan->truths >= 0) || (p->plan->watches.count > 0);
     for (i = 0; i < p->plan->judges.count; i++) {
         p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
+        p->is_traced = p->is_traced || ((p->judges[i].flags & JUDGE_TRACED) != 0);
         p->restarts = p->restarts || (p->judges[i].again >= 0);
         if ((p->judges[i].automaton < 0) && (p->forms[p->judges[i].form].windows.count == 0)) {
             p->networked[p->networked_count] = i;
@@ -50,8 +52,9 @@ static bool prepare(rv_monitor *m)
     m->absent = arena_take(&m->memory, (size_t)names + 1);
     m->losing = arena_take(&m->memory, (size_t)names + 1);
     m->late = arena_take(&m->memory, (size_t)p->header->requirements + 1);
+    m->stale = arena_take(&m->memory, (size_t)(p->header->signals + 1) * sizeof *m->stale);
     if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL) || (m->losing == NULL)
-        || (m->late == NULL)) {
+        || (m->late == NULL) || (m->stale == NULL)) {
         return false;
     }
     for (i = 0; i < p->part_count; i++) {
@@ -63,6 +66,8 @@ static bool prepare(rv_monitor *m)
         one->nodes = &p->nodes[one->plan->nodes.first];
         one->judges = &p->judges[one->plan->judges.first];
         one->forms = &p->forms[one->plan->forms.first];
+        one->watches = &p->watches[one->plan->watches.first];
+        one->groups = &p->groups[one->plan->groups.first];
         m->homes[i].monitor = m;
         m->homes[i].part = one;
         m->homes[i].alarms.next = NEVER;
@@ -82,6 +87,7 @@ static bool begin_run(rv_monitor *m)
     int32_t i;
     m->record_count = 0;
     m->captured_count = 0;
+    forget_notes(m, 0, 0);
     m->sorted = 0;
     m->began = RV_NO_TIME;
     m->last = RV_NO_TIME;
@@ -93,6 +99,7 @@ static bool begin_run(rv_monitor *m)
     m->dense_end = RV_NO_TIME;
     (void)memset(m->losing, 0, (size_t)names + 1);
     (void)memset(m->late, 0, (size_t)p->header->requirements + 1);
+    (void)memset(m->stale, 0, (size_t)(p->header->signals + 1) * sizeof *m->stale);
     m->finished = false;
     m->spoilt = false;
     for (i = 0; i < p->part_count; i++) {

@@ -25,6 +25,9 @@ extern "C" {
  * whole numbers that the plan's maker has given them. */
 enum { RV_UNKNOWN = 0, RV_WHOLE = 1, RV_REAL = 2 };
 
+/* Why a number is unknown, as its `whole`, for who tells of it. */
+enum { RV_IS_NONE = 0, RV_IS_NAN = 1 };
+
 typedef struct {
     int32_t kind;
     union {
@@ -54,6 +57,7 @@ typedef struct {
     int64_t triggered;
     int64_t decided;
     int64_t captured;          /* place of its captured values among those of all; -1: it has none */
+    int64_t note;              /* place of what its reason is worked out from; -1: nothing is noted */
     int32_t requirement;
     uint32_t number;
     uint8_t verdict;
@@ -146,6 +150,14 @@ typedef struct {
 
 rv_times rv_times_of(const rv_monitor *m);
 
+/* How often a signal went stale, and when first. */
+typedef struct {
+    int64_t count;
+    int64_t first;
+} rv_staleness;
+
+rv_staleness rv_stale(const rv_monitor *m, int32_t signal);
+
 /* Records since the last `rv_forget_records`, of each call in the order of reports: by decision, then
  * requirement, then number. Valid until the next call. */
 int64_t rv_records(const rv_monitor *m, const rv_record **records);
@@ -155,9 +167,43 @@ const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
 int32_t rv_captured_of(const rv_monitor *m, int32_t requirement);
 void rv_forget_records(rv_monitor *m);
 
-/* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. */
+/* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. Notes
+ * of them are valid until the next call. */
 typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);
-void rv_each_open(const rv_monitor *m, rv_take take, void *user);
+void rv_each_open(rv_monitor *m, rv_take take, void *user);
+
+/* Have noted with each record from here on what its reason is worked out from: where its run stood just
+ * before the decision, since when propositions had their truths, the letters that matter. Before the
+ * first sample; nobody who wants verdicts alone needs it. It takes some words a decision and a few
+ * nanoseconds a change. The words are told of in notes.c.
+ *
+ * Letters stand in pieces, which many notes share; a piece that is full stays as it is. Who reads them
+ * can hang something on a piece, and is told by `let_go` when that serves no more. */
+typedef struct rv_piece rv_piece;
+const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count); /* a position, then truths */
+rv_piece *rv_piece_next(const rv_piece *piece);
+void **rv_piece_held(rv_piece *piece, int32_t which);                 /* of who reads it: 0 or 1 */
+
+typedef struct {
+    const int64_t *words;
+    const int64_t *standing;   /* how all stood at the decision; NULL: nobody asks */
+    int64_t count;
+    int64_t standing_count;
+    rv_piece *first;           /* letters; NULL: they do not matter */
+    rv_piece *last;
+    int32_t last_count;        /* words of the last piece */
+} rv_note;
+
+typedef void (*rv_let_go)(void *user, void *held);
+int rv_keep_notes(rv_monitor *m, rv_let_go let_go, void *user);
+
+/* What was noted with a record; false: nothing. */
+bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note);
+
+/* The words of all notes, and the letters of a number among those that notes refer to; false: there are
+ * no more. */
+int64_t rv_notes(const rv_monitor *m, const int64_t **words);
+bool rv_span(const rv_monitor *m, int32_t number, rv_note *note);
 
 /* How many attempts of a requirement failed, passed, stayed open, and whether its trigger was ever
  * true or false. */
@@ -187,6 +233,39 @@ int rv_load(rv_monitor *m, const void *bytes, size_t size);
 /* Whether memory was short in this run. */
 bool rv_spoilt(const rv_monitor *m);
 
+/* Where the formulas of a plan are known that it keeps the truths of (`truths` in plan.md): ranges of
+ * positions at which an operator has a value, the unknown taken for the worse or for the better; ticks,
+ * ticks divided by the gap, or, where only samples are positions, their numbers from 0. They go as far
+ * as the last change, and to the end once the run is finished. Valid until the next call; -1: the plan
+ * keeps none, or has no such operator. */
+typedef struct {
+    int64_t first;
+    int64_t last;
+} rv_range;
+
+int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, bool value,
+                  const rv_range **found);
+
+/* How often each item of the groups of a plan was hit in the run, and when first (0 of none), in their
+ * order; NULL and 0: it has none. */
+typedef struct {
+    int64_t count;
+    int64_t first;
+} rv_hit;
+
+const rv_hit *rv_hits(const rv_monitor *m, int32_t *items);
+
+/* How often attempts of a requirement went from one location of its automaton to another, and when
+ * first: by `locations` times the one plus the other; one to itself: began, in the first. Those in doubt,
+ * and those of which two readings differ, are left out. NULL and 0: the plan does not ask for it. */
+const rv_hit *rv_moves(const rv_monitor *m, int32_t requirement, int32_t *locations);
+
+/* How the run stands at `now`, at or after its last sample: words that are equal for runs that go on
+ * alike, each as it is seen from there. Returns how many there are, of which `room` are written; `next`
+ * is the first instant behind at which time alone may change something. Nothing but rv_finish at `now`
+ * may follow. -1: nothing is told, as the run is over, or a chain of windows judges. */
+int64_t rv_situation(rv_monitor *m, int64_t now, int64_t *words, int64_t room, int64_t *next);
+
 /* What a plan declares. */
 typedef struct {
     int32_t signals;
@@ -201,18 +280,21 @@ rv_sizes rv_sizes_of(const rv_monitor *m);
 /* The first field of an event, and how many it has. */
 int32_t rv_fields_of(const rv_monitor *m, int32_t event, int32_t *first);
 
-/* Columns: rows of one recording, in ascending order of time. */
+/* Columns: rows of one recording, in order of time; those of one instant are one sample, in which of the
+ * values of a signal the last one counts. What is real is given as REAL, NaN for unknown; all else as
+ * WHOLE or BYTE. */
 enum { RV_COLUMN_REAL, RV_COLUMN_WHOLE, RV_COLUMN_BYTE };
 
-typedef struct {
-    const void *values;        /* as `kind` says; of an event: NULL */
-    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update */
+typedef struct rv_column {
+    const void *values;        /* as `kind` says; NULL: of an event, or of a field that is unknown */
+    const uint8_t *says;       /* per row; NULL: YES in all; 255: no update; of a field: it is not given */
     int32_t kind;
-    int32_t name;
-    const rv_number *const *fields; /* of an event: a column for each field, or NULL */
+    int32_t name;              /* of a field nothing */
+    const struct rv_column *fields; /* of an event: a column for each field, or NULL; it occurs with a
+                                * payload where one of them is given */
 } rv_column;
 
-/* Judge rows; `done` counts those that were. */
+/* Judge rows; `done` counts those that were. No name has two columns. */
 int rv_rows(rv_monitor *m, const int64_t *times, int64_t rows, const rv_column *columns,
             int32_t count, int64_t *done);
 

@@ -93,7 +93,11 @@ void delist(run *r, bool captured)
 
 void set_aside(home *h, run *r)
 {
+    int32_t i;
     timers_set(&h->alarms, r->id, NEVER);
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        clear_noting(r, i);
+    }
     r->next = h->spare;
     h->spare = r;
 }

@@ -36,6 +36,9 @@ static int64_t drive_token(const journey *g, token *k, int32_t letter)
 {
     const machine *a = g->a;
     int64_t due;
+    if (g->r->standing != NULL) {
+        hold_token(g->r->home->monitor, a, k->location, k->clocks);
+    }
     if (g->how == BY_STEP) {
         const bool moved = step_token(a, k, g->t, letter);
         if (k->location <= PASSED) {
@@ -57,6 +60,15 @@ static int64_t drive_token(const journey *g, token *k, int32_t letter)
     return due;
 }
 
+/* Decide an attempt whose run, with a letter, has come to that at `t`. */
+static void decide_driven(const journey *g, int32_t at, bool passed, int32_t letter, int64_t t)
+{
+    if ((g->r->standing != NULL) && (g->how == BY_RUN)) {
+        hold_until(g->r->home->monitor, g->a, letter, g->from, t);
+    }
+    decide(g->r, g->index, at, passed, t);
+}
+
 /* Drive one attempt of which some reading of the unknown may differ; false if it was decided. */
 static bool drive_readings(const journey *g, int32_t at, attempt *x)
 {
@@ -65,7 +77,10 @@ static bool drive_readings(const journey *g, int32_t at, attempt *x)
     const int32_t width = g->r->part->plan->clocks;
     token worse;
     token better;
+    const bool was_parted = x->parted;
     int64_t own = NEVER;
+    worse.moves = NULL; /* which of both it is nobody knows */
+    better.moves = NULL;
     worse.location = x->location;
     worse.clocks = x->clocks;
     better.location = x->parted ? x->better : x->location;
@@ -77,7 +92,7 @@ static bool drive_readings(const journey *g, int32_t at, attempt *x)
         own = drive_token(g, &worse, g->j->letter);
         if (worse.location == PASSED) {
             x->location = PASSED;
-            decide(g->r, g->index, at, true, own);
+            decide_driven(g, at, true, g->j->letter, own);
             return false;
         }
         own = (worse.location == FAILED) ? NEVER : own;
@@ -85,7 +100,7 @@ static bool drive_readings(const journey *g, int32_t at, attempt *x)
     if (better.location != PASSED) {
         const int64_t other = drive_token(g, &better, g->j->other);
         if (better.location == FAILED) {
-            decide(g->r, g->index, at, false, other);
+            decide_driven(g, at, false, g->j->other, other);
             return false;
         }
         own = (better.location == PASSED) ? own : least(own, other);
@@ -96,6 +111,9 @@ static bool drive_readings(const journey *g, int32_t at, attempt *x)
     if (!x->parted) {
         const int32_t used = a->widths[worse.location];
         x->parted = memcmp(better.clocks, worse.clocks, (size_t)used * sizeof *worse.clocks) != 0;
+    }
+    if ((g->r->standing != NULL) && (x->parted != was_parted)) {
+        note_parting(g->r, g->index, x);
     }
     x->due = own;
     return true;
@@ -111,10 +129,11 @@ static bool drive(const journey *g, int32_t at, attempt *x)
     }
     k.location = x->location;
     k.clocks = x->clocks;
+    k.moves = x->sure ? moves_of(g->r, g->index) : NULL;
     due = drive_token(g, &k, g->j->letter);
     x->location = k.location;
     if (k.location <= PASSED) {
-        decide(g->r, g->index, at, k.location == PASSED, due);
+        decide_driven(g, at, k.location == PASSED, g->j->letter, due);
         return false;
     }
     x->due = due;
@@ -178,7 +197,7 @@ void pass_to(run *r, int32_t index, int64_t t)
         set_rule_due(r, index, NEVER);
     } else if (j->first < 0) {
         queue_pass(r, index, t);
-        j->position = (GAP(r) > 0) ? t : j->position;
+        j->position = ((GAP(r) > 0) && (t > position)) ? t : position;
     } else if (is_chained(r, index)) {
         chain_pass(r, index, t, true);
     } else if (is_networked(r, index)) {
@@ -230,6 +249,9 @@ void visit_judge(run *r, int32_t index, int64_t t)
     int32_t letter;
     int32_t other;
     bool was;
+    if ((r->standing != NULL) && is_networked(r, index)) {
+        keep_letter(r, index, t);
+    }
     if (is_chained(r, index)) {
         chain_visit(r, index, t);
         return;
@@ -303,5 +325,9 @@ void reach_judge(run *r, int32_t index, int64_t t)
 bool drive_from(run *r, int32_t index, int32_t at, int64_t t)
 {
     const journey g = journey_of(r, index, BY_STEP, t, t);
-    return drive(&g, at, attempt_at(r->home, at));
+    attempt *x = attempt_at(r->home, at);
+    if (x->sure && (g.j->letter == g.j->other)) {
+        count_begin(r, index, t);
+    }
+    return drive(&g, at, x);
 }

@@ -7,13 +7,15 @@ from enum import IntEnum, auto
 from typing import assert_never
 
 from rvmon.core.sections import Section, Sections
-from rvmon.dataflow.chain import Chain
+from rvmon.dataflow.chain import Chain, reach_of
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 
 _FARTHEST = (1 << 62) - 2
 """No two instants of a trace that need to be told apart are farther from each other."""
+
+_NEVER = (1 << 63) - 1
 
 _PAST = -1
 """In the place of the deadline of a window."""
@@ -52,7 +54,10 @@ def add_form(
     if chain is not None:
         ends = (-1 if place is None else place for place in (chain.left, chain.excused))
         own = (*sections.listed(chain.places), chain.base, *ends)
-    return sections.add(Section.FORMS, first, len(plan.nodes), leaves, plan.looks_back, *own)
+    reach = reach_of(plan)
+    ticks = _NEVER if reach is None else min(reach, _FARTHEST)
+    size = first, len(plan.nodes), leaves, plan.looks_back
+    return sections.add(Section.FORMS, ticks, *size, *own, 0)
 
 
 def _add(

@@ -4,19 +4,6 @@
 
 #include <string.h>
 
-static int32_t lowest_bit(uint64_t word)
-{
-#if defined(__GNUC__)
-    return (int32_t)__builtin_ctzll(word);
-#else
-    int32_t i = 0;
-    while (((word >> i) & 1U) == 0U) {
-        i++;
-    }
-    return i;
-#endif
-}
-
 void soil(run *r, int32_t node)
 {
     const int32_t word = node >> 6;
@@ -117,15 +104,23 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
 }
 
 /* Store the truth of a node, and tell the judges that it is linked with. */
-static void store(run *r, int32_t place, uint8_t value)
+static void store(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const node_plan *n = &r->part->nodes[place];
     const uint8_t was = r->truth[place];
     int32_t i;
     r->truth[place] = value;
+    if (r->standing != NULL) {
+        note_node(r, place, was, t);
+    }
     for (i = 0; i < n->links.count; i++) {
         const link_plan *l = &PLAN(r)->links[n->links.first + i];
-        judge *j = &r->judges[l->judge];
+        judge *j;
+        if (l->kind == LINK_WATCH) {
+            call_watch(r, l->judge);
+            continue;
+        }
+        j = &r->judges[l->judge];
         if ((l->kind & LINK_LETTER) != 0) {
             j->worse += l->worse[value] - l->worse[was];
             j->better += l->better[value] - l->better[was];
@@ -170,19 +165,19 @@ void blank_out(run *r, int64_t t)
         if (!tells_of_trigger(r, &r->part->nodes[i])) {
             const uint8_t value = blank_value(r, i, t);
             if (value != r->truth[i]) {
-                store(r, i, value);
+                store(r, i, value, t);
             }
         }
     }
 }
 
 /* Store another truth of a node; what depends on it is to be worked out. */
-static void change(run *r, int32_t place, uint8_t value)
+static void change(run *r, int32_t place, uint8_t value, int64_t t)
 {
     const list parents = r->part->nodes[place].parents[r->at.phase];
     const int32_t *parent = LIST(PLAN(r), parents);
     int32_t i;
-    store(r, place, value);
+    store(r, place, value, t);
     for (i = 0; i < parents.count; i++) {
         soil(r, parent[i]);
     }
@@ -213,7 +208,7 @@ void work_out(run *r, int64_t t)
                 r->dirty[word] &= r->dirty[word] - 1;
                 value = evaluated(r, place, t);
                 if (value != r->truth[place]) {
-                    change(r, place, value);
+                    change(r, place, value, t);
                 }
             }
             r->dirty_words[upper] &= ~(UINT64_C(1) << (word & 63));
@@ -234,7 +229,7 @@ void vary(run *r, int64_t t, bool pending)
     for (i = 0; i < p->varying_nodes.count; i++) {
         const uint8_t value = evaluated(r, nodes[i], t);
         if (value != r->truth[nodes[i]]) {
-            change(r, nodes[i], value); /* what remembers it looks at the next position */
+            change(r, nodes[i], value, t); /* what remembers it looks at the next position */
         }
     }
 }

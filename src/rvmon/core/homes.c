@@ -133,13 +133,17 @@ bool home_begin(home *h)
             return false;
         }
         h->last_root = h->root;
+        h->lone = arena_take(&h->monitor->memory, h->stride);
         h->room = arena_take(&h->monitor->memory, (size_t)(p->captured + 1) * sizeof *h->room);
-        if (h->room == NULL) {
+        if ((h->room == NULL) || (h->lone == NULL)) {
             return false;
         }
     }
     clear_home(h);
-    return (p->each == 0) || begin_keys(h);
+    if (h->monitor->keeps_notes && !begin_unknowns(h)) {
+        return false;
+    }
+    return begin_watch(h) && ((p->each == 0) || begin_keys(h));
 }
 
 /* Make room for so many open attempts, each with a run if it has values of its own. */
@@ -338,7 +342,8 @@ static bool awaits_end(const home *h)
     return false;
 }
 
-void home_close(home *h, int64_t end, int64_t reached)
+/* Let time come to `end`, positions there included, with the letters as they are. */
+void home_come_to(home *h, int64_t end)
 {
     run *one;
     int32_t i;
@@ -347,12 +352,20 @@ void home_close(home *h, int64_t end, int64_t reached)
         pass_all(h, end);
     } else {
         through(h->root, end, false);
+        end_watch(h->root, end);
     }
     for (one = h->root; one != NULL; one = following(h, one)) {
         for (i = 0; i < h->part->plan->judges.count; i++) {
             pass_to(one, i, end);
         }
     }
+}
+
+void home_close(home *h, int64_t end, int64_t reached)
+{
+    run *one;
+    int32_t i;
+    home_come_to(h, end);
     if (awaits_end(h)) {
         for (one = h->root; one != NULL; one = one->next) {
             begin_at_end(one, end);

@@ -23,7 +23,7 @@ _VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGG
 _DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
 
 _LETTER, _TRIGGER, _DETERMINED = 1, 2, 4
-_PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _IN_RUNS = 1, 2, 4, 8, 16
+_PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _IN_RUNS, _TRACED = 1, 2, 4, 8, 16, 32
 
 _NOTHING = ((0, 0, 0), (0, 0, 0))
 
@@ -109,9 +109,6 @@ class Judges:
     ) -> None:
         place = self._place
         running = rule.running if rule.requirement.captures else rule.trigger
-        propositions: Sequence[int] = ()
-        if judged_by[2] >= 0:
-            propositions = [self._index[state] for state in rule.alphabet.propositions]
         self._sections.add(
             Section.JUDGES,
             *map(place, (rule.trigger, rule.again, rule.unborn, rule.determined)),
@@ -121,7 +118,8 @@ class Judges:
             requirement,
             _flags(rule, hidden=number >= len(self._plan.rules)),
             *judged_by,
-            *self._sections.listed(propositions),
+            *self._sections.listed([self._index[state] for state in rule.alphabet.propositions]),
+            *self._sections.listed([self._index[state] for state in rule.noted]),
             *outcomes(rule.requirement.at_end),
         )
 
@@ -133,10 +131,10 @@ def _machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[Network
     for all of them.
     """
     automaton = rule.automaton
-    if automaton is not None and (rule.in_runs or rule.trigger is None):
+    if automaton is not None and (rule.in_runs or rule.trigger is None or rule.stepped):
         return automaton
     network = plan_of(rule.owed, gap)
-    chain = chain_of(network, gap)
+    chain = None if rule.stepped else chain_of(network, gap)
     if automaton is None or (chain is not None and len(chain.windows) > 1):
         return network, chain
     return automaton
@@ -148,6 +146,7 @@ def _flags(rule: PlannedRule, *, hidden: bool) -> int:
     found |= _EPISODIC if hidden or requirement.mode is Mode.WHENEVER else 0
     found |= _HIDDEN if hidden else 0
     found |= _BLURS_ANYWHERE if rule.blurs_anywhere else 0
+    found |= _TRACED if rule.traced else 0
     return found | (_IN_RUNS if rule.in_runs else 0)
 
 

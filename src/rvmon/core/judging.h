@@ -18,6 +18,7 @@ typedef struct {
     bool sure;                 /* else it is in doubt whether there was a trigger */
     bool clouded;              /* whether its trigger was unknown while it ran */
     bool hollow;               /* over before all that it speaks of had a value */
+    int64_t doubted_at;        /* where its readings parted; RV_NO_TIME: nowhere */
     int64_t clocks[];
 } attempt;
 
@@ -26,6 +27,7 @@ typedef struct {
     run *judge;                /* that judges it; NULL: it is none */
     int64_t became;            /* when it was sure, or in doubt */
     int64_t decided;
+    int64_t note;
     int32_t next_sure;
     int32_t next_doubt;
     int32_t next_done;
@@ -36,10 +38,7 @@ typedef struct {
 } turn;
 
 /* Positions at which something is known. */
-typedef struct {
-    int64_t first;
-    int64_t last;
-} range;
+typedef rv_range range;
 
 typedef struct {
     range *at;
@@ -135,5 +134,43 @@ typedef struct {
     int32_t segment_count;
     segment segments[SEGMENTS_MOST];
 } queue;
+
+/* Truths of the leaves of a judge at some instants, in order, as a ring: the instant, then the words. */
+typedef struct {
+    int64_t *words;
+    int32_t room;              /* entries, a power of two, or 0 */
+    int32_t head;
+    int32_t count;
+} truths;
+
+/* Letters, some of those that notes of a judge refer to. */
+struct rv_piece {
+    rv_piece *next;            /* the later ones */
+    rv_piece *next_left;       /* of those that no open attempt needs any more, but notes do */
+    const int64_t *before;     /* the last letter; while it is the last piece */
+    void *held[2];             /* of who reads them */
+    uint32_t pinned;           /* whether notes refer to it: the epoch of these; see `rv_monitor` */
+    int32_t count;             /* words that are in it */
+    int32_t stride;            /* of a letter */
+    int32_t number;            /* among all, while they are written down or read */
+    int64_t words[];           /* the position, then the truths of propositions there */
+};
+
+/* What a judge remembers for notes. */
+typedef struct {
+    truths triggers;           /* at triggers, where they are others than at the one before */
+    truths doubts;             /* where something was unknown that its attempts may hang on */
+    rv_piece *first;           /* letters, of one that a network judges */
+    rv_piece *last;
+    rv_piece *pinned;          /* the last one that is, while it is kept */
+    int32_t pieces;
+    int32_t open_count;        /* attempts that were open when they were told of */
+    uint32_t epoch;            /* of the last standing that was noted; see `rv_monitor` */
+    int64_t standing;          /* its place; -1: none */
+    int64_t stood_at;          /* its position */
+    int64_t began_at;          /* the last trigger */
+    int64_t doubted_at;        /* the last doubt */
+    int64_t moot_since;        /* the first of those that stay open for good; NEVER: there are none */
+} noting;
 
 #endif

@@ -10,9 +10,11 @@
 static int32_t hash_of_key(const rv_number *value, int32_t room)
 {
     uint64_t bits = 0;
-    if (value->kind == RV_REAL) {
-        const double x = value->as.real + 0.0; /* -0 is 0 */
-        (void)memcpy(&bits, &x, sizeof bits);
+    if ((value->kind == RV_REAL) && (value->as.real >= -0x1p63) && (value->as.real < 0x1p63)
+        && ((double)(int64_t)value->as.real == value->as.real)) {
+        bits = (uint64_t)(int64_t)value->as.real; /* as that of a whole number, which it may equal */
+    } else if (value->kind == RV_REAL) {
+        (void)memcpy(&bits, &value->as.real, sizeof bits);
     } else {
         bits = (uint64_t)value->as.whole;
     }
@@ -75,7 +77,7 @@ bool begin_keys(home *h)
 static int32_t find_key(const home *h, const rv_number *value)
 {
     int32_t at = h->heads[hash_of_key(value, h->key_room)];
-    while ((at >= 0) && !same_number(&h->keys[at].value, value)) {
+    while ((at >= 0) && (compare_numbers(CMP_EQ, &h->keys[at].value, value) != IS_TRUE)) {
         at = h->keys[at].next;
     }
     return at;

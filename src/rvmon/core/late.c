@@ -47,8 +47,10 @@ static void mark_above(const run *r, uint8_t *reads)
             reads[i] |= reads[operands[k]];
         }
         for (k = 0; (reads[i] != 0U) && (k < n->links.count); k++) {
-            const int32_t index = PLAN(r)->links[n->links.first + k].judge;
-            m->late[r->part->judges[index].requirement] = 1;
+            const link_plan *l = &PLAN(r)->links[n->links.first + k];
+            if (l->kind != LINK_WATCH) {
+                m->late[r->part->judges[l->judge].requirement] = 1;
+            }
         }
     }
 }

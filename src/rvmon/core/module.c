@@ -6,6 +6,7 @@
 #include "module_results.h"
 #include "module_rows.h"
 #include "module_snapshot.h"
+#include "module_watch.h"
 
 #ifndef RVMON_SOURCE_HASH
 #define RVMON_SOURCE_HASH "" /* compiled by hand */
@@ -167,11 +168,6 @@ static PyObject *advance_of(monitor *c, PyObject *until)
     return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
 }
 
-static PyObject *instant(int64_t t, int64_t none)
-{
-    return (t == none) ? Py_NewRef(Py_None) : PyLong_FromLongLong((long long)t);
-}
-
 /* End the run, at an instant or None; gives the last instant, None if there is none. */
 static PyObject *finish_of(monitor *c, PyObject *until)
 {
@@ -194,6 +190,7 @@ static PyObject *reset_of(monitor *c, PyObject *unused)
 {
     (void)unused;
     c->given = 0;
+    forget_standing(&c->notes);
     rv_forget_records(c->m);
     return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
 }
@@ -224,11 +221,16 @@ METHOD(flush)
 METHOD(open)
 METHOD(records)
 METHOD(counts)
+METHOD(stale)
 METHOD(times)
 METHOD(next_due)
 METHOD(rows)
 METHOD(save)
 METHOD(load)
+METHOD(truths)
+METHOD(hits)
+METHOD(situation)
+METHOD(passages)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
 static PyObject *monitor_hold(PyObject *self, PyObject *held)
@@ -271,11 +273,15 @@ static void monitor_dealloc(PyObject *self)
     PyObject_GC_UnTrack(self);
     (void)monitor_clear(self);
     if (c->m != NULL) {
+        (void)rv_reset(c->m); /* pieces give back what hangs on them */
         rv_free(c->m);
     }
+    forget_standing(&c->notes);
+    free(c->notes.dropped);
     free_intake(&c->in);
     PyMem_Free(c->captured);
     free(c->plan);
+    Py_XDECREF(c->data);
     PyObject_GC_Del(self);
     Py_DECREF(type);
 }
@@ -298,8 +304,13 @@ static PyMethodDef monitor_methods[] = {
     {"open", monitor_open, METH_NOARGS, NULL},
     {"records", monitor_records, METH_NOARGS, NULL},
     {"counts", monitor_counts, METH_NOARGS, NULL},
+    {"stale", monitor_stale, METH_NOARGS, NULL},
     {"times", monitor_times, METH_NOARGS, NULL},
     {"next_due", monitor_next_due, METH_NOARGS, NULL},
+    {"truths", monitor_truths, METH_O, NULL},
+    {"passages", monitor_passages, METH_O, NULL},
+    {"situation", monitor_situation, METH_O, NULL},
+    {"hits", monitor_hits, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},
     {"save", monitor_save, METH_NOARGS, NULL},

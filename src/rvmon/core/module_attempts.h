@@ -4,12 +4,14 @@
 #define RVMON_MODULE_ATTEMPTS_H
 
 #include "module_intake.h"
+#include "module_notes.h"
 #include "module_record.h"
 
 typedef struct {
     PyObject_HEAD
     rv_monitor *m;
     void *plan;                /* a copy, if Python's bytes are not aligned to 8; else NULL */
+    PyObject *data;            /* the plan in Python's bytes: the core reads it to its end */
     rv_sizes sizes;
     int64_t given;             /* records that were given out, or are of attempts that stay open */
     bool held;                 /* whether Python is amid a call */
@@ -24,6 +26,7 @@ typedef struct {
     PyObject *verdicts;
     PyObject *decisions;
     PyObject *details;         /* gives an attempt its other fields */
+    note_cache notes;
 } monitor;
 
 /* Raises what it comes to that the core did not do something. */
@@ -42,7 +45,7 @@ static bool is_done(int code)
 /* Records, each with room for as many captured values as any has. They are copies: what is made of
  * them may set off the collector, and that anything, such as steps of this very monitor. */
 typedef struct {
-    const monitor *c;
+    monitor *c;
     rv_record *records;        /* `few` as long as they fit in there */
     rv_number *captured;
     int64_t count;
@@ -51,7 +54,7 @@ typedef struct {
     rv_record few[8];
 } gathering;
 
-static void begin_gathering(gathering *g, const monitor *c)
+static void begin_gathering(gathering *g, monitor *c)
 {
     g->c = c;
     g->records = g->few;
@@ -136,7 +139,7 @@ static PyObject *noted_of(const rv_number *values, int32_t count)
     return made;
 }
 
-static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_number *captured)
+static PyObject *attempt_of(monitor *c, const rv_record *told, const rv_number *captured)
 {
     attempt_record *made = (attempt_record *)PyType_GenericAlloc(c->attempt, 0);
     if (made == NULL) {
@@ -151,7 +154,8 @@ static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_nu
                                                          : PyLong_FromLongLong(told->decided);
     made->in_doubt = (told->in_doubt != 0U) ? 1 : 0;
     made->details = Py_NewRef(c->details);
-    made->noted = noted_of(captured, (captured == NULL) ? 0 : c->captured[told->requirement]);
+    made->noted = noted_with(&c->notes, c->m, told,
+                             noted_of(captured, (captured == NULL) ? 0 : c->captured[told->requirement]));
     if ((made->decided == NULL) || (made->noted == NULL)) {
         Py_CLEAR(made);
     }
@@ -176,6 +180,7 @@ static PyObject *attempts_of(gathering *g)
         PyMem_Free(g->records);
     }
     PyMem_Free(g->captured);
+    free_dropped(&g->c->notes);
     return made;
 }
 

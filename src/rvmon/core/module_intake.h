@@ -73,7 +73,11 @@ static inline bool number_of(PyObject *value, const reading *as, rv_number *numb
 {
     if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
         number->as.real = PyFloat_AsDouble(value);
-        number->kind = (number->as.real == number->as.real) ? RV_REAL : RV_UNKNOWN;
+        number->kind = RV_REAL;
+        if (number->as.real != number->as.real) {
+            number->kind = RV_UNKNOWN;
+            number->as.whole = RV_IS_NAN;
+        }
         return true;
     }
     return number_of_other(value, as, number);
@@ -120,6 +124,7 @@ static bool lay_signal(intake *in, int32_t signal, PyObject *value)
 {
     rv_update *update = further_update(in, signal);
     update->value.kind = RV_UNKNOWN;
+    update->value.as.whole = RV_IS_NONE;
     if ((value != Py_None) && !number_of(value, &in->readings[signal], &update->value)) {
         return false;
     }

@@ -11,6 +11,7 @@ static bool open_plan(monitor *c, PyObject *data)
     const rv_memory heap = {malloc, free, NULL, 0};
     const size_t size = (size_t)PyBytes_Size(data);
     const void *plan = PyBytes_AsString(data);
+    c->data = Py_NewRef(data);
     if ((uintptr_t)plan % 8U != 0U) {
         c->plan = malloc(size + 1U);
         if (c->plan == NULL) {
@@ -30,6 +31,10 @@ static bool open_plan(monitor *c, PyObject *data)
         return false;
     }
     c->sizes = rv_sizes_of(c->m);
+    if (rv_keep_notes(c->m, note_dropped, &c->notes) != RV_OK) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
     return true;
 }
 

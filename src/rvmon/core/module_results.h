@@ -13,17 +13,45 @@ static PyObject *flush_of(monitor *c, PyObject *unused)
 /* The attempts that are undecided now, and those that will stay so. */
 static PyObject *open_of(monitor *c, PyObject *unused)
 {
+    PyObject *made;
     gathering g;
     (void)unused;
     begin_gathering(&g, c);
     gather_records(c, 0, true, &g);
+    forget_standing(&c->notes);
     if (!g.failed) {
         rv_each_open(c->m, gather, &g);
     }
-    return attempts_of(&g);
+    made = attempts_of(&g);
+    forget_standing(&c->notes);
+    return made;
 }
 
-/* All records as bytes, and as many captured values for each of them as any has. */
+/* The letters of all notes of records, as they are numbered there. */
+static PyObject *spans_of(const monitor *c)
+{
+    PyObject *made = PyList_New(0);
+    int32_t i;
+    rv_note note;
+    for (i = 0; (made != NULL) && rv_span(c->m, i, &note); i++) {
+        PyObject *pieces = NULL;
+        PyObject *last = NULL;
+        PyObject *both = NULL;
+        if (letters_of(&note, &pieces, &last)) {
+            both = PyTuple_Pack(2, pieces, last);
+        }
+        Py_XDECREF(pieces);
+        Py_XDECREF(last);
+        if ((both == NULL) || (PyList_Append(made, both) < 0)) {
+            Py_CLEAR(made);
+        }
+        Py_XDECREF(both);
+    }
+    return made;
+}
+
+/* All records as bytes, and as many captured values for each of them as any has; the words of notes, and
+ * the letters that they refer to. */
 static PyObject *records_of(monitor *c, PyObject *unused)
 {
     const rv_record *records;
@@ -33,17 +61,23 @@ static PyObject *records_of(monitor *c, PyObject *unused)
                                               (Py_ssize_t)count * (Py_ssize_t)sizeof *records);
     PyObject *other = PyBytes_FromStringAndSize(
         NULL, (Py_ssize_t)count * most * (Py_ssize_t)sizeof(rv_number));
+    const int64_t *words;
+    const int64_t word_count = rv_notes(c->m, &words);
+    PyObject *notes = bytes_of_words(words, word_count);
+    PyObject *spans = spans_of(c);
     PyObject *made = NULL;
     (void)unused;
-    if ((one != NULL) && (other != NULL)) {
+    if ((one != NULL) && (other != NULL) && (notes != NULL) && (spans != NULL)) {
         rv_number *to = (rv_number *)(void *)PyBytes_AsString(other);
         int64_t i;
         (void)memset(to, 0, (size_t)PyBytes_Size(other));
         for (i = 0; i < count; i++) {
             copy_captured(c, &records[i], rv_captured(c->m, &records[i]), &to[i * most]);
         }
-        made = PyTuple_Pack(2, one, other);
+        made = PyTuple_Pack(4, one, other, notes, spans);
     }
+    Py_XDECREF(notes);
+    Py_XDECREF(spans);
     Py_XDECREF(one);
     Py_XDECREF(other);
     return made;
@@ -65,6 +99,26 @@ static PyObject *counts_of(monitor *c, PyObject *unused)
             Py_CLEAR(made);
         }
         Py_XDECREF(own);
+    }
+    return made;
+}
+
+/* Of each signal that went stale its number, how often it did, and when first. */
+static PyObject *stale_of(monitor *c, PyObject *unused)
+{
+    PyObject *made = PyList_New(0);
+    int32_t i;
+    (void)unused;
+    for (i = 0; (made != NULL) && (i < c->sizes.signals); i++) {
+        const rv_staleness found = rv_stale(c->m, i);
+        PyObject *own;
+        if (found.count > 0) {
+            own = Py_BuildValue("iLL", (int)i, (long long)found.count, (long long)found.first);
+            if ((own == NULL) || (PyList_Append(made, own) < 0)) {
+                Py_CLEAR(made);
+            }
+            Py_XDECREF(own);
+        }
     }
     return made;
 }

@@ -60,7 +60,6 @@ static inline int64_t due_of(const judging *g)
 
 /* ---- network_judge.c */
 judging judging_of(run *r, int32_t index);
-networks *made_networks(const form *f);
 
 /* ---- network_nodes.c, network_sweeps.c */
 void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last);
@@ -72,6 +71,9 @@ void learn_all(judging *g, int64_t now, int64_t last);
 void unlearn_all(judging *g);
 int64_t last_at(const judging *g, int64_t t);
 int64_t step_to_decision(judging *g, int64_t now, int64_t last);
+
+/* ---- network_judge.c */
+int64_t soonest(const judging *g, int64_t now);
 
 /* ---- network_attempts.c */
 bool weigh(judging *g, int32_t at, int64_t t);

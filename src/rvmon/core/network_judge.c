@@ -16,16 +16,21 @@ bool is_networked(const run *r, int32_t index)
     return r->part->judges[index].automaton < 0;
 }
 
-form form_of(const run *r, int32_t index)
+form form_at(const run *r, int32_t number)
 {
     form f;
     f.plan = PLAN(r);
-    f.form = &r->part->forms[r->part->judges[index].form];
+    f.form = &r->part->forms[number];
     f.nodes = &f.plan->operators[f.form->operators.first];
     f.gap = GAP(r);
     f.step = step_of(r);
     f.monitor = r->home->monitor;
     return f;
+}
+
+form form_of(const run *r, int32_t index)
+{
+    return form_at(r, r->part->judges[index].form);
 }
 
 judging judging_of(run *r, int32_t index)
@@ -40,7 +45,7 @@ judging judging_of(run *r, int32_t index)
     return g;
 }
 
-/* The networks of a judge, made when they are used first; NULL: memory is short. */
+/* The networks of a form, made when they are used first; NULL: memory is short. */
 networks *made_networks(const form *f)
 {
     const size_t size = (size_t)f->form->operators.count * sizeof(operator_state);
@@ -95,7 +100,7 @@ static void tidy_up(judging *g, int64_t position)
 }
 
 /* The instant from `now` on before which nothing is decided if the letter stays. */
-static int64_t soonest(const judging *g, int64_t now)
+int64_t soonest(const judging *g, int64_t now)
 {
     int64_t found = NEVER;
     int32_t i;
@@ -182,17 +187,17 @@ void network_put_off(run *r, int32_t index, int64_t until)
 }
 
 /* Take the letters; tells whether they are others. */
-static bool read_leaves(judging *g, bool *parted)
+bool read_leaves(const run *r, const form *f, networks *net, bool *parted)
 {
     bool changed = false;
     int32_t i;
-    for (i = 0; i < g->f.form->operators.count; i++) {
-        const operator_plan *n = &g->f.nodes[i];
+    for (i = 0; i < f->form->operators.count; i++) {
+        const operator_plan *n = &f->nodes[i];
         if (n->kind == OP_LEAF) {
-            const int32_t truth = (n->right < 0) ? 0 : (int32_t)g->r->truth[n->right];
+            const int32_t truth = (n->right < 0) ? 0 : (int32_t)r->truth[n->right];
             const uint8_t value = (uint8_t)n->values[truth];
-            g->net->next_leaf[n->left] = value;
-            changed = changed || (value != g->net->leaf[n->left]);
+            net->next_leaf[n->left] = value;
+            changed = changed || (value != net->leaf[n->left]);
             *parted = *parted || (value == 1U) || (value == 2U);
         }
     }
@@ -212,7 +217,7 @@ static void come_to(judging *g, int64_t t)
     network *w = &g->net->readings[0];
     const bool fresh = !g->net->begun || ((g->j->first < 0) && (g->f.form->looks_back == 0));
     bool parted = false;
-    const bool changed = read_leaves(g, &parted);
+    const bool changed = read_leaves(g->r, &g->f, g->net, &parted);
     int64_t position = (g->f.gap > 0) ? floored(t, g->f.step) : 0;
     int32_t i;
     if (fresh) {

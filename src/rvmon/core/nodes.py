@@ -8,6 +8,7 @@ from enum import IntEnum, auto
 
 from rvmon.core.atoms import Atoms
 from rvmon.core.programs import Names
+from rvmon.formula.alphabet import literals
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import (
     FALSE,
@@ -206,12 +207,10 @@ def _needed(plan: Plan) -> frozenset[int]:
     """The nodes that matter once every signal is born and every trigger was true or false."""
     graph = plan.graph
     settled = _settled(plan)
-    stack = [
-        graph.index[state]
-        for _, rule in plan.judges
-        for state in _asked(rule)
-        if settled[graph.index[state]] is None
-    ]
+    states = [state for _, rule in plan.judges for state in _asked(rule)]
+    states += (one.proposition for core in plan.truths for one in literals(core))
+    states += (watch.state for watch in plan.watches)
+    stack = [graph.index[state] for state in states if settled[graph.index[state]] is None]
     needed: set[int] = set()
     while stack:
         place = stack.pop()

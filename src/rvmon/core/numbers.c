@@ -31,6 +31,7 @@ static rv_number real(double value)
 rv_number number_of_double(double x)
 {
     rv_number made = UNKNOWN_NUMBER;
+    made.as.whole = RV_IS_NAN;
     if (x == x) { /* what is read may be infinite */
         made.kind = RV_REAL;
         made.as.real = x;

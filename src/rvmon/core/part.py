@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import prod
 
 from rvmon.core.atoms import Atom, Atoms
 from rvmon.core.automata import Automata
+from rvmon.core.forms import add_form
 from rvmon.core.judges import Judges
 from rvmon.core.nodes import Nodes
 from rvmon.core.packed import Numbering
 from rvmon.core.programs import Names, Programs
 from rvmon.core.sections import Listed, Section, Sections
 from rvmon.core.unit import SHARED, Unit
+from rvmon.dataflow.network_plan import plan_of_all
+from rvmon.errors import RvmonError
 from rvmon.plan.instances import keys_of
 from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.plan.plan import Plan, Uses
@@ -19,6 +23,12 @@ from rvmon.spec.checked.formula import Compare, Numeric
 
 _IGNORES_NAN, _MARKS, _HISTORY, _CAPTURED = 1, 2, 4, 8
 _EVENT_MARKS, _EVENT_FIELDS, _EVENT_KEY = 1, 2, 4
+
+_WATCH = 8
+"""The kind of a link that tells a watch, in place of a judge."""
+
+_ITEMS_MOST = 1 << 22
+"""So many bins and combinations are counted at most."""
 
 _UNUSED = Uses()
 
@@ -63,7 +73,13 @@ class Part:
             return firsts[section], sections.count(section) - firsts[section]
 
         judges = Judges(sections, automata, plan, numbers)
-        self._add_nodes(judges)
+        watched = self._add_groups()
+        truths = -1
+        if plan.truths:
+            truths = added(Section.FORMS)[1]
+            network = plan_of_all(plan.truths, plan.gap)
+            add_form(sections, network, None, plan.graph.index)
+        self._add_nodes(judges, watched)
         self._add_atoms()
         perishable = self._add_signals()
         fields = self._add_events()
@@ -98,16 +114,47 @@ class Part:
             *sections.listed(judges.networked),
             *own,
             *sections.listed(dead),
+            truths,
+            *added(Section.WATCHES),
+            *added(Section.GROUPS),
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:
         """Lists for the time until all is born and determined, and from then on."""
         return *self._sections.listed(first), *self._sections.listed(then)
 
-    def _add_nodes(self, judges: Judges) -> None:
+    def _add_groups(self) -> dict[int, list[int]]:
+        """Add what is counted; returns by node the watches that hear of it."""
+        watched: dict[int, list[int]] = {}
+        groups: list[list[int]] = [[] for _ in self._plan.watches]
+        first = 0
+        for number, group in enumerate(self._plan.groups):
+            axes = [number for axis in group.axes for number in (axis.start, len(axis))]
+            occasion = -1 if group.occasion is None else group.occasion
+            self._sections.add(Section.GROUPS, occasion, first, *self._sections.listed(axes))
+            first += prod(map(len, group.axes))
+            if first > _ITEMS_MOST:
+                raise RvmonError(
+                    f"there are more than {_ITEMS_MOST:,} bins and combinations to count: "
+                    "split the largest cross up"
+                )
+            for watch in group.looks_where:
+                groups[watch].append(number)
+        for number, (state, is_pulse) in enumerate(self._plan.watches):
+            place = self._plan.graph.index[state]
+            watched.setdefault(place, []).append(number)
+            listed = self._sections.listed(groups[number])
+            self._sections.add(Section.WATCHES, place, is_pulse, *listed)
+        return watched
+
+    def _add_nodes(self, judges: Judges, watched: Mapping[int, Sequence[int]]) -> None:
         sections = self._sections
         for place, node in enumerate(self._nodes.all):
             links = [sections.add(Section.LINKS, *link) for link in judges.links(place)]
+            links += (
+                sections.add(Section.LINKS, number, _WATCH, *([0] * 6))
+                for number in watched.get(place, ())
+            )
             sections.add(
                 Section.NODES,
                 *(node.low, node.high, node.op, node.a, node.b, node.slot, node.timer),

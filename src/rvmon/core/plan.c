@@ -9,8 +9,8 @@ static const size_t RECORD[SECTIONS] = {
     sizeof(int32_t),       sizeof(int32_t),        sizeof(subscription), sizeof(part_plan),
     sizeof(signal_plan),   sizeof(event_plan),     sizeof(atom_plan),    sizeof(node_plan),
     sizeof(link_plan),     sizeof(judge_plan),     sizeof(automaton_plan), sizeof(form_plan),
-    sizeof(operator_plan), sizeof(number_plan),    sizeof(int32_t),      sizeof(int32_t),
-    sizeof(int32_t),       sizeof(int64_t)};
+    sizeof(operator_plan), sizeof(watch_plan),     sizeof(group_plan),   sizeof(number_plan),
+    sizeof(int32_t),       sizeof(int32_t),        sizeof(int32_t),      sizeof(int64_t)};
 
 /* Where no record was found wrong. */
 #define FINE (-1)
@@ -83,6 +83,8 @@ bool plan_view(plan *p, const void *bytes, size_t size)
     p->automata = section_at(h, SEC_AUTOMATA);
     p->forms = section_at(h, SEC_FORMS);
     p->operators = section_at(h, SEC_OPERATORS);
+    p->watches = section_at(h, SEC_WATCHES);
+    p->groups = section_at(h, SEC_GROUPS);
     p->numbers = section_at(h, SEC_NUMBERS);
     p->code = section_at(h, SEC_CODE);
     p->lists = section_at(h, SEC_LISTS);
@@ -115,6 +117,7 @@ machine machine_view(const plan *p, const automaton_plan *a)
     made.gap = p->header->gap;
     made.step = (made.gap > 0) ? made.gap : 1;
     made.initial = a->initial;
+    made.locations = a->locations;
     made.clocks = a->clocks;
     made.classes = a->classes;
     return made;
@@ -173,6 +176,8 @@ static bool check_part(const plan *p, const part_plan *x)
            && has(p, SEC_NODES, x->nodes.first, nodes)
            && has(p, SEC_JUDGES, x->judges.first, judges)
            && has(p, SEC_FORMS, x->forms.first, x->forms.count)
+           && has(p, SEC_WATCHES, x->watches.first, x->watches.count)
+           && has(p, SEC_GROUPS, x->groups.first, x->groups.count)
            && is_within(x->requirements, 0, (int64_t)judges + 1) && (x->fields >= 0)
            && is_within(x->timers, 0, (int64_t)nodes + 1) && is_within(x->seen, 0, (int64_t)nodes + 1)
            && is_within(x->edges, 0, (int64_t)nodes + 1)
@@ -188,6 +193,8 @@ static bool check_part(const plan *p, const part_plan *x)
            && lists(p, x->varying_atoms, 0, x->atoms.count) && lists(p, x->varying_nodes, 0, nodes)
            && lists(p, x->varying, 0, nodes) && lists(p, x->lapsed, 0, nodes)
            && ((x->captured == 0) || (is_within(judges, 1, 31) && (x->requirements == 1)))
+           && is_within(x->truths, -1, (x->captured == 0) ? x->forms.count : 0)
+           && ((x->captured == 0) || (x->watches.count == 0))
            && ((x->each == 0)
                || (is_within(x->each_event, 0, x->events.count)
                    && is_within(x->each_field, 0, p->events[x->events.first + x->each_event].fields)));
@@ -244,7 +251,10 @@ static int32_t wrong_in_part(const plan *p, const part_plan *x)
             return SEC_JUDGES;
         }
     }
-    return FINE;
+    if (!check_watches(p, x)) {
+        return SEC_WATCHES;
+    }
+    return check_groups(p, x) ? FINE : SEC_GROUPS;
 }
 
 int32_t rv_plan_check(const void *bytes, size_t size)

@@ -21,6 +21,8 @@ enum {
     SEC_AUTOMATA,              /* automaton_plan[] */
     SEC_FORMS,                 /* form_plan[] */
     SEC_OPERATORS,             /* operator_plan[] */
+    SEC_WATCHES,               /* watch_plan[] */
+    SEC_GROUPS,                /* group_plan[] */
     SEC_NUMBERS,               /* number_plan[]: constants of programs */
     SEC_CODE,                  /* int32[]: programs, and what of them is not an index of its own */
     SEC_LISTS,                 /* int32[]: all lists of indices */
@@ -103,6 +105,9 @@ typedef struct {
     list varying;              /* all nodes above them */
     list lapsed;               /* nodes LAPSED */
     list dead_timers;          /* nodes with timers that are not needed once the part is settled */
+    int32_t truths;            /* the form of whose operators it is kept where they are known; -1 */
+    list watches;              /* records of SEC_WATCHES; so with what follows */
+    list groups;
 } part_plan;
 
 /* Lists for the two phases: until all is born and determined, and from then on. */
@@ -191,7 +196,8 @@ typedef struct {
     int32_t spare;
 } node_plan;
 
-enum { LINK_LETTER = 1, LINK_TRIGGER = 2, LINK_DETERMINED = 4 };
+/* WATCH alone: the number is that of a watch, and weights mean nothing. */
+enum { LINK_LETTER = 1, LINK_TRIGGER = 2, LINK_DETERMINED = 4, LINK_WATCH = 8 };
 
 typedef struct {
     int32_t judge;
@@ -202,7 +208,7 @@ typedef struct {
 
 enum {
     JUDGE_PULSE = 1, JUDGE_EPISODIC = 2, JUDGE_HIDDEN = 4, JUDGE_BLURS_ANYWHERE = 8,
-    JUDGE_IN_RUNS = 16
+    JUDGE_IN_RUNS = 16, JUDGE_TRACED = 32
 };
 
 /* What judges the attempts of a requirement, or those in doubt. Nodes; -1: there is none. */
@@ -219,7 +225,8 @@ typedef struct {
     int32_t automaton;         /* in SEC_AUTOMATA; -1: a network judges */
     int32_t form;              /* in the part; -1: none */
     int32_t diagram;           /* of its letters, in SEC_INTS; -1: a table has their classes */
-    list propositions;         /* nodes, if it has a diagram: the digits are told by these */
+    list propositions;         /* nodes: its letters, and the digits of its diagram, are told by these */
+    list leaves;               /* nodes that it reads of the input, as they are told of */
     int32_t outcomes[8];       /* at the end: verdict + 4 * decision, by 1 holds, 2 cannot pass, 4
                                 * cannot fail */
 } judge_plan;
@@ -253,6 +260,7 @@ typedef struct {
 
 /* A formula for a network: operands first, the last operator is the root. */
 typedef struct {
+    int64_t reach;             /* ticks after which a position only leads on to later ones; NEVER: none */
     list operators;
     int32_t leaves;
     int32_t looks_back;        /* whether it has to see what is before its attempts */
@@ -260,6 +268,7 @@ typedef struct {
     int32_t base;              /* of a chain, what the innermost is over: a leaf, or a junction */
     int32_t left;              /* of a chain that is kept up, the leaf that ends that; -1: none does */
     int32_t excused;           /* and the leaf that is true where the windows do not matter; -1 */
+    int32_t spare;
 } form_plan;
 
 enum { OP_LEAF, OP_JUNCTION, OP_WINDOW, OP_SHIFT, OP_UNTIL, OP_SINCE, OPS };
@@ -277,6 +286,21 @@ typedef struct {
     list operands;             /* of a junction */
     int32_t values[3];         /* of a leaf by truth: 1 if true for the worse, 2 for the better */
 } operator_plan;
+
+/* A formula that is watched: a bin, or an occasion at which bins are looked at. */
+typedef struct {
+    int32_t node;
+    int32_t is_pulse;          /* 1: it is over at the next position */
+    list groups;               /* of the part, that are looked at where it changes, or a pulse goes on */
+} watch_plan;
+
+/* A coverpoint, or the cross of several: an item is a bin of each axis, the last one counted through
+ * first. */
+typedef struct {
+    int32_t occasion;          /* the watch that says where it is looked at; -1: everywhere */
+    int32_t first;             /* its first item, among those of the part's groups */
+    list axes;                 /* pairs: the first watch of an axis, and how many it has */
+} group_plan;
 
 /* A constant. */
 typedef struct {
@@ -299,5 +323,9 @@ enum {
 #define PROGRAM_DEPTH 32
 /* Events whose fields one comparison may read. */
 #define PAYLOAD_EVENTS_MOST 8
+/* Axes that one group may have. */
+#define AXES_MOST 64
+/* Locations of an automaton whose moves may be counted. */
+#define TRACED_MOST 64
 
 #endif

@@ -20,7 +20,7 @@ def pack(plan: Plan, *, next_law: bool = False) -> Packed:
     Raises:
         RvmonError: there is no requirement, or an expression is beyond the core.
     """
-    if not plan.asked:
+    if not (plan.asked or plan.truths or plan.watches):
         raise RvmonError("the specification has no requirements: there is nothing to compile")
     sections = Sections()
     automata = Automata(sections)
@@ -36,7 +36,7 @@ def pack(plan: Plan, *, next_law: bool = False) -> Packed:
         len(plan.events),
         sum(len(event.fields) for event in plan.spec.events.values()),
         len(plan.asked),
-        max(len(rule.captured) for rule in plan.asked),
+        max((len(rule.captured) for rule in plan.asked), default=0),
     )
     ids = tuple(rule.requirement.id for rule in plan.asked)
     return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes, next_law=next_law))

@@ -8,6 +8,8 @@
 /* Fields that all events have, and values that attempts of a requirement capture: so many at most. */
 #define FIELDS_MOST (1 << 20)
 #define CAPTURED_MOST 1023
+/* Items that all groups of a part have: so many at most. */
+#define ITEMS_MOST (1 << 22)
 
 static inline bool is_within(int64_t x, int64_t low, int64_t behind)
 {
@@ -69,5 +71,7 @@ bool check_nodes(const plan *p, const part_plan *x);
 bool check_automaton(const plan *p, const automaton_plan *a);
 bool check_judge(const plan *p, const part_plan *x, int32_t number);
 bool check_forms(const plan *p, const part_plan *x);
+bool check_watches(const plan *p, const part_plan *x);
+bool check_groups(const plan *p, const part_plan *x);
 
 #endif

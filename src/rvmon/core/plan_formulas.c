@@ -187,8 +187,10 @@ static bool check_links(const plan *p, const part_plan *x, list links)
         return false;
     }
     for (i = links.first; i < links.first + links.count; i++) {
-        if (!is_within(p->links[i].judge, 0, x->judges.count)
-            || !check_weights(p, x, &p->links[i])) {
+        const link_plan *l = &p->links[i];
+        const bool watches = l->kind == LINK_WATCH;
+        if (!is_within(l->judge, 0, watches ? x->watches.count : x->judges.count)
+            || (!watches && (((l->kind & LINK_WATCH) != 0) || !check_weights(p, x, l)))) {
             return false;
         }
     }

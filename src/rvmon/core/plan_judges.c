@@ -187,7 +187,7 @@ bool check_judge(const plan *p, const part_plan *x, int32_t number)
         || ((x->captured > 0) && (j->requirement != x->requirement))
         || (((j->flags & (JUDGE_EPISODIC | JUDGE_HIDDEN)) == JUDGE_EPISODIC) && (j->running < 0))
         || ((x->captures.count > 0) && (x->captured > 0) && (j->blurs >= 0) && (j->trigger < 0))
-        || !lists(p, j->propositions, 0, x->nodes.count)) {
+        || !lists(p, j->propositions, 0, x->nodes.count) || !lists(p, j->leaves, 0, x->nodes.count)) {
         return false;
     }
     for (i = 0; i < 8; i++) {
@@ -196,13 +196,14 @@ bool check_judge(const plan *p, const part_plan *x, int32_t number)
         }
     }
     if (j->automaton < 0) {
-        return (j->automaton == -1) && is_within(j->form, 0, x->forms.count) && (j->diagram == -1);
+        return (j->automaton == -1) && ((j->flags & JUDGE_TRACED) == 0) && is_within(j->form, 0, x->forms.count) && (j->diagram == -1);
     }
     if (!is_within(j->automaton, 0, p->counts[SEC_AUTOMATA])) {
         return false;
     }
     a = &p->automata[j->automaton];
-    if (a->clocks > x->clocks) {
+    if ((a->clocks > x->clocks)
+        || (((j->flags & JUDGE_TRACED) != 0) && (a->locations > TRACED_MOST))) {
         return false;
     }
     if (j->diagram >= 0) {
@@ -266,7 +267,7 @@ bool check_forms(const plan *p, const part_plan *x)
     for (i = 0; i < x->forms.count; i++) {
         const form_plan *f = &p->forms[x->forms.first + i];
         if (!has(p, SEC_OPERATORS, f->operators.first, f->operators.count)
-            || (f->operators.count < 1) || !is_within(f->leaves, 0, (int64_t)f->operators.count + 1)) {
+            || (f->reach < 0) || (f->operators.count < 1) || !is_within(f->leaves, 0, (int64_t)f->operators.count + 1)) {
             return false;
         }
         for (k = 0; k < f->operators.count; k++) {
@@ -275,6 +276,54 @@ bool check_forms(const plan *p, const part_plan *x)
             }
         }
         if (!check_chain(p, f)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool check_watches(const plan *p, const part_plan *x)
+{
+    int32_t i;
+    for (i = 0; i < x->watches.count; i++) {
+        const watch_plan *w = &p->watches[x->watches.first + i];
+        if (!is_within(w->node, 0, x->nodes.count) || !is_within(w->is_pulse, 0, 2)
+            || !lists(p, w->groups, 0, x->groups.count)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The items of a group; 0: its axes are wrong, or there are too many. */
+static int64_t items_of_group(const plan *p, const part_plan *x, const group_plan *g)
+{
+    const int32_t *axes = LIST(p, g->axes);
+    int64_t items = 1;
+    int32_t i;
+    for (i = 0; (items > 0) && (i < g->axes.count); i += 2) {
+        const bool fits = is_within(axes[i], 0, x->watches.count) && (axes[i + 1] >= 1)
+                          && (axes[i + 1] <= x->watches.count - axes[i]);
+        items = (fits && (axes[i + 1] <= ITEMS_MOST / items)) ? items * axes[i + 1] : 0;
+    }
+    return items;
+}
+
+bool check_groups(const plan *p, const part_plan *x)
+{
+    int64_t first = 0;
+    int32_t i;
+    for (i = 0; i < x->groups.count; i++) {
+        const group_plan *g = &p->groups[x->groups.first + i];
+        int64_t items;
+        if (!is_within(g->occasion, -1, x->watches.count) || (g->first != first)
+            || !has(p, SEC_LISTS, g->axes.first, g->axes.count) || (g->axes.count % 2 != 0)
+            || !is_within(g->axes.count, 2, 2 * AXES_MOST + 1)) {
+            return false;
+        }
+        items = items_of_group(p, x, g);
+        first += items;
+        if ((items == 0) || (first > ITEMS_MOST)) {
             return false;
         }
     }

@@ -49,6 +49,7 @@ typedef struct {
     int64_t gap;
     int64_t step;
     int32_t initial;
+    int32_t locations;
     int32_t clocks;
     int32_t classes;
 } machine;
@@ -61,13 +62,19 @@ typedef struct {
     const node_plan *nodes;
     const judge_plan *judges;
     const form_plan *forms;
+    const watch_plan *watches;
+    const group_plan *groups;
     machine *machines;         /* by judge that has an automaton */
     int32_t *timed;            /* by timer, the node */
     int32_t *perishable;       /* by number among these, the signal */
     int32_t *networked;        /* judges that networks are, neither automata nor chains */
     int32_t networked_count;
+    int32_t *slots;            /* by node, its number among those that notes tell of; -1: it is none */
+    int32_t stood;             /* so many these are */
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
     bool restarts;             /* whether some failure may be followed by another attempt */
+    bool is_traced;            /* whether it is counted where some attempts go */
+    bool is_watched;           /* whether somebody asks for more than what becomes of attempts */
 } part;
 
 typedef struct {
@@ -85,6 +92,8 @@ typedef struct {
     const automaton_plan *automata;
     const form_plan *forms;
     const operator_plan *operators;
+    const watch_plan *watches;
+    const group_plan *groups;
     const number_plan *numbers;
     const int32_t *code;
     const int32_t *lists;

@@ -60,6 +60,10 @@ _UPDATES = {
 }
 
 
+_UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
+"""A number that nobody knows."""
+
+
 class Names:
     """The numbers of the names that a part of a plan reads.
 
@@ -72,6 +76,7 @@ class Names:
         events: the same.
         key: the event and the field whose values tell instances apart; `None`: nothing does.
         captured: by name, the place of a captured value.
+        constants: captured values that are known now.
     """
 
     def __init__(self, plan: Plan, numbering: Numbering) -> None:
@@ -82,6 +87,7 @@ class Names:
         self.events = numbered([name for name in plan.events if name in read])
         captured = [name for rule in plan.rules for name in rule.captured]
         self.captured = numbered(captured)
+        self.constants = plan.constants
         self.numbering = numbering
         self._spec = plan.spec
 
@@ -127,6 +133,9 @@ class Programs:
                 words += [_word(Code.FIELD, names.events[event]), names.field(event, field)]
             case UpdateValue(function=function, name=name):
                 words.append(_word(_UPDATES[function], names.signals[name]))
+            case Captured(name=name) if name in names.constants:
+                known = names.constants[name]
+                return self._emit(_UNKNOWN if known is None else Literal(known), words)
             case Captured(name=name):
                 words.append(_word(Code.CAPTURED, names.captured[name]))
             case Arithmetic(op=op, args=args):

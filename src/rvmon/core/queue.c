@@ -45,15 +45,31 @@ void clear_queue(judge *j)
     }
 }
 
-/* Tell of an attempt that is decided, or open at the end. */
-void tell(const queueing *g, const queued *x, uint8_t verdict, uint8_t decision, int64_t t)
+/* One that is queued, as an attempt by itself; until the next one is asked for. */
+static const attempt *attempt_of_queued(const run *r, const queued *one, int32_t location)
 {
-    attempt made;
-    (void)memset(&made, 0, sizeof made);
-    made.triggered = x->triggered;
-    made.number = x->number;
-    made.sure = true;
-    report(g->r, g->index, &made, x->number, verdict, decision, t);
+    attempt *x = r->home->lone;
+    x->triggered = one->triggered;
+    x->due = -LIMIT;
+    x->number = one->number;
+    x->next = -1;
+    x->location = location;
+    x->sure = true;
+    x->doubted_at = RV_NO_TIME;
+    x->clocks[0] = one->triggered;
+    return x;
+}
+
+/* Tell of one that was decided, which stood in a location before. */
+void tell_of_decision(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t)
+{
+    const attempt *x = attempt_of_queued(g->r, one, location);
+    int64_t note = -1;
+    if (g->r->standing != NULL) {
+        hold_token(g->r->home->monitor, g->a, location, x->clocks);
+        note = note_decision(g->r, g->index, x, t);
+    }
+    report(g->r, g->index, x, x->number, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t, note);
 }
 
 /* Make a queue larger; false if memory is short. */
@@ -101,13 +117,15 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     token k;
     k.location = g.a->initial;
     k.clocks = &clock;
+    k.moves = moves_of(r, index);
+    count_begin(r, index, t);
     (void)step_token(g.a, &k, t, g.j->letter);
     x.triggered = t;
     g.j->count++;
     x.number = g.j->count;
     x.spare = 0;
     if (k.location <= PASSED) {
-        tell(&g, &x, (k.location == PASSED) ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t);
+        tell_of_decision(&g, &x, g.a->initial, k.location == PASSED, t);
         return true;
     }
     made = next_queued(r->home->monitor, q, q->count, true);
@@ -149,14 +167,7 @@ void loosen_queue(run *r, int32_t index)
                 break;
             }
             x = attempt_at(r->home, at);
-            (void)memset(x, 0, r->home->stride);
-            x->triggered = one->triggered;
-            x->number = one->number;
-            x->location = g.q->segments[k].location;
-            x->clocks[0] = one->triggered;
-            x->due = -LIMIT;
-            x->sure = true;
-            x->next = -1;
+            (void)memcpy(x, attempt_of_queued(r, one, g.q->segments[k].location), r->home->stride);
             if (g.j->last < 0) {
                 g.j->first = at;
             } else {
@@ -180,10 +191,12 @@ void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
         const int32_t behind = from + g.q->segments[k].count;
         for (; from < behind; from++) {
             const queued *one = item(g.q, from);
-            const int64_t clocks[1] = {one->triggered};
+            const attempt *x = attempt_of_queued(r, one, g.q->segments[k].location);
+            const int64_t now = stamp_of_end(end, reached);
             const int32_t outcome =
-                own->outcomes[holds_at_end(g.a, g.q->segments[k].location, clocks, end, reached) ? 1 : 0];
-            tell(&g, one, (uint8_t)(outcome & 3), (uint8_t)(outcome >> 2), end);
+                own->outcomes[holds_at_end(g.a, x->location, x->clocks, end, reached) ? 1 : 0];
+            report(r, index, x, x->number, (uint8_t)(outcome & 3), (uint8_t)(outcome >> 2), end,
+                   (r->standing == NULL) ? -1 : note_open(r, index, x, now, false, end));
         }
     }
 }
@@ -192,4 +205,17 @@ void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
 const queued *queue_item(const judge *j, int32_t i)
 {
     return item(j->queue, i);
+}
+
+/* The same as an attempt by itself. */
+const attempt *queued_attempt(const run *r, int32_t index, int32_t i)
+{
+    const queue *q = r->judges[index].queue;
+    int32_t k = 0;
+    int32_t end = q->segments[0].count;
+    while (i >= end) {
+        k++;
+        end += q->segments[k].count;
+    }
+    return attempt_of_queued(r, item(q, i), q->segments[k].location);
 }

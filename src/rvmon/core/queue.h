@@ -31,6 +31,6 @@ static inline queued *item(const queue *q, int32_t i)
 
 /* ---- queue.c */
 queued *next_queued(rv_monitor *m, queue *q, int32_t i, bool append);
-void tell(const queueing *g, const queued *x, uint8_t verdict, uint8_t decision, int64_t t);
+void tell_of_decision(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t);
 
 #endif

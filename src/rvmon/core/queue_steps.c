@@ -47,11 +47,21 @@ static int32_t end_of_region(const queueing *g, int32_t location, int32_t from, 
     return end;
 }
 
-static void tell_decided(const queueing *g, int32_t from, int32_t end, bool passed, int64_t t)
+static void tell_decided(const queueing *g, int32_t location, int32_t from, int32_t end, bool passed,
+                         int64_t t)
 {
     int32_t i;
     for (i = from; i < end; i++) {
-        tell(g, item(g->q, i), passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t);
+        tell_of_decision(g, item(g->q, i), location, passed, t);
+    }
+}
+
+/* So many of a segment go somewhere. */
+static void count_segment(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t)
+{
+    rv_hit *moves = moves_of(g->r, g->index);
+    if ((moves != NULL) && (target != location)) {
+        count_move(g->a, moves, location, target, count, t);
     }
 }
 
@@ -164,8 +174,9 @@ static void step_queue(const queueing *g, int64_t t)
             const int32_t until = end_of_region(g, location, from, end, t, &region);
             const int32_t row = row_of_region(g->a, location, region);
             const int32_t target = g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]];
+            count_segment(g, location, target, until - from, t);
             if (target <= PASSED) {
-                tell_decided(g, from, until, target == PASSED, t);
+                tell_decided(g, location, from, until, target == PASSED, t);
             } else {
                 keep_items(g, &s, target, from, until);
             }
@@ -191,7 +202,8 @@ static void settle_queue(const queueing *g, int64_t t)
             const int32_t until = end_of_region(g, location, from, end, t, &region);
             const int32_t truth = g->a->time_values[row_of_region(g->a, location, region)];
             if (truth != IS_UNKNOWN) {
-                tell_decided(g, from, until, truth == IS_TRUE, t);
+                count_segment(g, location, (truth == IS_TRUE) ? PASSED : FAILED, until - from, t);
+                tell_decided(g, location, from, until, truth == IS_TRUE, t);
             } else {
                 keep_items(g, &s, location, from, until);
             }

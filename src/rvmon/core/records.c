@@ -46,7 +46,7 @@ void keep_record(rv_monitor *m, const rv_record *record)
 
 /* Tell of an attempt that has its number. */
 void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
-            uint8_t decision, int64_t t)
+            uint8_t decision, int64_t t, int64_t note)
 {
     const judge_plan *judged = &r->part->judges[index];
     const bool apart = r->part->plan->captured > 0;
@@ -70,11 +70,15 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
     record.number = number;
     record.triggered = x->triggered;
     record.decided = t;
+    record.note = note;
     record.verdict = verdict;
     record.decision = decision;
     record.in_doubt = x->sure ? 0 : 1;
     record.captured = apart
         ? keep_captured(r->home->monitor, r->captured, r->part->plan->captured) : -1;
+    if (apart && (record.captured < 0)) {
+        return; /* it would say other values */
+    }
     keep_record(r->home->monitor, &record);
 }
 

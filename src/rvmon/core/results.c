@@ -16,6 +16,11 @@ const rv_number *rv_captured(const rv_monitor *m, const rv_record *record)
     return (record->captured < 0) ? NULL : &m->captured[record->captured];
 }
 
+rv_staleness rv_stale(const rv_monitor *m, int32_t signal)
+{
+    return m->stale[signal];
+}
+
 int32_t rv_captured_of(const rv_monitor *m, int32_t requirement)
 {
     int32_t i;
@@ -30,67 +35,70 @@ int32_t rv_captured_of(const rv_monitor *m, int32_t requirement)
 
 void rv_forget_records(rv_monitor *m)
 {
+    forget_notes(m, 0, 0);
     m->record_count = 0;
     m->captured_count = 0;
     m->sorted = 0;
 }
 
 /* The record of an attempt that is open. */
-static rv_record open_record(const run *r, int32_t index, int32_t at)
+static rv_record open_record(run *r, int32_t index, const attempt *x, uint32_t number)
 {
-    const attempt *x = attempt_at(r->home, at);
+    const rv_monitor *m = r->home->monitor;
     rv_record made;
     (void)memset(&made, 0, sizeof made);
     made.requirement = r->part->judges[index].requirement;
-    made.number = told_number(r, at);
+    made.number = number;
     made.triggered = x->triggered;
     made.captured = -1;
+    made.note = -1;
+    if (r->standing != NULL) {
+        made.note = note_open(r, index, x, 2 * m->reached + ((m->reached == m->last) ? 1 : 0),
+                              x->hollow, RV_NO_TIME);
+    }
     made.verdict = RV_INCONCLUSIVE;
     made.decision = RV_OPEN;
     made.in_doubt = x->sure ? 0 : 1;
     return made;
 }
 
-static rv_record queued_record(const run *r, int32_t index, int32_t i)
+/* Tell of the open attempts of a judge; false: that was enough. */
+static bool each_open_of(run *r, int32_t index, rv_take take, void *user)
 {
-    const queued *x = queue_item(&r->judges[index], i);
-    rv_record made;
-    (void)memset(&made, 0, sizeof made);
-    made.requirement = r->part->judges[index].requirement;
-    made.number = x->number;
-    made.triggered = x->triggered;
-    made.captured = -1;
-    made.verdict = RV_INCONCLUSIVE;
-    made.decision = RV_OPEN;
-    return made;
+    const rv_number *captured = (r->part->plan->captured > 0) ? r->captured : NULL;
+    bool more = true;
+    int32_t at;
+    if (r->standing != NULL) {
+        note_open_count(r, index);
+    }
+    for (at = 0; more && !queue_is_empty(&r->judges[index]) && (at < r->judges[index].queue->count);
+         at++) {
+        const attempt *x = queued_attempt(r, index, at);
+        const rv_record one = open_record(r, index, x, x->number);
+        more = take(user, &one, NULL);
+    }
+    for (at = next_open(r, index, -1); more && (at >= 0); at = next_open(r, index, at)) {
+        const rv_record one = open_record(r, index, attempt_at(r->home, at), told_number(r, at));
+        more = take(user, &one, captured);
+    }
+    return more;
 }
 
-void rv_each_open(const rv_monitor *m, rv_take take, void *user)
+void rv_each_open(rv_monitor *m, rv_take take, void *user)
 {
+    bool more = true;
     int32_t i;
-    for (i = 0; i < m->plan.part_count; i++) {
-        const home *h = &m->homes[i];
-        const run *r;
-        for (r = h->root; r != NULL; r = following(h, r)) {
-            int32_t k;
-            for (k = 0; k < r->part->plan->judges.count; k++) {
-                int32_t at;
-                for (at = 0; !queue_is_empty(&r->judges[k]) && (at < r->judges[k].queue->count);
-                     at++) {
-                    const rv_record one = queued_record(r, k, at);
-                    if (!take(user, &one, NULL)) {
-                        return;
-                    }
-                }
-                for (at = next_open(r, k, -1); at >= 0; at = next_open(r, k, at)) {
-                    const rv_record one = open_record(r, k, at);
-                    if (!take(user, &one, (r->part->plan->captured > 0) ? r->captured : NULL)) {
-                        return;
-                    }
-                }
+    int32_t k;
+    tell_open(m, true);
+    for (i = 0; more && (i < m->plan.part_count); i++) {
+        run *r;
+        for (r = m->homes[i].root; more && (r != NULL); r = following(&m->homes[i], r)) {
+            for (k = 0; more && (k < r->part->plan->judges.count); k++) {
+                more = each_open_of(r, k, take, user);
             }
         }
     }
+    tell_open(m, false);
 }
 
 /* Add what the runs of a home have of a requirement. */

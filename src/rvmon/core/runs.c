@@ -107,6 +107,10 @@ run *new_run(home *h)
             return NULL;
         }
     }
+    if (m->keeps_notes && !make_notes(made)) {
+        m->spoilt = true;
+        return NULL;
+    }
     return made;
 }
 
@@ -222,6 +226,10 @@ void clear_run(run *r)
     }
     begin_unlost(r);
     clear_judges(r);
+    if (r->standing != NULL) {
+        stand_at_first(r, RV_NO_TIME);
+        r->standing->begun = RV_NO_TIME;
+    }
 }
 
 /* Its judges without attempts; what their letters are is read off the nodes. */
@@ -239,10 +247,13 @@ void clear_judges(run *r)
         networks *net = r->judges[i].net;
         chain *windows = r->judges[i].chain;
         queue *line = r->judges[i].queue;
+        noting *noted = r->judges[i].noting;
         (void)memset(&r->judges[i], 0, sizeof r->judges[i]);
         r->judges[i].net = net;
         r->judges[i].chain = windows;
         r->judges[i].queue = line;
+        r->judges[i].noting = noted;
+        clear_noting(r, i);
         clear_queue(&r->judges[i]);
         if (windows != NULL) {
             windows->begun = false;
@@ -295,6 +306,9 @@ run *forked(const run *r)
         return NULL;
     }
     clear_judges(made);
+    if (made->standing != NULL) {
+        stand_like(made, r);
+    }
     made->parent = r->parent;
     made->opens_at = r->opens_at;
     made->occurred = r->occurred;

@@ -58,8 +58,39 @@ void carry_run(carrier *c, run *r);
 void carry_judges(carrier *c, run *r);
 
 /* ---- snapshot_forms.c: networks and chains */
-void carry_networks(carrier *c, run *r, int32_t index);
+void carry_networks(carrier *c, const form *f, networks **own);
 void carry_chain(carrier *c, run *r, int32_t index);
+
+/* ---- snapshot_watch.c: what is kept beside what becomes of attempts */
+void carry_stale(carrier *c, rv_monitor *m);
+void carry_watch(carrier *c, home *h);
+
+/* ---- snapshot_notes.c: what is kept so that notes can be told */
+void carry_standing(carrier *c, run *r);
+void carry_noting(carrier *c, run *r, int32_t index);
+void carry_unknowns(carrier *c, home *h);
+
+/* ---- snapshot_letters.c: letters that notes refer to */
+void carry_letters(carrier *c, noting *n, int32_t stride);
+void carry_spans(carrier *c, rv_monitor *m);
+
+/* ---- snapshot_told.c: notes of records */
+void carry_notes(carrier *c, rv_monitor *m);
+bool is_standing(const rv_monitor *m, const judge_plan *judged, int64_t place);
+void check_notes(carrier *c, rv_monitor *m);
+
+/* Whether words of truths have nothing in them that is none. */
+static inline bool are_truths(const int64_t *words, int32_t count)
+{
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        const uint64_t word = (uint64_t)words[i];
+        if ((word & (word >> 1) & UINT64_C(0x5555555555555555)) != 0U) {
+            return false;
+        }
+    }
+    return true;
+}
 
 /* ---- snapshot_homes.c: all runs of a part, and what they share */
 void carry_home(carrier *c, home *h);

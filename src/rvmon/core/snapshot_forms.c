@@ -72,10 +72,9 @@ static void carry_network(carrier *c, const form *f, network *w)
     w->closed = c->reading ? NEVER : w->closed;
 }
 
-void carry_networks(carrier *c, run *r, int32_t index)
+void carry_networks(carrier *c, const form *f, networks **own)
 {
-    const judging g = judging_of(r, index);
-    networks *net = g.net;
+    networks *net = *own;
     bool begun = (net != NULL) && net->begun;
     int32_t i;
     carry_flag(c, &begun);
@@ -83,18 +82,18 @@ void carry_networks(carrier *c, run *r, int32_t index)
         return;
     }
     if (c->reading) {
-        net = made_networks(&g.f);
-        g.j->net = net;
+        net = made_networks(f);
+        *own = net;
         if (net == NULL) {
             return;
         }
         net->begun = true;
     }
-    carry_bytes(c, net->leaf, g.f.form->leaves, 3);
+    carry_bytes(c, net->leaf, f->form->leaves, 3);
     carry_int(c, &net->visits, 0, MOST / 2);
     carry_flag(c, &net->parted);
     for (i = 0; (i < (net->parted ? 2 : 1)) && !is_lost(c); i++) {
-        carry_network(c, &g.f, &net->readings[i]);
+        carry_network(c, f, &net->readings[i]);
     }
     demand(c, !net->parted || (net->readings[0].last == net->readings[1].last));
 }

@@ -220,7 +220,7 @@ static void carry_runs(carrier *c, home *h)
 
 /* Whether all that a part had to do by then is done: else it would be caught up with, however long ago
  * that was. */
-static bool is_settled(const home *h)
+static bool is_caught_up(const home *h)
 {
     const rv_monitor *m = h->monitor;
     const run *one;
@@ -255,12 +255,16 @@ void carry_home(carrier *c, home *h)
     if (h->part->plan->each != 0) {
         carry_over(c, h);
     }
+    if (h->unknowns != NULL) {
+        carry_unknowns(c, h);
+    }
     carry_runs(c, h);
+    carry_watch(c, h);
     carry_count(c, &h->last_rank);
     carry_past_updates(c, h);
     if (c->reading && !is_lost(c)) {
         const bool was_dense = (c->m->dense_until != RV_NO_TIME) || (c->m->dense_end != RV_NO_TIME);
-        demand(c, c->m->finished || is_settled(h));
+        demand(c, c->m->finished || is_caught_up(h));
         c->m->spoilt = c->m->spoilt || (was_dense && !make_nothing(h));
     }
 }

@@ -39,6 +39,7 @@ static void carry_attempt(carrier *c, run *r, int32_t index, int32_t at)
     carry_flag(c, &x->sure);
     carry_flag(c, &x->clouded);
     carry_flag(c, &x->hollow);
+    carry_instant_or(c, &x->doubted_at, RV_NO_TIME);
     carry_flag(c, &current);
     if (c->refused) {
         return;
@@ -86,7 +87,7 @@ static int32_t carry_attempts(carrier *c, run *r, int32_t index, int32_t *first)
     for (at = c->reading ? -1 : *first; at >= 0; at = attempt_at(r->home, at)->next) {
         count++;
     }
-    carry_size(c, &count, MOST, 33);
+    carry_size(c, &count, MOST, 34);
     at = *first;
     for (i = 0; (i < count) && !is_lost(c); i++) {
         at = c->reading ? appended(r, first, last) : at;
@@ -193,9 +194,13 @@ static void carry_judge(carrier *c, run *r, int32_t index)
     if (is_chained(r, index)) {
         carry_chain(c, r, index);
     } else if (is_networked(r, index)) {
-        carry_networks(c, r, index);
+        const form f = form_of(r, index);
+        carry_networks(c, &f, &j->net);
     } else {
         /* An automaton has no more. */
+    }
+    if (j->noting != NULL) {
+        carry_noting(c, r, index);
     }
     if (c->reading && !is_lost(c)) {
         demand(c, c->m->finished || is_driven(r, index));

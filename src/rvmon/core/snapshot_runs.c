@@ -219,6 +219,9 @@ static void carry_progress(carrier *c, run *r)
     carry_flag(c, &r->at.dense);
     carry_flag(c, &r->at.gathered);
     carry_flag(c, &r->at.dirty);
+    if ((r->part->plan->captured > 0) || r->part->is_watched) {
+        carry_flag(c, &r->stays_busy);
+    }
 }
 
 /* What a run of a part has whose attempts or instances have values of their own. */
@@ -232,7 +235,6 @@ static void carry_own(carrier *c, run *r)
     carry_flag(c, &r->over);
     carry_flag(c, &r->watched);
     carry_flag(c, &r->blurs);
-    carry_flag(c, &r->stays_busy);
 }
 
 void carry_run(carrier *c, run *r)
@@ -246,6 +248,9 @@ void carry_run(carrier *c, run *r)
     demand(c, c->m->finished || is_in_time(r));
     if (c->reading && !is_lost(c)) {
         clear_judges(r); /* their letters follow from the nodes */
+    }
+    if (r->standing != NULL) {
+        carry_standing(c, r);
     }
     carry_judges(c, r);
 }

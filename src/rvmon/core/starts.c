@@ -62,6 +62,9 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     if (judged_here && (!has_attempts(j) || (j->position < t))) {
         visit_judge(r, index, t);
     }
+    if (r->standing != NULL) {
+        note_trigger(r, index, triggered);
+    }
     if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
         (void)queue_begin(r, index, t);
         return;
@@ -76,6 +79,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     x->triggered = triggered;
     x->next = -1;
     x->location = WAITING;
+    x->doubted_at = RV_NO_TIME;
     if (judged->automaton >= 0) {
         x->location = r->part->machines[index].initial;
     }
@@ -88,6 +92,9 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         j->running = (judged->flags & JUDGE_EPISODIC) != 0;
     }
     number_attempt(r, index, at, triggered);
+    if (r->standing != NULL) {
+        note_begin(r, index, x, t);
+    }
     if (runs_on(r, index)) {
         leave_episode(r, index);
         j->current = at;
@@ -97,8 +104,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         x->parted = true;
         x->location = FAILED;
         x->better = PASSED;
-        x->next = j->moot;
-        j->moot = at;
+        lay_down(r, index, at);
     } else {
         enter(r, index, at, t);
     }

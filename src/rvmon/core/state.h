@@ -85,6 +85,40 @@ typedef struct {
     bool apart;
 } edge;
 
+/* A node that notes tell of: since when it has its truth, and the last positions at which it was false
+ * and true before; RV_NO_TIME: there is none. */
+typedef struct {
+    int64_t since;
+    int64_t last[2];
+} stood;
+
+/* How such a node was before the last position at which one changed. */
+typedef struct {
+    stood was;
+    int32_t slot;
+    uint8_t truth;
+} undone;
+
+/* Such nodes of a run. */
+typedef struct {
+    stood *nodes;
+    undone *before;
+    int32_t before_count;
+    int64_t moved_at;          /* the last position at which one changed */
+    int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
+} standing;
+
+/* Why a signal was not known, behind what core.h says of numbers. */
+enum { IS_STALE = RV_IS_NAN + 1, NEVER_KNOWN_YET, HAS_NO_SOURCE };
+
+/* A stretch over which a signal was not known. */
+typedef struct {
+    int64_t since;             /* of no meaning if it was never known */
+    int64_t until;             /* NEVER: it still is not */
+    int32_t local;
+    int32_t why;
+} unknown_stretch;
+
 /* What becomes of a judge at a position. */
 enum { TOUCHED_LETTER = 1, TOUCHED_TRIGGER = 2 };
 
@@ -95,6 +129,7 @@ typedef struct {
     networks *net;
     chain *chain;
     queue *queue;              /* NULL: its attempts are driven one by one */
+    noting *noting;            /* NULL: nothing is noted */
     int32_t first;
     int32_t last;
     int32_t moot;              /* the first of those that stay open for good */
@@ -134,6 +169,7 @@ struct run {
     uint64_t call;             /* the last one that concerned it */
     int32_t id;                /* its number among the runs of its home */
     judge *judges;
+    standing *standing;        /* NULL: nothing is noted */
     timers rules;              /* by number of the judge */
     int32_t *touched;
     int32_t *restless;
@@ -254,6 +290,27 @@ typedef struct {
     bool last;                 /* of its sample */
 } past_update;
 
+/* What is known of a group of items. */
+typedef struct {
+    int32_t standing;          /* so many items are true, or may still be since they were */
+    uint8_t before;            /* the truth of its occasion at the position before */
+    bool called;               /* whether it looks at the position at hand */
+} covered;
+
+/* What was hit in a run. */
+typedef struct {
+    rv_hit *hits;              /* by item */
+    int32_t *standing;         /* items, of each group from its first on */
+    uint8_t *stands;           /* by item, whether it is one of those */
+    covered *groups;
+    int32_t *groups_called;
+    int32_t *called;           /* watches whose groups look at the next position */
+    uint8_t *is_called;        /* by watch */
+    int32_t *bins;             /* room for those of all axes that are true */
+    int32_t items;
+    int32_t called_count;
+} covering;
+
 /* What the runs of a part share. */
 struct home {
     rv_monitor *monitor;
@@ -272,6 +329,11 @@ struct home {
     int32_t run_room;
     int32_t touched_count;
     char *pool;                /* attempts */
+    attempt *lone;             /* room for one that stands in none */
+    unknown_stretch *unknowns;        /* NULL: nothing is noted */
+    int32_t *unknown_of;       /* by signal, the last of its own among those; -1: none is left */
+    int32_t unknown_count;
+    int32_t unknown_room;
     turn *turns;
     size_t stride;
     int32_t capacity;
@@ -308,7 +370,25 @@ struct home {
     int32_t newest;
     int32_t over_count;
     uint32_t last_rank;
+    networks *truths;          /* of the form of which it is kept where it is known; NULL till then */
+    bool is_blind;             /* whether positions were missed of that */
+    covering *covering;        /* of a part with watches; else NULL */
+    rv_hit **moves;            /* by judge, from each location to each; NULL: of none */
 };
+
+/* Letters that a note refers to. */
+typedef struct {
+    rv_piece *first;
+    rv_piece *last;
+    int32_t last_count;
+} span_of_letters;
+
+/* Where an attempt stood before it moved. */
+typedef struct {
+    int64_t clocks[CLOCKS_MOST];
+    int32_t location;
+    int32_t width;
+} before_decision;
 
 struct rv_monitor {
     arena memory;
@@ -323,10 +403,25 @@ struct rv_monitor {
     int64_t sorted;            /* so many records are in order */
     int64_t captured_count;
     int64_t captured_room;
+    int64_t *notes;            /* words, one note behind the other */
+    int64_t note_count;
+    int32_t note_room;
+    int32_t span_count;
+    int32_t span_room;
+    span_of_letters *spans;    /* that notes refer to */
+    rv_piece *left;            /* letters that only these refer to */
+    uint32_t pins;             /* the epoch of notes that refer to letters */
+    rv_let_go let_go;
+    void *let_go_user;
+    int64_t settled_notes;     /* so many words are of records; behind them those of open attempts */
+    int32_t settled_spans;
+    uint32_t epoch;            /* of notes: what was placed in another one is forgotten */
+    before_decision before;    /* the token of the attempt at hand, before it moves */
     int64_t began;
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    rv_staleness *stale;       /* by signal */
     uint8_t *late;             /* by requirement, whether something came too late for it */
     /* Where only samples are positions. */
     uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */
@@ -338,6 +433,9 @@ struct rv_monitor {
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;
+    bool keeps_notes;
+    bool tells_open;           /* whether open attempts are being told of */
+    bool told_open;            /* whether notes of them stand behind those of records */
 };
 
 #endif

@@ -93,9 +93,13 @@ static void learn_span(run *r, int32_t local)
 }
 
 /* Hold a value; what reads it is looked at again if it is another one. */
-static void hold(run *r, int32_t local, const rv_number *value)
+static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
+        if (((value->kind == RV_UNKNOWN) != (r->value[local].kind == RV_UNKNOWN))
+            && (r->standing != NULL)) {
+            note_knowledge(r, t, local, value);
+        }
         r->value[local] = *value;
         if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
             r->spans[local] = NO_SPAN; /* mostly the next value means something else again */
@@ -155,10 +159,10 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
             r->changed[local] = (changed > r->changed[local]) ? changed : r->changed[local];
         }
         r->at.dirty = true;
-        hold(r, local, value);
+        hold(r, t, local, value);
         (void)recheck_list(r, s->on_update[r->at.phase]);
     } else {
-        hold(r, local, value);
+        hold(r, t, local, value);
     }
 }
 
@@ -224,7 +228,10 @@ void take_news(run *r, int64_t t, const incoming *in)
         return;
     }
     if (!in->event) {
-        take_signal(r, t, in->local, (u->says == RV_SAYS_YES) ? &u->value : &UNKNOWN_NUMBER);
+        const bool is_nan = (u->value.kind == RV_UNKNOWN) && (u->value.as.whole == RV_IS_NAN);
+        rv_number unknown = UNKNOWN_NUMBER;
+        unknown.as.whole = is_nan ? RV_IS_NAN : RV_IS_NONE;
+        take_signal(r, t, in->local, (u->says == RV_SAYS_YES) ? &u->value : &unknown);
     } else if ((r->part->events[in->local].flags & EVENT_KEY) != 0) {
         const int32_t says = concerning(r, u);
         if (says >= 0) {
@@ -235,13 +242,28 @@ void take_news(run *r, int64_t t, const incoming *in)
     }
 }
 
-void go_stale(run *r, int32_t perishable)
+/* Count that a signal went stale at `t`, once for all that read it. */
+static void count_stale(const run *r, int64_t t, int32_t name)
+{
+    const rv_monitor *m = r->home->monitor;
+    const subscription *first = &m->plan.subscriptions[m->plan.subscription_first[name]];
+    if ((r == r->home->root) && (r->home == &m->homes[first->part])) {
+        rv_staleness *found = &m->stale[name];
+        found->first = (found->count == 0) ? t : found->first;
+        found->count++;
+    }
+}
+
+void go_stale(run *r, int64_t t, int32_t perishable)
 {
     const int32_t local = r->part->perishable[perishable];
+    rv_number stale = UNKNOWN_NUMBER;
+    stale.as.whole = IS_STALE;
+    count_stale(r, t, r->part->signals[local].name);
     if (r->at.lost_count > 0) {
         stay_unknown(r, local);
     }
-    hold(r, local, &UNKNOWN_NUMBER);
+    hold(r, t, local, &stale);
 }
 
 void lack(run *r, bool event, int32_t local)

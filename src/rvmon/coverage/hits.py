@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from rvmon.coverage.model import Group, Item, Model
 from rvmon.spec.checked.goals import BinKind
+from rvmon.verdict.covered import CoveredBin, CoveredGroup
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,3 +105,21 @@ def illegal(hits: Hits, model: Model) -> list[tuple[Group, Item, Hit]]:
         for item in group.items.values()
         if item.kind is BinKind.ILLEGAL and count_of(hits, group.name, item.name)
     ]
+
+
+def covered_groups(hits: Hits, model: Model) -> tuple[CoveredGroup, ...]:
+    """What one run hit of each group, and what not."""
+
+    def covered(group: Group, item: Item) -> CoveredBin:
+        hit = hits.get(group.name, {}).get(item.name)
+        count, first = (0, None) if hit is None else (hit.count, hit.first)
+        return CoveredBin(item.name, item.kind, item.goal, count, first)
+
+    return tuple(
+        CoveredGroup(
+            group.name,
+            group.subject.value,
+            tuple(covered(group, item) for item in group.items.values()),
+        )
+        for group in model.groups.values()
+    )

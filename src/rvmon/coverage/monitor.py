@@ -6,16 +6,18 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
+from rvmon import native
+from rvmon.coverage.bins import Bins
+from rvmon.coverage.core_run import CoverageRun
 from rvmon.coverage.hits import Hits
 from rvmon.coverage.model import Model, model_of
-from rvmon.coverage.requirements import RequirementRun, WatchedRequirements
-from rvmon.coverage.watched import Watched
-from rvmon.coverage.watcher import Bins, WatchingUnit
+from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.core.planned import PlannedCore
+from rvmon.monitor.core.recording import RecordingRun
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
-from rvmon.monitor.online.generated import GeneratedMonitor
-from rvmon.monitor.online.monitor import Monitor
+from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
@@ -72,8 +74,7 @@ class SpecCoverage:
         if settle not in WAYS_TO_SETTLE:
             ways = ", ".join(WAYS_TO_SETTLE)
             raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
-        watched = self.requirements if requirements else None
-        return CoverageMonitor(self.bins, watched, settle, sources)
+        return CoverageMonitor(_Watched(self, requirements=requirements), settle, sources)
 
     def of(
         self, recording: Recording, end: int | None = None, *, requirements: bool = True
@@ -91,11 +92,61 @@ class SpecCoverage:
         >>> {item: hit.count for item, hit in hits["size"].items()}
         {'low': 2, 'high': 1}
         """
+        if self.spec.max_delay is not None:  # its samples are put in order first
+            return self._of_samples(recording, end, requirements=requirements)
+        source = Source(recording, end, is_cut=True)
+        watched = _Watched(self, requirements=requirements)
+        runs = [
+            RecordingRun(self.spec, one, source, finds=False) for one in watched.planned.values()
+        ]
+        for piece in source.pieces():
+            for run in runs:
+                run.take(piece)
+        for run in runs:
+            run.core.finish(source.end)
+        return watched.hits([run.core for run in runs])
+
+    def _of_samples(self, recording: Recording, end: int | None, *, requirements: bool) -> Hits:
         monitor = self.monitor(sources=recording.names, requirements=requirements)
         for sample in recording:
             if end is None or sample.t <= end:
                 monitor.step_ns(sample.t, sample.values)
         return monitor.finish_ns(recording.end if end is None else end)
+
+
+class _Watched:
+    """What of a coverage model is watched."""
+
+    def __init__(self, model: SpecCoverage, *, requirements: bool) -> None:
+        self._bins = model.bins
+        self._requirements = model.requirements if requirements else None
+
+    @cached_property
+    def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
+        """What the core takes samples by: what refuses most comes first, the bins last.
+
+        A sample that the first has taken is taken by all.
+        """
+        found = {} if self._requirements is None else dict(self._requirements.planned)
+        if self._bins.groups:
+            found[CompiledSpec(self._bins.spec)] = self._bins.planned
+        return found
+
+    def bin_hits(self, runs: Sequence[native.Monitor]) -> Hits:
+        """The bins and combinations hit so far.
+
+        Args:
+            runs: by what is `planned`.
+        """
+        return self._bins.hits(runs[-1].hits()) if self._bins.groups else {}
+
+    def hits(self, runs: Sequence[native.Monitor]) -> Hits:
+        """All that was hit; the runs are over."""
+        hits = dict(self.bin_hits(runs))
+        if self._requirements is not None:
+            own = runs[: len(self._requirements.planned)]
+            hits |= {name: items for name, items in self._requirements.hits(own) if items}
+        return hits
 
 
 class CoverageMonitor:
@@ -105,27 +156,17 @@ class CoverageMonitor:
     are the errors.
 
     Args:
-        bins: are watched.
-        requirements: the same; `None`: they are not.
+        watched: says what is looked at.
         settle: when a sample is taken for complete.
         sources: the names that can arrive; `None`: all.
     """
 
-    def __init__(
-        self,
-        bins: Bins,
-        requirements: WatchedRequirements | None,
-        settle: str,
-        sources: frozenset[str] | None,
-    ) -> None:
-        self._watched = requirements
-        self._bins = _BinRun(bins, settle, sources)
-        self._runs: list[Monitor] = [self._bins]
-        self._requirements: RequirementRun | None = None
-        if requirements is not None:
-            self._requirements, others = requirements.runs(settle, sources)
-            # What refuses most comes first: a sample that one refuses none has taken.
-            self._runs = [self._requirements, others, self._bins]
+    def __init__(self, watched: _Watched, settle: str, sources: frozenset[str] | None) -> None:
+        self._watched = watched
+        self._runs = [
+            CoverageRun(planned, compiled, settle, sources)
+            for compiled, planned in watched.planned.items()
+        ]
 
     def step(self, t: float, values: Mapping[str, Any]) -> None:
         """Take one sample (seconds); see `step_ns`."""
@@ -154,7 +195,7 @@ class CoverageMonitor:
     @property
     def hits(self) -> Hits:
         """The bins and combinations hit so far; what requirements show is known at the end."""
-        return self._bins.hits
+        return self._watched.bin_hits([run.core for run in self._runs])
 
     def finish(self, t: float | None = None) -> Hits:
         """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
@@ -162,30 +203,6 @@ class CoverageMonitor:
 
     def finish_ns(self, t_ns: int | None = None) -> Hits:
         """End the run, at `t_ns` if that is later than all so far; returns all that it hit."""
-        reports = [run.finish_ns(t_ns) for run in self._runs]
-        hits = dict(self._bins.hits)
-        if self._requirements is not None and self._watched is not None:
-            found = self._watched.hits(self._requirements, reports)
-            hits |= {name: items for name, items in found if items}
-        return hits
-
-
-class _BinRun(GeneratedMonitor):
-    """Takes samples as every monitor does, and judges nothing."""
-
-    def __init__(self, bins: Bins, settle: str, sources: frozenset[str] | None) -> None:
-        self._bins = bins
-        self._groups: Sequence[tuple[int, Watched]] = ()
-        forms, compiled = bins.forms(sources), CompiledSpec(bins.spec)
-        super().__init__(forms, compiled, (), "auto", settle, sources, None)
-
-    def _begin(self) -> None:
-        super()._begin()
-        self._groups = [*self._bins.watched()]
-        if isinstance(self._unit, WatchingUnit):
-            self._unit.groups = self._groups
-
-    @property
-    def hits(self) -> Hits:
-        """What was hit so far."""
-        return {one.name: dict(one.hits) for _, one in self._groups if one.hits}
+        for run in self._runs:
+            run.finish_ns(t_ns)
+        return self._watched.hits([run.core for run in self._runs])

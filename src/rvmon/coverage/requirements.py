@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
 
+from rvmon import native
+from rvmon.core.plan import pack
+from rvmon.coverage.core_run import Judged, Passages, attempts_of, passages_of
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
-from rvmon.coverage.traced import TracedJudge, TracedMachine, TracedRule
 from rvmon.coverage.variants import Variant, variants_of
 from rvmon.explain.graph import Graph, graph_of
-from rvmon.monitor.attempts.attempt_judge import AttemptJudge
-from rvmon.monitor.attempts.judges import judge_of
-from rvmon.monitor.attempts.machine_judge import MachineJudge
-from rvmon.monitor.build import build_monitor
+from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.online.evaluators import Evaluators
-from rvmon.monitor.online.forms import Forms, forms_of
-from rvmon.monitor.online.generated import GeneratedEvaluators, GeneratedMonitor
-from rvmon.monitor.online.monitor import Monitor
+from rvmon.monitor.core.packed_cache import Kept
+from rvmon.monitor.core.planned import PlannedCore, planned_as
+from rvmon.monitor.inputs.health import readers_of
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.cover_goals import goals_as_requirements
-from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
 SHOWN = "shown"
@@ -151,107 +146,58 @@ class WatchedRequirements:
         self.groups = [group for one in self._watched.values() for group in one.groups]
         self.groups += [group_of(name, Subject.GOAL, [Item(SHOWN)]) for name in self._goals]
 
-    def runs(self, settle: str, sources: frozenset[str] | None) -> tuple[RequirementRun, Monitor]:
-        """What watches one run: the requirements, and beside them what else is judged."""
-        others = build_monitor(self._others, settle=settle, sources=sources)
-        return RequirementRun(self._own, settle, sources), others
+    @cached_property
+    def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
+        """What the core judges by: the requirements, and beside them what else is judged."""
+        traced = {name for name, one in self._watched.items() if one.graph is not None}
+        specs = [one for one in (self._own, self._others) if one.requirements]
+        return {one: _planned(one, traced if one is self._own else ()) for one in specs}
 
-    def hits(
-        self, run: RequirementRun, reports: Sequence[Report]
-    ) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-        """What a run that is over has hit, by group."""
-        attempts: dict[str, list[Attempt]] = {}
-        for attempt in (attempt for report in reports for attempt in report.attempts):
-            if not attempt.in_doubt:
-                attempts.setdefault(attempt.requirement, []).append(attempt)
+    def hits(self, runs: Sequence[native.Monitor]) -> Iterator[tuple[str, Mapping[str, Hit]]]:
+        """What was hit, by group.
+
+        Args:
+            runs: by what is `planned`, over.
+        """
+        attempts: dict[str, list[Judged]] = {}
+        passages: dict[str, Passages] = {}
+        for compiled, run in zip(self.planned, runs, strict=True):
+            ids = tuple(compiled.requirements)
+            attempts |= attempts_of(ids, run)
+            passages |= passages_of(ids, run)
         for name, watched in self._watched.items():
-            own = attempts.get(name, [])
+            own = attempts[name]
             found = dict(_of_attempts(own, watched.deadline))
             for key, (of, variant) in self._variants.items():
                 if of == name:
-                    found |= _hit(decides(variant.part), _apart(own, attempts.get(key, [])))
+                    found |= _hit(decides(variant.part), _apart(own, attempts[key]))
             yield name, found
             if watched.graph is not None:
-                yield from _passages(watched.graph, name, run.passages(name))
+                yield from _passages(watched.graph, name, passages[name])
         for name in self._goals:
-            shown = [one for one in attempts.get(name, []) if one.verdict is Verdict.PASS]
-            yield name, dict(_hit(SHOWN, [_instant(one) for one in shown]))
+            shown = [one for one in attempts[name] if one.verdict is Verdict.PASS]
+            yield name, dict(_hit(SHOWN, map(_instant, shown)))
 
 
-class RequirementRun(GeneratedMonitor):
-    """Judges as every monitor does, and notes what automata do."""
-
-    def __init__(self, compiled: CompiledSpec, settle: str, sources: frozenset[str] | None) -> None:
-        requirements = tuple(compiled.requirements.values())
-        key = (sources, TracedRule)
-        if key not in compiled.forms:
-            compiled.forms[key] = forms_of(compiled, requirements, sources, TracedRule)
-        forms = compiled.forms[key]
-        assert isinstance(forms, Forms)  # noqa: S101 - it is what was put there
-        self._machines = {
-            one.requirement.id: TracedMachine(one.automaton)
-            for one in requirements
-            if one.automaton is not None
-        }
-        machines = [
-            None if machine is None else self._machines[one.requirement.id]
-            for one, machine in zip(forms.requirements, forms.machines, strict=False)
-        ]
-        machines += [None] * (len(forms.machines) - len(machines))
-        traced = replace(forms, machines=machines)
-        super().__init__(traced, compiled, requirements, "auto", settle, sources, None)
-
-    def _begin(self) -> None:
-        for machine in self._machines.values():
-            machine.passages.clear()
-        super()._begin()
-
-    def _make_evaluators(self) -> Evaluators:
-        self._unit_evaluators = _TracedEvaluators(
-            self._machines,
-            self._forms,
-            self._unit,
-            self.options.compiled,
-            self.options.engine,
-            self.options.sources,
-            self._ledger,
-            self._take,
-        )
-        return self._unit_evaluators
-
-    def passages(self, name: str) -> Mapping[tuple[int, int], Hit]:
-        """From which location of its automaton to which attempts of a requirement went."""
-        machine = self._machines.get(name)
-        return {} if machine is None else dict(machine.passages)
+def _planned(compiled: CompiledSpec, traced: Collection[str]) -> PlannedCore:
+    chosen = tuple(compiled.requirements.values())
+    plan = plan_alone(compiled, traced=traced)
+    single = frozenset().union(*(one.single_payloads for one in chosen))
+    made = Kept(pack(plan).data, single, readers_of(chosen))
+    return planned_as(compiled.checked, tuple(compiled.requirements), made, compiled)
 
 
-class _TracedEvaluators(GeneratedEvaluators):
-    """Evaluators whose automata note what they do, with `let` and `for each` as well."""
-
-    def __init__(self, machines: Mapping[str, TracedMachine], *arguments: Any) -> None:
-        self._traced = machines
-        super().__init__(*arguments)
-
-    def judge_of(
-        self, compiled: CompiledRequirement, engine: str, *arguments: Any, **kind: Any
-    ) -> AttemptJudge:
-        """See `rvmon.monitor.attempts.judges.judge_of`."""
-        judge = judge_of(compiled, engine, *arguments, **kind)
-        if not isinstance(judge, MachineJudge):
-            return judge
-        return TracedJudge(compiled, self._traced[compiled.requirement.id], *arguments, **kind)
-
-
-def _instant(attempt: Attempt) -> int:
+def _instant(attempt: Judged) -> int:
     return attempt.triggered if attempt.decided is None else attempt.decided
 
 
-def _hit(item: str, instants: Sequence[int]) -> dict[str, Hit]:
+def _hit(item: str, instants: Iterable[int]) -> dict[str, Hit]:
     """An item that was hit at some instants; none: nothing."""
-    return {item: Hit(len(instants), min(instants))} if instants else {}
+    found = [*instants]
+    return {item: Hit(len(found), min(found))} if found else {}
 
 
-def _of_attempts(attempts: Sequence[Attempt], deadline: int | None) -> Iterator[tuple[str, Hit]]:
+def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[tuple[str, Hit]]:
     """What the attempts of a requirement alone say."""
     yield from _hit(TRIGGERED, [one.triggered for one in attempts]).items()
     passed = [one for one in attempts if one.verdict is Verdict.PASS]
@@ -271,7 +217,7 @@ def _of_attempts(attempts: Sequence[Attempt], deadline: int | None) -> Iterator[
     yield from _hit(AFTER, late).items()
 
 
-def _apart(own: Iterable[Attempt], others: Iterable[Attempt]) -> list[int]:
+def _apart(own: Iterable[Judged], others: Iterable[Judged]) -> list[int]:
     """The instants of attempts that only one of two requirements has, or decides otherwise."""
     first, second = (
         {(one.triggered, one.decided, one.verdict): _instant(one) for one in some}
@@ -286,20 +232,35 @@ def _apart(own: Iterable[Attempt], others: Iterable[Attempt]) -> list[int]:
 
 
 def _passages(
-    graph: Graph, name: str, passages: Mapping[tuple[int, int], Hit]
+    graph: Graph, name: str, passages: Passages
 ) -> Iterator[tuple[str, Mapping[str, Hit]]]:
-    """The locations and edges of an automaton that were seen."""
+    """The locations and edges of an automaton that were seen.
+
+    An attempt that leaves a location was there, known as it may not have been when it came.
+    """
     names = {place.location: place.name for place in graph.places}
     drawn = frozenset(_steps(graph))
-    locations: dict[str, Hit] = {}
+    came: dict[str, Hit] = {}
+    left: dict[str, Hit] = {}
     edges: dict[str, Hit] = {}
     for (source, target), hit in passages.items():
         step = names[source], names[target]
         if step in drawn:
             edges[edge_name(step)] = hit
-        for place in dict.fromkeys(step):
-            known = locations.get(place)
-            first = min(one.first or 0 for one in (hit, known or hit))
-            locations[place] = Hit(hit.count + (known.count if known else 0), first)
+        _add(came, step[1], hit)
+        if source != target:
+            _add(left, step[0], hit)
+    locations = {
+        place: Hit(max(one.count for one in hits), min(one.first or 0 for one in hits))
+        for place in (came | left)
+        if (hits := [own[place] for own in (came, left) if place in own])
+    }
     yield locations_of(name), locations
     yield edges_of(name), edges
+
+
+def _add(found: dict[str, Hit], name: str, hit: Hit) -> None:
+    known = found.get(name)
+    if known is not None:
+        hit = Hit(hit.count + known.count, min(hit.first or 0, known.first or 0))
+    found[name] = hit

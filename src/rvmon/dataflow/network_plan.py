@@ -6,6 +6,7 @@ image. This holds of Kleene's values too, so that each part can be judged alone.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import assert_never
 
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
@@ -30,8 +31,19 @@ def plan_of(owed: Core, gap: int | None) -> NetworkPlan:
         owed: the formula.
         gap: ticks between two positions; `None` if only samples are positions.
     """
+    return plan_of_all([owed], gap)
+
+
+def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:
+    """One network of several formulas; `NetworkPlan.places` says where each stands.
+
+    Args:
+        formulas: of which somebody asks where they are true.
+        gap: as for `plan_of`.
+    """
     planning = _Planning(gap or 1)
-    planning.place(owed)
+    for formula in formulas:
+        planning.place(formula)
     nodes = tuple(planning.nodes)
     leaves = tuple((place, node.core) for place, node in enumerate(nodes) if isinstance(node, Leaf))
     inner = tuple((place, node) for place, node in enumerate(nodes) if not isinstance(node, Leaf))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.trace.sample import Sample
@@ -24,7 +24,7 @@ class Example:
     samples: tuple[Sample, ...]
     end: int
     verdicts: Mapping[str, Verdict]
-    attempts: tuple[Attempt, ...]
+    attempts: Sequence[Attempt]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,10 +6,8 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Sequence
 
 from rvmon.explain.spans import Spans
-from rvmon.explain.state_truths import state_truths
-from rvmon.explain.states import state_of
-from rvmon.explain.truth_over_trace import instance_of, positions_of, subformulas
-from rvmon.formula.factory import Factory
+from rvmon.explain.truth_over_trace import subformulas
+from rvmon.explain.truths import positions_of, truths_of
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement
 from rvmon.spec.checked.tense import has_future
@@ -71,7 +69,7 @@ def late_arrivals(
     """
     if not samples:
         return {}
-    begin, positions = samples[0].t, positions_of(spec, samples, end)
+    positions = positions_of(spec, samples, end)
     seen: Known = {} if known is None else known
     found = {}
     for attempt in attempts:
@@ -80,10 +78,11 @@ def late_arrivals(
             continue
         key = (format_formula(formula), requirement.for_each, tuple(attempt.captured.items()))
         if key not in seen:
-            state = state_of(formula, Factory(), spec)
-            instance = instance_of(requirement, attempt.captured, begin)
-            truths = state_truths(spec, [state], samples, end, instance, attempt.captured, names)
-            seen[key] = truths[state].sure
+            each, captured = requirement.for_each, attempt.captured
+            (truth,) = truths_of(
+                spec, [formula], samples, end, names, for_each=each, captured=captured
+            )
+            seen[key] = truth.sure
         deadline = attempt.blame.window[1] or 0
         came = _first_after(deadline, seen[key], positions)
         if came is not None:

@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.explain.spans import holds
-from rvmon.explain.state_truths import Truth, state_truths
-from rvmon.explain.states import state_of, values_read
-from rvmon.formula.factory import Factory
+from rvmon.explain.states import values_read
+from rvmon.explain.truths import Truth, truths_of
 from rvmon.plan.graph import Graph
 from rvmon.spec.checked.formula import (
     Binary,
@@ -69,10 +68,8 @@ def why_not_triggered(
     if requirement.for_each is not None or trigger == BoundAtom(Bound.END):
         return ""
     options = [_flat(part, BinaryOp.AND) for part in _flat(trigger, BinaryOp.OR)]
-    factory = Factory()
-    states = {part: state_of(part, factory, spec) for o in options for part in o}
-    truths = state_truths(spec, list(states.values()), samples, end, None, {}, names)
-    seen = {part: truths[state] for part, state in states.items()}
+    asked = list(dict.fromkeys(part for option in options for part in option))
+    seen = dict(zip(asked, truths_of(spec, asked, samples, end, names), strict=True))
     misses = [_miss(parts, seen) for parts in options]
     best = min(misses, key=lambda miss: len(miss.missing))
     if best.missing and best.at is None:

@@ -49,34 +49,3 @@ def outside(spans: Spans, low: int, high: int) -> Spans:
     """
     edges = [(low - 1, low - 1), *spans, (high + 1, high + 1)]
     return union((a + 1, b - 1) for (_, a), (b, _) in pairwise(edges))
-
-
-def until(left: Spans, right: Spans, low: int, high: int | None) -> Spans:
-    """The ticks t with an s of `right` in [t + low, t + high], and `left` at all ticks in [t, s).
-
-    Source: SEMANTICS 2; intervals shifted back after AUTOMATA 4.
-
-    >>> until(((0, 9),), ((10, 10),), 0, 3)
-    ((7, 10),)
-    """
-    last = FOREVER if high is None else high
-    found = list(right) if low == 0 else []
-    for first, end in left:
-        for start, stop in right:
-            earliest, latest = max(start, first), min(stop, end + 1)
-            if earliest <= latest:
-                found.append((max(first, earliest - last), latest - low))
-    return union(found)
-
-
-def since(left: Spans, right: Spans, low: int, high: int | None) -> Spans:
-    """The ticks t with an s of `right` in [t - high, t - low], and `left` at all ticks in (s, t].
-
-    >>> since(((1, 9),), ((0, 0),), 0, 3)
-    ((0, 3),)
-    """
-    return _mirrored(until(_mirrored(left), _mirrored(right), low, high))
-
-
-def _mirrored(spans: Spans) -> Spans:
-    return tuple((-high, -low) for low, high in reversed(spans))

@@ -58,13 +58,18 @@ class Monitor:
         `looked`: it is known that all its occurrences can be judged.
         """
 
-    def rows(self, times: Any, columns: tuple[tuple[int, int, Any, Any], ...], /) -> int:
-        """Judge rows; how many were: fewer than given if one is not later than all before.
+    def rows(self, times: Any, columns: tuple[tuple[Any, ...], ...], /) -> int:
+        """Judge rows; how many were: fewer than given if one is before those above it.
+
+        Fewer, too, before the first instant with two payloads of an event of which only one can be
+        judged.
 
         Args:
-            times: int64[n] ticks.
-            columns: of names number, kind (`RV_COLUMN_…`), of signals values, and uint8[n] of what
-                each row says or `None`.
+            times: int64[n] ticks; those of one instant are one sample.
+            columns: of a signal (number, cells), of an event (number, says, cells of each field or
+                `None`). Cells are (kind, values, says): the `RV_COLUMN_…` of `core.h`, an array of
+                n values, which may be `None` of a field, and uint8[n] of what each row says or
+                `None`.
         """
 
     def advance(self, t: int, /) -> None: ...
@@ -101,14 +106,47 @@ class Monitor:
     def open(self) -> tuple[Attempt, ...]:
         """The attempts that are undecided now, and those that will stay so."""
 
-    def records(self) -> tuple[bytes, bytes]:
-        """All records as `rv_record`, and as many `rv_number` for each as any captures."""
+    def records(self) -> tuple[bytes, bytes, bytes, list[tuple[tuple[bytes, ...], bytes]]]:
+        """All records as `rv_record`, and as many `rv_number` for each as any captures.
+
+        Then the words of notes, and the letters that these refer to: pieces, and the last one.
+        """
 
     def counts(self) -> list[tuple[int, int, int, int]]:
         """Of each requirement how many attempts failed, passed, stayed open.
 
         The last number is 1 if its trigger was ever true or false, and nothing came too late.
         """
+
+    def truths(self, operator: int, /) -> tuple[bytes, bytes]:
+        """Where an operator of the plan's truths is surely true, and where surely false.
+
+        Ranges of positions, see `rv_truths`: first and last, int64 each.
+
+        Raises:
+            ValueError: the plan keeps no truths of that.
+        """
+
+    def stale(self) -> list[tuple[int, int, int]]:
+        """Of each signal that went stale its number, how often it did, and when first."""
+
+    def passages(self, requirement: int, /) -> tuple[int, bytes]:
+        """How many locations its automaton has, and from each to each how often attempts went.
+
+        With that, when first: int64 each; see `rv_moves`. 0: the plan does not ask for it.
+        """
+
+    def situation(self, now: int, /) -> tuple[bytes, int | None]:
+        """How the run stands; equal for runs that go on alike. See `rv_situation`.
+
+        With that, the next instant at which time alone may change something.
+
+        Raises:
+            ValueError: the run is over, `now` is before its last sample, or the plan has a chain.
+        """
+
+    def hits(self) -> bytes:
+        """Of each item of the plan's groups how often it was hit, and when first: int64 each."""
 
     def times(self) -> tuple[int | None, int | None, int | None]:
         """The instants of the first and the last sample, and that which time has come to."""

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 from rvmon.formula.state import Lapsed, Leaf, State, StateOp
 from rvmon.plan.graph import Graph
+from rvmon.plan.inputs import Reported, payloads_of
 from rvmon.plan.leaves import captured_names
 from rvmon.plan.numbers import events_of
 from rvmon.spec.checked.formula import Captured, Compare, CompareOp, EventAtom, FieldValue
 from rvmon.spec.checked.specification import ForEach
+from rvmon.trace.sample import Payload, Scalar
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +109,28 @@ def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
         if not found.isdisjoint(operands):
             found.add(place)
     return frozenset(found)
+
+
+def occurrences_with(
+    source: FieldValue, value: Scalar, reported: Reported
+) -> tuple[Payload | None, ...]:
+    """The occurrences of an event that concern the instance of a value.
+
+    One whose value is not known is an unknown occurrence in every instance.
+
+    Args:
+        source: the field whose value tells instances apart.
+        value: that of the instance.
+        reported: of the event, in a sample.
+    """
+    seen: list[Payload | None] = []
+    for payload in payloads_of(reported):
+        own = None if payload is None else payload.get(source.field)
+        if own is None or own != own:
+            seen.append(None)
+        elif own == value:
+            seen.append(payload)
+    return tuple(seen)
 
 
 def _compared(leaf: Leaf, event: str, name: str) -> FieldValue | None:

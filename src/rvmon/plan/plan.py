@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import NamedTuple
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.alphabet import Alphabet
@@ -11,6 +13,7 @@ from rvmon.formula.core import Core
 from rvmon.formula.state import Leaf, State, Unborn
 from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.trace.sample import Scalar
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,14 +34,15 @@ class PlannedRule:
         hidden: judges the attempts in doubt `upon` the trigger; `None` if there are none. Its own
             trigger is UNKNOWN where an attempt in doubt starts, if none runs; it runs until that
             is FALSE.
-        noted: the formulas of which a record of a decision notes the values; `None`: no records
-            are kept.
+        noted: the leaves of which a record says the values; they are nodes of the graph.
         doubted: as `hidden`, where it is not known whether there is such an instance.
         running: of an episode with captured values, what is FALSE where it is over.
         blurs: of attempts with captured values, UNKNOWN where another may have begun, whose values
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
         asked: further state formulas that are asked for their values.
+        stepped: whether no chain of windows is to judge it.
+        traced: whether somebody asks where attempts go in its automaton; it is stepped.
     """
 
     requirement: Requirement
@@ -51,12 +55,14 @@ class PlannedRule:
     unborn: State | None = None
     determined: State | None = None
     hidden: PlannedRule | None = None
-    noted: tuple[State, ...] | None = None
+    noted: tuple[State, ...] = ()
     doubted: PlannedRule | None = None
     running: State | None = None
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
+    stepped: bool = False
+    traced: bool = False
 
     @property
     def states(self) -> Iterator[State]:
@@ -97,6 +103,36 @@ class Uses:
     birth: bool = False
 
 
+class Watch(NamedTuple):
+    """A formula that is watched.
+
+    Attributes:
+        state: the formula.
+        is_pulse: whether it is over at the next position.
+    """
+
+    state: State
+    is_pulse: bool
+
+
+@dataclass(frozen=True, slots=True)
+class WatchGroup:
+    """A coverpoint, or the cross of several: an item of it is a watch of each axis.
+
+    Attributes:
+        axes: the numbers of watches; items are counted through from the last axis on.
+        occasion: the number of what says where it is looked at; `None`: everywhere.
+    """
+
+    axes: tuple[range, ...]
+    occasion: int | None
+
+    @property
+    def looks_where(self) -> Iterable[int]:
+        """The watches that have it look where they change."""
+        return chain.from_iterable(self.axes) if self.occasion is None else (self.occasion,)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """Some requirements of a specification, to be generated as one unit.
@@ -111,6 +147,10 @@ class Plan:
         uses: by name, of those that are read, here or by what begins with what is remembered here.
         units: of the requirements with captured values, one each.
         asked: all rules, those of the units among them, in the order of the file.
+        truths: formulas of which it is kept where they are true.
+        watches: formulas that are bins, or occasions at which bins are looked at.
+        groups: what is counted of them.
+        constants: captured values that are known while the plan is made; `None` is unknown.
     """
 
     spec: CheckedSpec
@@ -122,6 +162,10 @@ class Plan:
     uses: Mapping[str, Uses]
     units: tuple[Plan, ...] = ()
     asked: tuple[PlannedRule, ...] = ()
+    truths: tuple[Core, ...] = ()
+    watches: tuple[Watch, ...] = ()
+    groups: tuple[WatchGroup, ...] = ()
+    constants: Mapping[str, Scalar] = field(default_factory=dict)
 
     @property
     def judges(self) -> Sequence[tuple[int, PlannedRule]]:

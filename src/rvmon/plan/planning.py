@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from rvmon.formula.alphabet import literals
+from rvmon.formula.core import Core
 from rvmon.formula.numeric import operands
 from rvmon.formula.state import UNKNOWN, State, Unborn
 from rvmon.plan.graph import Graph, graph_of
 from rvmon.plan.numbers import inputs_of
-from rvmon.plan.plan import Plan, PlannedRule, Uses
+from rvmon.plan.plan import Plan, PlannedRule, Uses, Watch, WatchGroup
 from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.sample import Scalar
 
 
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
@@ -28,6 +31,41 @@ def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     shared = plan_of(spec, [rule for rule in rules if not rule.is_apart])
     units = tuple(plan_of(spec, [rule]) for rule in rules if rule.is_apart)
     return replace(shared, units=units, asked=tuple(rules))
+
+
+def plan_of_truths(
+    spec: CheckedSpec, formulas: Sequence[Core], captured: Mapping[str, Scalar]
+) -> Plan:
+    """The plan of what judges nothing: somebody asks where some formulas are true.
+
+    Args:
+        spec: the specification.
+        formulas: that are asked for.
+        captured: the values that they read as captured.
+    """
+    read = dict.fromkeys(one.proposition for core in formulas for one in literals(core))
+    graph = graph_of(read)
+    names = (tuple(spec.signals), tuple(spec.events))
+    uses = uses_of([graph], ())
+    return Plan(spec, (), graph, spec.gap, *names, uses, truths=tuple(formulas), constants=captured)
+
+
+def plan_of_watches(
+    spec: CheckedSpec, watches: Sequence[Watch], groups: Sequence[WatchGroup]
+) -> Plan:
+    """The plan of what judges nothing: somebody counts where some formulas come true.
+
+    Args:
+        spec: the specification.
+        watches: the formulas.
+        groups: what is counted of them.
+    """
+    graph = graph_of(watch.state for watch in watches)
+    names = (tuple(spec.signals), tuple(spec.events))
+    uses = uses_of([graph], ())
+    return Plan(
+        spec, (), graph, spec.gap, *names, uses, watches=tuple(watches), groups=tuple(groups)
+    )
 
 
 def plan_of_evaluator(

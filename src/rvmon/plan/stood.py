@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
+from rvmon.plan.graph import Graph
 from rvmon.plan.outages import Outage
-from rvmon.plan.plan import Plan
-from rvmon.plan.standing import Standing
+
+
+class Formulas(Protocol):
+    """State formulas, and at which positions they have values; see `Plan`."""
+
+    @property
+    def graph(self) -> Graph:
+        """The formulas."""
+
+    @property
+    def gap(self) -> int | None:
+        """Ticks between two positions; `None` if only samples are positions."""
 
 
 class Stood:
@@ -27,7 +38,7 @@ class Stood:
 
     def __init__(
         self,
-        of: Plan | Standing,
+        of: Formulas,
         values: Any,
         since: Any,
         until: Any,

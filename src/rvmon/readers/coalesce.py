@@ -16,10 +16,10 @@ class Conflicts:
     def __init__(self) -> None:
         self._seen: dict[str, tuple[int, int]] = {}
 
-    def add(self, name: str, t: int) -> None:
-        """Count one conflict of signal `name` at instant `t`."""
-        count, first = self._seen.get(name, (0, t))
-        self._seen[name] = (count + 1, first)
+    def add(self, name: str, t: int, count: int = 1) -> None:
+        """Count conflicts of signal `name`, the first of them at instant `t`."""
+        before, first = self._seen.get(name, (0, t))
+        self._seen[name] = (before + count, first)
 
     def health(self) -> list[Health]:
         """One entry per signal."""
@@ -51,7 +51,7 @@ def coalesce(
         if pending is None:
             pending = sample
         elif sample.t == pending.t:
-            pending = Sample(sample.t, _merge(pending, sample.values, events, conflicts))
+            pending = Sample(sample.t, merged(pending, sample.values, events, conflicts))
         else:
             yield pending
             pending = sample
@@ -74,20 +74,21 @@ def updates_in(values: Mapping[str, Value], ignoring: frozenset[str]) -> Mapping
     }
 
 
-def _merge(
+def merged(
     first: Sample, then: Mapping[str, Value], events: Container[str], conflicts: Conflicts
 ) -> dict[str, Value]:
-    merged = dict(first.values)
+    """What a sample says, and then another one of its instant; see `coalesce`."""
+    made = dict(first.values)
     for name, value in then.items():
-        if name not in merged:
-            merged[name] = value
+        if name not in made:
+            made[name] = value
         elif name in events:
-            merged[name] = either_occurred(merged[name], value)
+            made[name] = either_occurred(made[name], value)
         else:
-            if merged[name] != value:
+            if made[name] != value:
                 conflicts.add(name, first.t)
-            merged[name] = value
-    return merged
+            made[name] = value
+    return made
 
 
 def either_occurred(first: Value, second: Value) -> Value:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.blocks import Block, up_to
+from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, layout_of, row_values
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.naming import stamps_among
@@ -18,6 +18,9 @@ from rvmon.trace.health import Health
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
 
 
 class TableRecording:
@@ -72,6 +75,22 @@ class TableRecording:
 
         yield up_to(until, block_of_table(self.columns, self.layout, self._schema, fillable))
 
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The table in order: its rows as columns, if they hold what is declared, else samples.
+
+        Raises:
+            TraceError: as going through it does.
+        """
+        return self.rows.pieces(self._batches())
+
+    def _batches(self) -> Iterator[Batch | Iterator[Row]]:
+        from rvmon.readers.table_batch import batch_of_table
+
+        try:
+            yield batch_of_table(self.columns, self.layout)
+        except NotPlainError:
+            yield self._read()
+
     def __iter__(self) -> Iterator[Sample]:
         """Samples in order of the table, equal stamps merged.
 
@@ -98,6 +117,8 @@ class TableRecording:
         stamps = self.layout.stamps
         if stamps.is_stated or stamps.unit != "s":
             return []
+        if self.rows.first:
+            return doubt_unit(self.rows.first, stamps)
         column = self.columns[stamps.column]
         first = cells_of(stamps.column, getattr(column, "iloc", column)[:LOOKED_AT])
         return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)

@@ -13,11 +13,12 @@ import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.csv_numbers import READERS, plain_values, text_cells
 from rvmon.readers.csv_rows import Column, Layout, read_layout
-from rvmon.readers.decimals import Cells, decimals, instants, truth_values, whole_numbers
+from rvmon.readers.decimals import Cells, instants, truth_values
 from rvmon.readers.line_chunks import BLOCK, whole_lines
 from rvmon.readers.plain import Seam, expect_plain_columns, held_values, is_short_of_memory
-from rvmon.trace.schema import Kind, Schema
+from rvmon.trace.schema import Schema
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,24 +88,8 @@ def _plain_layout(header: bytes, schema: Schema) -> Layout:
 
 
 def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[str, Any]) -> Block:
-    text = np.frombuffer(body, np.uint8)
-    ends = np.flatnonzero((text == ord(",")) | (text == ord("\n")))
-    width = len(layout.header)
-    rows, rest = divmod(len(ends), width)
-    if rest:
-        raise NotPlainError("its lines are not all alike")
-    table = ends.reshape(rows, width)
-    is_end = text[table] == ord("\n")
-    if not is_end[:, -1].all() or is_end[:, :-1].any():
-        raise NotPlainError("its lines are not all alike")
-    starts = np.concatenate(([0], ends[:-1] + 1)).reshape(rows, width)
-    if (table - starts).max() > csv.field_size_limit():  # whoever reads rows refuses it
-        raise NotPlainError("it has very long cells")
-
-    def cells(index: int) -> Cells:
-        return Cells(text, starts[:, index], table[:, index])
-
-    times = _plain(instants(cells(layout.time), layout.stamps.unit))
+    cells = text_cells(body, len(layout.header))
+    times = plain_values(instants(cells(layout.time), layout.stamps.unit))
     columns: dict[str, NDArray[Any]] = {
         column.name: _values(cells(column.index), column, fillable, held)
         for column in layout.signals
@@ -114,24 +99,21 @@ def _block(body: bytes, layout: Layout, fillable: frozenset[str], held: Mapping[
     return Block(times, columns)
 
 
-_READERS = {Kind.BOOL: truth_values, Kind.INT: whole_numbers, Kind.REAL: decimals}
-
-
 def _values(
     cells: Cells, column: Column, fillable: frozenset[str], held: Mapping[str, Any]
 ) -> NDArray[Any]:
     """The values of a column; gaps of a signal are filled with what it holds."""
-    read = _READERS[column.kind]
+    read = READERS[column.kind]
     given = cells.ends > cells.starts
     if given.all():
-        return _plain(read(cells))
+        return plain_values(read(cells))
     before = held.get(column.name)
     if column.name not in fillable or not (given[0] or before is not None):
         raise NotPlainError(f"`{column.name}` has gaps that may matter")
     rows = np.flatnonzero(given)
     some = np.array([], np.dtype(type(before)))
     if len(rows):
-        some = _plain(read(Cells(cells.text, cells.starts[rows], cells.ends[rows])))
+        some = plain_values(read(Cells(cells.text, cells.starts[rows], cells.ends[rows])))
     return held_values(some, given, before)
 
 
@@ -142,13 +124,7 @@ def _occurrences(cells: Cells, name: str, fillable: frozenset[str]) -> NDArray[n
         raise NotPlainError(f"`{name}` has gaps that may matter")
     made = np.zeros(len(cells.ends), bool)
     if len(given):
-        made[given] = _plain(
+        made[given] = plain_values(
             truth_values(Cells(cells.text, cells.starts[given], cells.ends[given]))
         )
     return made
-
-
-def _plain(values: NDArray[Any] | None) -> NDArray[Any]:
-    if values is None:
-        raise NotPlainError("a cell is no plain number or truth value")
-    return values

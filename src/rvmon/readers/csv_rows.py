@@ -122,8 +122,12 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
     )
 
 
-def split_lines(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
+def split_lines(lines: Iterable[str], before: int = 0) -> Iterator[tuple[int, list[str]]]:
     """Split CSV text into rows with the number of the line that each ends on.
+
+    Args:
+        lines: of the text.
+        before: so many lines stand above them.
 
     Raises:
         TraceError: the text is no CSV (a NUL character, a cell without end), or a row that quotes
@@ -144,19 +148,19 @@ def split_lines(lines: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
 
     reader = csv.reader(of_row(), strict=True)
     while True:
-        began, taken = reader.line_num + 1, 0
+        began, taken = before + reader.line_num + 1, 0
         try:
             row = next(reader)
         except StopIteration:
             return
         except csv.Error as error:
             more = f"; the row begins on line {began}: close its quotes"
+            line = before + reader.line_num
             raise TraceError(
-                f"line {reader.line_num}: not a CSV row ({error})"
-                f"{more if began < reader.line_num else ''}"
+                f"line {line}: not a CSV row ({error}){more if began < line else ''}"
             ) from None
         if row and not (len(row) == 1 and row[0].isspace()):
-            yield reader.line_num, [cell.strip() for cell in row]
+            yield before + reader.line_num, [cell.strip() for cell in row]
 
 
 def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:

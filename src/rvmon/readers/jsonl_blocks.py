@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
-from rvmon.errors import TraceError
 from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.jsonl_batch import instants_of, line_struct
 from rvmon.readers.line_chunks import BLOCK, whole_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.plain import held_values
-from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.stamps import stamps_of
 
@@ -82,7 +81,7 @@ def jsonl_blocks(
         if shape is None:
             decoder, shape = _shape_of(text.partition(b"\n")[0], schema)
         rows = _decoded(text, decoder)
-        times = _instants([row.stamp for row in rows], shape)
+        times = instants_of([row.stamp for row in rows], stamps_of(shape.stamp))
         if not (times[1:] > times[:-1]).all() or (last is not None and times[0] <= last):
             raise NotPlainError("its instants do not increase")
         last = times[-1]
@@ -129,13 +128,7 @@ def _shape_of(line: bytes, schema: Schema) -> tuple[Any, _Shape]:
     fields, names = _fields(first, "", "", schema, shape)
     fields.insert(0, ("stamp", int | float))
     names["stamp"] = stamps[0]
-    return msgspec.json.Decoder(_struct(fields, names)), shape
-
-
-def _struct(fields: Sequence[Any], names: Mapping[str, str]) -> Any:
-    return msgspec.defstruct(
-        "Line", fields, rename=dict(names), forbid_unknown_fields=True, gc=False
-    )
+    return msgspec.json.Decoder(line_struct(fields, names)), shape
 
 
 def _fields(
@@ -161,7 +154,7 @@ def _fields(
             shape.places[name] = place + own
         elif isinstance(value, dict):
             inside = _fields(value, f"{name}.", f"{place}{own}.", schema, shape)
-            object_ = _struct(*inside)
+            object_ = line_struct(*inside)
             fields.append((own, object_, msgspec.field(default_factory=object_)))
             continue
         else:
@@ -172,16 +165,6 @@ def _fields(
 
 def _cells(rows: Sequence[Any], place: str | None) -> list[Any] | None:
     return None if place is None else list(map(attrgetter(place), rows))
-
-
-def _instants(stamps: list[Any], shape: _Shape) -> NDArray[np.int64]:
-    found = np.array(stamps)
-    if found.dtype.kind not in ("i" if shape.stamp == "t_ns" else "fi"):
-        raise NotPlainError("its stamps are no plain numbers")
-    try:
-        return ticks_of_column(found, stamps_of(shape.stamp))
-    except TraceError:  # whoever reads lines says in which it is
-        raise NotPlainError("some instant is out of range") from None
 
 
 def _values(cells: list[Any] | None, kind: Kind, before: Any, *, gaps: bool) -> NDArray[Any]:

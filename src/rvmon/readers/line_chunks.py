@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -32,6 +33,14 @@ def bounded_lines(text: TextIO) -> Iterator[str]:
                 "Put each sample on a line of its own"
             )
         yield line
+
+
+def is_long_celled(body: bytes) -> bool:
+    """Whether a cell may be longer than whoever reads rows takes."""
+    # A longer line has a stretch of so many bytes without an end.
+    stretch = max(csv.field_size_limit() // 2, 1)
+    starts = range(0, len(body) - stretch, stretch)
+    return any(body.find(b"\n", start, start + stretch) < 0 for start in starts)
 
 
 def whole_lines(path: str | Path, size: int) -> Iterator[bytes]:

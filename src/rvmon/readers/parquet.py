@@ -6,6 +6,7 @@ Needs pyarrow, the extra `arrow`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.readers.columns import values_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
 from rvmon.readers.plain import Seam, expect_plain_columns, is_short_of_memory
+from rvmon.readers.rows import Row
 from rvmon.readers.tables import arrow_cells
 from rvmon.readers.values import first_line
 from rvmon.trace.sample import Value
@@ -23,6 +25,8 @@ from rvmon.trace.stamps import ticks_of_stamp
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from rvmon.readers.batch import Batch
 
 ROWS = 1 << 16
 """Rows that are in memory at a time."""
@@ -141,6 +145,31 @@ def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) ->
         yield seam.joined(block_of_arrays(times, arrays, layout, fillable, seam.held))
 
 
+def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Iterator[Row]]:
+    """The rows of a file in order: as columns, if they hold what is declared, else one by one.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: with the row's number, or it is damaged.
+    """
+    from rvmon.readers.cells import batch_of, cells_of_arrow
+    from rvmon.readers.table_batch import instants
+
+    layout = parquet_layout(path, schema)
+    row = 0
+    for stamps, *arrays in parquet_batches(path, _names(layout)):
+        try:
+            times = instants(stamps, layout.stamps)
+            cells = {
+                column: cells_of_arrow(array, column.kind, layout.gaps)
+                for column, array in zip(layout.columns, arrays, strict=True)
+            }
+            yield replace(batch_of(times, layout, cells), first=row + 1)
+        except (NotPlainError, TraceError):
+            yield _rows_of([stamps, *arrays], layout, row)
+        row += len(stamps)
+
+
 def _instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
     from rvmon.readers.arrow_columns import array_of
     from rvmon.readers.ticks import ticks_of_column
@@ -162,10 +191,15 @@ def parquet_samples(
     layout = parquet_layout(path, schema)
     row = 0
     for batch in parquet_batches(path, _names(layout)):
-        for stamp, *cells in zip(*map(arrow_cells, batch), strict=True):
-            row += 1
-            try:
-                t = ticks_of_stamp(stamp, layout.stamps)
-            except TraceError as error:
-                raise TraceError(f"row {row}: {error}") from None
-            yield row, t, values_of_cells(layout, cells)
+        yield from _rows_of(batch, layout, row)
+        row += len(batch[0])
+
+
+def _rows_of(batch: list[Any], layout: Layout, before: int) -> Iterator[Row]:
+    """Rows, of which so many stand before."""
+    for row, (stamp, *cells) in enumerate(zip(*map(arrow_cells, batch), strict=True), before + 1):
+        try:
+            t = ticks_of_stamp(stamp, layout.stamps)
+        except TraceError as error:
+            raise TraceError(f"row {row}: {error}") from None
+        yield row, t, values_of_cells(layout, cells)

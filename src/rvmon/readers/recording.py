@@ -26,10 +26,11 @@ from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
-from rvmon.trace.schema import Schema
+from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
 if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
     from rvmon.readers.messages.file import MessageFile
     from rvmon.readers.messages.topic import Topic
 
@@ -44,6 +45,9 @@ FORMATS = {
 
 SHORT = 1 << 15
 """Bytes of text that are sooner read line by line than NumPy is imported."""
+
+TINY = 1 << 10
+"""Bytes of text that are sooner read line by line than as columns."""
 
 
 class FileRecording:
@@ -148,6 +152,41 @@ class FileRecording:
                 seen = self._seeing_unit(lines)
                 yield from self._merged(jsonl_samples(seen, self._schema, self.ignored))
 
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The recording in order: rows as columns where it has such, else samples; see `__iter__`.
+
+        Raises:
+            TraceError: with file and line.
+        """
+        of_columns = self._messages is None and can_be_read_again(self.path)
+        if not of_columns or self._has_less_than(TINY):
+            yield from self
+            return
+        with self._named_errors():
+            yield from self.rows.pieces(self._batches())
+            if not self.rows.count:
+                raise TraceError("holds no sample")
+
+    def _batches(self) -> Iterator[Batch | Iterator[Row]]:
+        if self._format == "parquet":
+            from rvmon.readers.parquet import parquet_batches_of
+
+            yield from parquet_batches_of(local_path(self.path), self._schema)
+            return
+        with opened(self.path) as (plain, self._open_file):
+            size = os.fstat(self._open_file.fileno()).st_size
+            if self._format == "csv":
+                from rvmon.readers.csv_batch import csv_batches
+
+                yield from csv_batches(plain, size, self._layout)
+            else:
+                from rvmon.readers.jsonl_batch import jsonl_batches
+
+                yield from jsonl_batches(plain, self._schema, self.ignored, self._take_stamps)
+
+    def _take_stamps(self, stamps: Stamps) -> None:
+        self._stamps = stamps
+
     def _seeing_unit(self, lines: Iterable[str]) -> Iterator[str]:
         """The same lines; the first one says what the stamps are, if nobody did."""
         for number, line in enumerate(lines):
@@ -157,10 +196,14 @@ class FileRecording:
 
     @property
     def is_short(self) -> bool:
-        """Whether it is a file of so little text that columns do not pay."""
+        """Whether it is a file of so little text that NumPy is not worth importing."""
+        return self._has_less_than(SHORT)
+
+    def _has_less_than(self, size: int) -> bool:
+        """Whether it is a file of less text than so many bytes."""
         with suppress(OSError):
             is_text = self._format in ("csv", "jsonl") and can_be_read_again(self.path)
-            return is_text and Path(self.path).stat().st_size < SHORT
+            return is_text and Path(self.path).stat().st_size < size
         return False
 
     def blocks(

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rvmon.errors import TimeOrderError
 from rvmon.readers.alternation import Alternations
-from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
+from rvmon.readers.coalesce import Conflicts, coalesce, merged, updates_in
 from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import format_ticks
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
 
 Row = tuple[int, int, Mapping[str, Value]]
 """Number, ticks, what it updates."""
@@ -39,6 +43,7 @@ class Rows:
         self.count = 0
         self.first: list[int] = []
         self.alternations = Alternations()
+        self._last: int | None = None
 
     def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
         """The samples of a source that is read from its start.
@@ -46,22 +51,95 @@ class Rows:
         Raises:
             TimeOrderError: a row is before the one above it.
         """
-        self._conflicts, self.alternations = Conflicts(), Alternations()
-        self.count, self.first = 0, []
+        self._begin()
         for sample in coalesce(self._in_order(rows), self._schema.events, self._conflicts):
             self.alternations.note(sample.values)
             yield sample
 
+    def pieces(self, pieces: Iterable[Batch | Iterable[Row]]) -> Iterator[Batch | Sample]:
+        """The same of a source of which some rows come as columns; so they are given out.
+
+        What ends a batch comes as a sample: rows of its instant may follow.
+
+        Raises:
+            TimeOrderError: a row is before the one above it.
+        """
+        from rvmon.readers.batch import Batch
+        from rvmon.readers.batch_notes import note_batch, without_ignored
+
+        self._begin()
+        held: Sample | None = None
+        for piece in pieces:
+            rows: Iterable[Sample]
+            if isinstance(piece, Batch):
+                batch = without_ignored(piece, self._schema.ignoring)
+                self._note_times(batch)
+                times, count = batch.times, len(batch.times)
+                start = 0 if held is None else int(times.searchsorted(held.t, "right"))
+                stop = max(start, int(times.searchsorted(times[-1]))) if count else 0
+                for sample in batch.rows(0, start):
+                    held = self._merged(held or sample, sample)
+                if start < stop:
+                    if held is not None:
+                        yield self._noted(held)
+                        held = None
+                    middle = batch.cut(start, stop)
+                    note_batch(middle, self.alternations, self._conflicts)
+                    yield middle
+                rows = batch.rows(stop, count)
+            else:
+                rows = self._in_order(piece)
+            for sample in rows:
+                if held is None:
+                    held = sample
+                elif sample.t == held.t:
+                    held = self._merged(held, sample)
+                else:
+                    yield self._noted(held)
+                    held = sample
+        if held is not None:
+            yield self._noted(held)
+
+    def _begin(self) -> None:
+        self._conflicts, self.alternations = Conflicts(), Alternations()
+        self.count, self.first = 0, []
+        self._last = None
+
+    def _noted(self, sample: Sample) -> Sample:
+        self.alternations.note(sample.values)
+        return sample
+
+    def _merged(self, held: Sample, sample: Sample) -> Sample:
+        return Sample(held.t, merged(held, sample.values, self._schema.events, self._conflicts))
+
+    def _note_times(self, batch: Batch) -> None:
+        """See that rows are in order, and note the first instants."""
+        times = batch.times
+        if not len(times):
+            return
+        if self._last is not None and times[0] < self._last:
+            raise self._backwards(batch.first, self._last, int(times[0]))
+        back = times[1:] < times[:-1]
+        if back.any():
+            row = int(back.argmax())
+            raise self._backwards(batch.first + row + 1, int(times[row]), int(times[row + 1]))
+        self._last = int(times[-1])
+        self.count += len(times)
+        if len(self.first) < LOOKED_AT:
+            self.first += times[: LOOKED_AT - len(self.first)].tolist()
+
+    def _backwards(self, number: int, last: int, t: int) -> TimeOrderError:
+        return TimeOrderError(
+            f"{self._unit} {number}: time goes backwards, from {format_ticks(last)} to "
+            f"{format_ticks(t)}: sort the recording by time, or allow for late samples "
+            "with `max delay` in the spec"
+        )
+
     def _in_order(self, rows: Iterable[Row]) -> Iterator[Sample]:
-        last: int | None = None
         for number, t, values in rows:
-            if self._ordered and last is not None and t < last:
-                raise TimeOrderError(
-                    f"{self._unit} {number}: time goes backwards, from {format_ticks(last)} to "
-                    f"{format_ticks(t)}: sort the recording by time, or allow for late samples "
-                    "with `max delay` in the spec"
-                )
-            last = t
+            if self._ordered and self._last is not None and t < self._last:
+                raise self._backwards(number, self._last, t)
+            self._last = t
             self.count += 1
             if len(self.first) < LOOKED_AT:
                 self.first.append(t)

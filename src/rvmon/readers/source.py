@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import chain, takewhile
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.trace.sample import Recording, Sample
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
 
 Fillable = Callable[[], frozenset[str]]
 """Gives the names of which "no update" may be read as what was there before."""
@@ -40,6 +43,7 @@ class Source:
         is_cut: whether what comes after that end is left out.
         row_by_row: why columns are not to be looked at; empty if they may be.
         read: gives the samples of the recording.
+        shown: what samples, batches and blocks go through as they are read.
     """
 
     recording: Recording
@@ -47,6 +51,7 @@ class Source:
     is_cut: bool = False
     row_by_row: str = ""
     read: Callable[[Any], Iterable[Sample]] = iter
+    shown: Callable[[Iterator[Any]], Iterator[Any]] = iter
 
     @property
     def names(self) -> frozenset[str] | None:
@@ -70,12 +75,32 @@ class Source:
             ordered: whether what comes behind the first that is too late is too late as well: it is
                 not read, and may be broken.
         """
-        until, samples = self.until, iter(self.read(self.recording))
+        until, samples = self.until, self.shown(iter(self.read(self.recording)))
         if until is None or not self.is_cut:
             return samples
         if ordered:
             return takewhile(lambda sample: sample.t <= until, samples)
         return (sample for sample in samples if sample.t <= until)
+
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The recording in order: rows as columns where it has such, else samples."""
+        read = getattr(self.recording, "pieces", None)
+        if read is None or self.read is not iter:
+            yield from self.samples(ordered=True)
+            return
+        until = self.until if self.is_cut else None
+        for piece in self.shown(read()):
+            if until is None:
+                yield piece
+            elif isinstance(piece, Sample):
+                if piece.t > until:
+                    return
+                yield piece
+            else:
+                own = piece.up_to(until)
+                yield own
+                if len(own.times) < len(piece.times):
+                    return
 
     def columns(self, fillable: Fillable) -> Columns:
         """The columns; the first block is read.
@@ -93,8 +118,7 @@ class Source:
             raise NotPlainError("its samples come one by one")
 
         def read() -> Iterator[Block]:
-            found: Iterator[Block] = blocks(fillable, self.until if self.is_cut else None)
-            return found
+            return self.shown(blocks(fillable, self.until if self.is_cut else None))
 
         begun = read()
         first = next(begun, None)

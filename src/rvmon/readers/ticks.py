@@ -33,14 +33,28 @@ def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
     if values.dtype.kind == "i":
         _refuse(values, most, stamps)
         return values.astype(np.int64) * scale
-    values = values.astype(np.float64, copy=False)
+    ticks = np.empty(len(values), np.int64)
+    for start in range(0, len(values), _PIECE):
+        piece = slice(start, start + _PIECE)
+        ticks[piece] = _rounded(values[piece].astype(np.float64, copy=False), stamps, scale, most)
+    return ticks_in_range(ticks)
+
+
+_PIECE = 1 << 14
+"""Instants that are worked out together, near the processor."""
+
+
+def _rounded(
+    values: NDArray[np.float64], stamps: Stamps, scale: int, most: int
+) -> NDArray[np.int64]:
+    """Instants in units of so many ticks as ticks."""
     _refuse(values, most + 1, stamps)
     whole = np.floor(values)
     parts = (values - whole) * float(scale)
     ticks = whole.astype(np.int64) * scale + np.rint(parts).astype(np.int64)
     for row in np.flatnonzero(np.abs(parts - np.floor(parts) - 0.5) < 1e-5):
         ticks[row] = ticks_of_stamp(float(values[row]), stamps)
-    return ticks_in_range(ticks)
+    return ticks
 
 
 def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:

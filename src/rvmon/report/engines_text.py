@@ -12,7 +12,7 @@ from rvmon.report.plain_table import plain_table
 
 _HEAD = ("", "online", "recording", "why not another")
 
-_OF_C = "the engine c is taken by name only: it gives no reasons"
+_OF_C = "the engine c is taken by name only: it makes no snapshots"
 
 
 def engines_text(choices: Mapping[str, EngineChoice]) -> str:

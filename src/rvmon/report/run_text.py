@@ -7,10 +7,12 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.report.afterword import forecast_sentence, full_reason, without_attempts
+from rvmon.report.run_coverage import coverage_lines, together
 from rvmon.report.wrapped import wrapped
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.covered import CoveredGroup
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
@@ -44,6 +46,7 @@ def print_reports(
             count = sum(report.goals[name] is Verdict.PASS for report in reports)
             state = f"met, shown by {count} of {len(reports)}" if count else "open"
             console.print(f"cover goal {name}: {state}")
+        _print_coverage(together([report.coverage for report in reports]), console)
 
 
 def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
@@ -66,10 +69,18 @@ def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
                 console.print(f"… and {rest} more {verdict} of {name}", style="dim")
     if report.goals:
         console.print(_goals_text(report.goals))
+    _print_coverage(report.coverage, console)
     for one in report.illegal:
         console.print(str(one), style="bold red", markup=False)
     for line in health_lines(report.health):
         console.print(line)
+
+
+def _print_coverage(groups: Sequence[CoveredGroup], console: Console) -> None:
+    if groups:
+        console.print("coverage:")
+    for line in coverage_lines(groups):
+        console.print(wrapped(line, console.width), markup=False)
 
 
 def _verdict_table(report: Report, spec: CheckedSpec) -> Table:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.covered import CoveredGroup
 from rvmon.verdict.illegal import IllegalHit
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import LAW, Verdict, fold
@@ -45,6 +46,7 @@ class Report:
         goals: of each cover goal `P` if the run shows it, `I` if it was still possible at its end,
             else `NT`; where somebody looked.
         illegal: what was hit of coverpoints and crosses and must not be; where somebody looked.
+        coverage: what was hit of them and what not; where somebody looked.
         law: version of the law that judged; a report that was kept may be of an older one.
         engine: the engines that judged, the fastest first; no part of what was judged, and so
             neither compared nor written down.
@@ -63,6 +65,7 @@ class Report:
     late: Mapping[str, Mapping[int, int]] = field(default_factory=dict)
     goals: Mapping[str, Verdict] = field(default_factory=dict)
     illegal: tuple[IllegalHit, ...] = ()
+    coverage: tuple[CoveredGroup, ...] = ()
     law: int = LAW
     dropped: Mapping[str, Mapping[Verdict, int]] = field(default_factory=dict)
     engine: str = field(default="", compare=False)
@@ -180,6 +183,7 @@ class Report:
                 "health": self.health,
                 **({"goals": self.goals} if self.goals else {}),
                 **({"illegal": self.illegal} if self.illegal else {}),
+                **({"coverage": self.coverage} if self.coverage else {}),
             },
         )
 
@@ -229,6 +233,7 @@ class Report:
             late=late,
             goals=document.goals,
             illegal=document.illegal,
+            coverage=document.coverage,
             law=document.law,
         )
 

@@ -11,6 +11,7 @@ from rvmon.errors import TraceError
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.attempt_json import encoded, record
+from rvmon.verdict.covered import CoveredGroup
 from rvmon.verdict.illegal import IllegalHit
 from rvmon.verdict.verdict import LAW, Verdict
 
@@ -39,6 +40,7 @@ class ReportJson(msgspec.Struct):
     end: int | None = None
     goals: dict[str, Verdict] = {}
     illegal: tuple[IllegalHit, ...] = ()
+    coverage: tuple[CoveredGroup, ...] = ()
 
 
 def encode(

@@ -39,10 +39,11 @@ def test_recordings_are_counted(screen, jobs):
 
 
 @pytest.mark.slow
-def test_a_single_recording_shows_how_far_it_is_read(screen):
-    """By its name."""
+@pytest.mark.parametrize("more", [[], ["--engine", "c"], ["--engine", "python"]])
+def test_a_single_recording_shows_how_far_it_is_read(screen, more):
+    """By its name, be it read as columns, in pieces or sample by sample."""
     with redirect_stderr(screen):
-        assert main(["run", "s.rv", "one.jsonl", "--coverage", "c.db"]) == 0
+        assert main(["run", "s.rv", "one.jsonl", *more]) == 0
     assert "one.jsonl" in screen.getvalue()
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from rvmon.cli import main
 from rvmon.coverage.database import read
+from rvmon.verdict.report import Report
 
 SPEC = """
 spec arm "An arm"
@@ -40,7 +41,7 @@ def files(tmp_path, monkeypatch):
 def test_an_illegal_bin_is_an_error_of_the_run(files, capsys):
     """It is named with its first instant in text, JSON, JUnit; the exit code is 1."""
     assert main(["run", "arm.rv", "calm.csv"]) == 0
-    assert "illegal" not in capsys.readouterr().out
+    assert "illegal:" not in capsys.readouterr().out
     assert main(["run", "arm.rv", "wild.csv", "--junit", "j.xml", "--report", "pages"]) == 1
     line = "illegal: `yes × moving` of `both` was hit at 1 s, 2 times in all"
     assert line in capsys.readouterr().out
@@ -53,6 +54,39 @@ def test_an_illegal_bin_is_an_error_of_the_run(files, capsys):
         {"group": "both", "item": "yes × moving", "count": 2, "first": 10**9}
     ]
     assert shown["requirements"]["A1"]["verdict"] == "P"
+
+
+def test_what_was_hit_is_told_without_a_database(files, capsys):
+    """Of each recording and of all together: how often each bin was hit, and what was not."""
+    assert main(["run", "arm.rv", "calm.csv"]) == 0
+    text = capsys.readouterr().out
+    assert "person: 2 of 2 covered; hit: yes 1, no 2" in text
+    assert "both: not covered: yes × stops" in text
+    assert main(["run", "arm.rv", "calm.csv", "wild.csv", "--quiet"]) == 1
+    text = capsys.readouterr().out
+    assert "person: 2 of 2 covered; hit: yes 2, no 3" in text
+    assert "both: not covered" not in text
+    assert main(["run", "arm.rv", "calm.csv", "--format", "json"]) == 0
+    shown = json.loads(capsys.readouterr().out)["coverage"]
+    assert [group["name"] for group in shown] == ["person", "arm", "both"]
+    assert shown[0]["bins"][1] == {
+        "name": "no",
+        "kind": "goal",
+        "goal": 1,
+        "hits": 2,
+        "first": 0,
+    }
+    missed = [one["name"] for one in shown[2]["bins"] if not one["hits"]]
+    assert missed == ["yes × moving", "yes × stops"]
+
+
+def test_coverage_outlives_an_unfinished_run(files, capsys):
+    """What was judged before is told as what is judged now."""
+    report = main(["run", "arm.rv", "calm.csv", "--format", "json"])
+    assert report == 0
+    text = capsys.readouterr().out
+    kept = Report.from_json(text)
+    assert json.loads(kept.to_json())["coverage"] == json.loads(text)["coverage"]
 
 
 def test_up_to_an_instant(files):

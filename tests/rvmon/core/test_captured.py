@@ -128,3 +128,24 @@ def test_an_instance_that_begins_between_ticks_stands_as_at_the_last_one(require
             monitor.step_ns(t, values)
         found.append(outcomes(monitor.finish()))
     assert found[0] == found[1]
+
+
+@pytest.mark.parametrize(
+    ("each", "other"), [("g.k", "h.m"), ("h.m", "g.k")], ids=["whole key", "real key"]
+)
+def test_a_field_of_another_kind_may_name_an_instance(each, other):
+    """The numbers 1 and 1.0 are one."""
+    spec = rvmon.loads(
+        "spec s\nevent g(k: int)\nevent h(m: real)\nevent q\n"
+        f"requirement R\n  upon q\n  then eventually {other} == key\n  for each key in {each}\n"
+    )
+    event, field = each.split(".")
+    named, its = other.split(".")
+    found = []
+    for engine in ("auto", "c"):
+        monitor = spec.monitor(engine=engine)
+        for t, values in enumerate([{event: {field: 1}, "q": True}, {}, {named: {its: 1}}]):
+            monitor.step_ns(t, values)
+        found.append(outcomes(monitor.finish()))
+    assert found[0] == found[1]
+    assert found[0]

@@ -215,6 +215,10 @@ def test_several_payloads_where_they_can_be_told_apart():
         assert {str(one.verdict) for one in decided if one.captured["i"] > 9} <= {"P"}
 
 
+KINDS = ((0, 2), (2, 0), (3, 1))
+"""Numbers of signals with the kinds of their columns."""
+
+
 def test_rows_are_judged_as_samples(planned):
     """The same values by columns and by dictionaries give the same records."""
     rng = np.random.default_rng(3)
@@ -224,13 +228,10 @@ def test_rows_are_judged_as_samples(planned):
     absent = frozenset({"q", "mode", "f"})
     by_rows, by_samples = planned.monitor(absent), planned.monitor(absent)
     says = np.where(e, np.uint8(2), np.uint8(0))
-    columns = ((0, 2, p, None), (2, 0, x, None), (3, 1, n, None), (5, 0, None, says))
     for start, stop in ((0, 200), (200, 201), (201, 500)):
-        some = tuple(
-            (name, kind, *(None if one is None else one[start:stop].copy() for one in (own, said)))
-            for name, kind, own, said in columns
-        )
-        assert by_rows.rows(times[start:stop].copy(), some) == stop - start
+        own = [one[start:stop].copy() for one in (p, x, n, says)]
+        some = tuple((at, (kind, own[at - 1 if at else 0], None)) for at, kind in KINDS)
+        assert by_rows.rows(times[start:stop].copy(), (*some, (5, own[3], None))) == stop - start
     for t, *row in zip(times.tolist(), p.tolist(), x.tolist(), n.tolist(), e.tolist(), strict=True):
         assert by_samples.judge(t, dict(zip(("p", "x", "n", "e"), row, strict=True)), False)
     for one in (by_rows, by_samples):
@@ -240,9 +241,9 @@ def test_rows_are_judged_as_samples(planned):
     assert len(by_rows.records()[0]) > 20 * RECORD.itemsize
 
 
-def test_a_row_that_is_not_later_is_not_taken(run):
-    """Nor is what comes behind it; what stood before is."""
-    assert run.rows(np.array([1, 5, 5, 9]), ()) == 2
+def test_a_row_that_is_before_the_one_above_is_not_taken(run):
+    """Nor is what comes behind it; what stood before is, and so are several of one instant."""
+    assert run.rows(np.array([1, 5, 5, 4, 9]), ()) == 3
     assert run.times() == (1, 5, 5)
     assert run.rows(np.array([3]), ()) == 0
     assert run.rows(np.array([], np.int64), ()) == 0
@@ -250,21 +251,33 @@ def test_a_row_that_is_not_later_is_not_taken(run):
 
 
 TIMES = np.arange(8)
+REALS = (0, np.zeros(8), None)
+SAYS = np.zeros(8, np.uint8)
 WRONG: list[tuple[Any, Any]] = [
-    (TIMES, ((2, 0, np.zeros(7), None),)),
-    (TIMES, ((2, 0, np.zeros(16)[::2], None),)),
-    (TIMES, ((2, 0, np.zeros(8, np.float32), None),)),
-    (TIMES, ((2, 0, np.zeros(72, np.uint8)[4:68].view(np.float64), None),)),
-    (TIMES, ((2, 0, np.zeros(8), np.zeros(7, np.uint8)),)),
-    (TIMES, ((2, 0, None, np.zeros(8, np.uint8)),)),
-    (TIMES, ((5, 0, np.zeros(8), np.zeros(8, np.uint8)),)),
-    (TIMES, ((7, 0, None, np.zeros(8, np.uint8)),)),
-    (TIMES, ((-1, 0, np.zeros(8), None),)),
-    (TIMES, ((2, 3, np.zeros(8), None),)),
-    (TIMES, ((2, 0, 5, None),)),
+    (TIMES, ((2, (0, np.zeros(7), None)),)),
+    (TIMES, ((2, (0, np.zeros(16)[::2], None)),)),
+    (TIMES, ((2, (0, np.zeros(8, np.float32), None)),)),
+    (TIMES, ((2, (0, np.zeros(72, np.uint8)[4:68].view(np.float64), None)),)),
+    (TIMES, ((2, (0, np.zeros(8), np.zeros(7, np.uint8))),)),
+    (TIMES, ((2, (0, None, SAYS)),)),
+    (TIMES, ((5, (0, np.zeros(8), SAYS)),)),
+    (TIMES, ((7, SAYS),)),
+    (TIMES, ((-1, REALS),)),
+    (TIMES, ((2, (3, np.zeros(8), None)),)),
+    (TIMES, ((2, (1, np.zeros(8, np.int64), None)),)),
+    (TIMES, ((0, REALS),)),
+    (TIMES, ((2, (0, 5, None)),)),
+    (TIMES, ((2, (0,)),)),
     (TIMES, ((2, 0),)),
+    (TIMES, ((2,),)),
     (TIMES, (2,)),
-    (TIMES, tuple((2, 0, np.zeros(8), None) for _ in range(8))),
+    (TIMES, ((2, REALS), (2, REALS))),
+    (TIMES, tuple((2, REALS) for _ in range(8))),
+    (TIMES, ((5, SAYS, 3),)),
+    (TIMES, ((5, SAYS, ()),)),
+    (TIMES, ((5, SAYS, (REALS, REALS, REALS)),)),
+    (TIMES, ((5, SAYS, (REALS, REALS)),)),
+    (TIMES, ((5, SAYS, (3, 3)),)),
     (TIMES, []),
     (5, ()),
 ]
@@ -335,7 +348,7 @@ def test_the_layout_of_records_is_that_of_numpy(planned):
     run = planned.monitor(frozenset())
     assert run.judge(0, {"x": 0.5, "e": ({"k": -3}, {"k": 2})}, True)
     run.finish(5 * 10**9)
-    records, numbers = run.records()
+    records, numbers, *_ = run.records()
     made = np.frombuffer(records, RECORD)
     captured = np.frombuffer(numbers, NUMBER).reshape(len(made), 2)
     own = made["requirement"] == 2
@@ -362,7 +375,9 @@ def everything(planned: PlannedCore, wrong: list[list[Any]]) -> None:
     for given in WRONG:
         with suppress(ValueError, TypeError, BufferError):
             run.rows(*given)
-    run.rows(TIMES + 10**12, ((2, 0, np.zeros(8), np.zeros(8, np.uint8)),))
+    run.rows(TIMES + 10**12, ((2, (0, np.zeros(8), SAYS)),))
+    fields = ((1, TIMES, None), (2, None, None))
+    run.rows(TIMES + 10**13, ((5, None, fields),))
     for odd in ((), (1,), (1, 2, 3), ("a", {})):
         with suppress(LookupError):
             run.step_ns(*odd)
@@ -395,11 +410,11 @@ def test_other_threads_run_while_rows_are_judged(planned):
     times = np.arange(1, 200_001) * 1000
     p = times // 1000 % 2 == 0
 
-    def judged(_: int) -> tuple[bytes, bytes]:
+    def judged(_: int) -> tuple[bytes, ...]:
         run = planned.monitor(frozenset(NUMBERS[1:]))
-        assert run.rows(times, ((0, 2, p, None),)) == len(times)
+        assert run.rows(times, ((0, (2, p, None)),)) == len(times)
         run.finish(None)
-        return run.records()
+        return run.records()[:3]
 
     with ThreadPoolExecutor(3) as pool:
         found = set(pool.map(judged, range(6)))

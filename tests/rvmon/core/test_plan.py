@@ -33,6 +33,7 @@ from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
 from rvmon.core.programs import DEPTH, Code
 from rvmon.core.sections import RECORDS, Section, hash_of
+from rvmon.coverage.bins import Bins
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -83,6 +84,9 @@ requirement R7
 """
 """Something of each kind."""
 
+COUNTED = "signal p : bool\ncoverpoint c = p {yes: true, no: false}\n"
+"""What a requirement has none of."""
+
 DIAGRAM = (
     "spec s\n"
     + "".join(f"signal s{n} : bool\n" for n in range(18))
@@ -132,7 +136,10 @@ def test_every_index_of_random_specifications_is_in_its_bounds(part):
 @pytest.mark.parametrize("section", list(SECTIONS))
 def test_the_walk_finds_an_index_out_of_its_bounds(section):
     """It fails where a number of a record is changed to a large one, for each kind of record."""
-    data = packed(EVERYTHING).data
+    if section in ("WATCHES", "GROUPS"):
+        data = pack(Bins(rvmon.loads(COUNTED).checked).plan).data
+    else:
+        data = packed(EVERYTHING).data
     plan = Plan(data)
     begin, end = plan.places[plan.names.index(section)]
     size = size_of(SECTIONS[section])

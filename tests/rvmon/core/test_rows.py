@@ -1,12 +1,16 @@
 """Recordings that the core judges: as other engines do, what is refused, what is missing."""
 
 import math
+import random
 
 import numpy as np
 import pytest
+from tests.tools.forms import Compiler
+from tests.tools.tables import planned_for, random_table, rows_differ
 
 import rvmon
 from rvmon.errors import UnknownNameError
+from rvmon.testing.generate.spec import Profile, random_spec
 
 
 def spec_of(declared: str, owed: str) -> rvmon.Spec:
@@ -173,3 +177,18 @@ def test_each_row_is_an_update(owed):
     ]
     assert told[0] == told[1]
     assert any(verdict == "F" for _, _, verdict in told[0])
+
+
+def test_rows_equal_steps():
+    """Blocks of rows are judged as the samples that they hold, one by one."""
+    compiler = Compiler()
+    judged = 0
+    for seed in range(60):
+        rng = random.Random(f"rows equal steps {seed}")
+        spec = random_spec(rng, Profile(many=8, wide=10))
+        planned = planned_for(spec, compiler)
+        for _ in range(4):
+            table = random_table(rng, spec, planned.single_payloads, 200)
+            assert not rows_differ(planned, spec, table), f"seed {seed}"
+            judged += len(table.rows)
+    assert judged > 10_000

@@ -6,7 +6,7 @@ import pytest
 from tests.tools import build
 
 from rvmon.explain.dissect import dissect
-from rvmon.explain.spans import both, outside, union, until
+from rvmon.explain.spans import both, outside, union
 from rvmon.explain.truth_over_trace import Eye, subformulas
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
@@ -71,7 +71,7 @@ def _shown(sure, may, t):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_spans_are_sets(seed):
-    """Union, intersection, complement and `until` as on sets of ticks."""
+    """Union, intersection and complement as of sets of ticks."""
     rng = random.Random(seed)
 
     def some():
@@ -83,16 +83,6 @@ def test_spans_are_sets(seed):
         assert ticks(union([*left, *right])) == ticks(left) | ticks(right)
         assert ticks(both(left, right)) == ticks(left) & ticks(right)
         assert ticks(outside(left, 0, 20)) == set(range(21)) - ticks(left)
-        low = rng.randint(0, 3)
-        high = rng.choice([None, low + rng.randint(0, 4)])
-        expected = {
-            t
-            for t in range(-10, 30)
-            for s in ticks(right)
-            if t + low <= s and (high is None or s <= t + high)
-            if all(k in ticks(left) for k in range(t, s))
-        }
-        assert ticks(until(left, right, low, high)) == expected
 
 
 def test_an_attempt_of_an_instance_and_with_captures():

@@ -26,6 +26,39 @@ static rv_number read_number(void)
     return made;
 }
 
+/* Read all words of a note, and all letters that it refers to. */
+static void read_note(const rv_monitor *m, const rv_record *record)
+{
+    rv_note note;
+    if (rv_note_of(m, record, &note)) {
+        const rv_piece *piece = note.first;
+        volatile int64_t sum = 0;
+        int64_t i;
+        for (i = 0; i < note.count; i++) {
+            sum = sum ^ note.words[i];
+        }
+        for (i = 0; i < note.standing_count; i++) {
+            sum = sum ^ note.standing[i];
+        }
+        while (piece != NULL) {
+            int32_t count;
+            const int64_t *words = rv_piece_words(piece, &count);
+            count = (piece == note.last) ? note.last_count : count;
+            for (i = 0; i < count; i++) {
+                sum = sum ^ words[i];
+            }
+            piece = (piece == note.last) ? NULL : rv_piece_next(piece);
+        }
+    }
+}
+
+static bool read_open(void *user, const rv_record *record, const rv_number *captured)
+{
+    (void)captured;
+    read_note((const rv_monitor *)user, record);
+    return true;
+}
+
 static void tell(const rv_monitor *m)
 {
     const rv_record *records;
@@ -35,6 +68,7 @@ static void tell(const rv_monitor *m)
     for (i = 0; i < count; i++) {
         const rv_record *one = &records[i];
         const rv_number *captured = rv_captured(m, one);
+        read_note(m, one);
         printf("r %" PRId64 " %" PRId64 " %" PRId32 " %" PRIu32 " %d %d %d", one->triggered,
                one->decided, one->requirement, one->number, one->verdict, one->decision, one->in_doubt);
         for (k = 0; (captured != NULL) && (k < rv_captured_of(m, one->requirement)); k++) {
@@ -56,6 +90,7 @@ int main(void)
     int32_t fields_count = 0;
     int64_t t;
     char what;
+    bool noting = false;
     while (scanf(" %c %" SCNd64, &what, &t) == 2) {
         int code = RV_OK;
         if (what == 'c') { /* a plan, and the size of a block; -1: a heap */
@@ -82,6 +117,9 @@ int main(void)
             rv_set_absent(m, (int32_t)t);
         } else if (what == 'r') {
             code = rv_reset(m);
+        } else if (what == 'n') {
+            code = rv_keep_notes(m, NULL, NULL);
+            noting = code == RV_OK;
         } else if (what == 'm') {
             code = rv_reserve(m, (int32_t)t);
         } else if (what == 'u') {
@@ -108,6 +146,9 @@ int main(void)
                 }
             }
             code = rv_step(m, t, own, count);
+            if (noting) {
+                rv_each_open(m, read_open, m);
+            }
             free(own);
             free(own_fields);
             count = 0;
@@ -121,6 +162,7 @@ int main(void)
         } else if (what == 'z') {
             rv_free(m);
             m = NULL;
+            noting = false;
         } else {
             return 2;
         }

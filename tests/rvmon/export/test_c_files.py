@@ -76,6 +76,41 @@ def test_memory_is_bounded_however_long_windows_are_followed(tmp_path):
     assert used[::2] == used[1::2]
 
 
+def without_memory(run):
+    """What was printed but for the bytes that were used."""
+    return [line.rpartition(" ")[0] if line.startswith("e ") else line for line in run]
+
+
+def test_notes_change_nothing_and_are_bounded(tmp_path):
+    """Whoever keeps them: records and verdicts stay; what is not needed any more goes."""
+    cases = list(judged("notes", 120))
+    exported = Exported(tmp_path, cases, ["gcc", *STRICT, *SANITIZED])
+    runs = [(number, HEAP) for number in range(len(cases))]
+    bare, noted = exported.judge(runs), exported.judge(runs, notes=True)
+    assert list(map(without_memory, bare)) == list(map(without_memory, noted))
+    long = []
+    for time in ("held", "sampled", "sampled every 2 ns"):
+        for owed in (
+            "always F[0 ns, 9 ns] G[0 ns, 3 ns] (p or not p)",
+            "upon p then F[0 ns, 40 ns] q",
+        ):
+            spec = rvmon.loads(
+                f"time {time}\nsignal p, q : bool\nrequirement R\n  {owed}\n"
+            ).checked
+            turns = [Sample(t, {"p": t % 17 > 2, "q": t % 5 == 0}) for t in range(4000)]
+            long += [Case(spec, tuple(turns[:many])) for many in (1000, 4000)]
+    exported = Exported(tmp_path, long, ["gcc", *STRICT, *SANITIZED])
+    runs = exported.judge([(number, HEAP) for number in range(len(long))], notes=True)
+    used = [int(run[-1].split()[-1]) for run in runs]
+    told = [len(records(run)) for run in runs]
+    grown = [b - a for a, b in zip(used[::2], used[1::2], strict=True)]
+    more = [b - a for a, b in zip(told[::2], told[1::2], strict=True)]
+    assert all(size <= 400 * count for size, count in zip(grown, more, strict=True)), (
+        grown,
+        more,
+    )
+
+
 def test_short_memory_is_never_green(tmp_path):
     """Whatever the block: judged as with a heap, or refused, or said; then nothing has passed."""
     exported = Exported(tmp_path, list(judged("memory", 60)), ["gcc", *STRICT, *SANITIZED])
@@ -87,6 +122,7 @@ def test_short_memory_is_never_green(tmp_path):
         runs = exported.judge([(number, size) for size in sizes])
         assert runs[0] == ["none"]
         assert runs[-2:] == [whole, whole]
+        runs += exported.judge([(number, size) for size in sizes[::4]], notes=True)
         for run in runs:
             if run != ["none"]:
                 spoilt += sum(map(is_spoilt, halves(run), halves(whole)))

@@ -9,7 +9,7 @@ import pyarrow
 import pytest
 from pyarrow import parquet
 from tests.tools.differential import cases_of
-from tests.tools.doors import content_of, doors, whole
+from tests.tools.doors import bare, content_of, doors, in_pieces, whole
 
 import rvmon
 from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
@@ -44,6 +44,24 @@ def told(spec, trace, **arguments) -> str:
         return replace(judged(spec, trace, **arguments), trace="").to_json()
     except RvmonError as error:
         return type(error).__name__
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_core_tells_of_every_door_what_all_engines_do(seed, tmp_path):
+    """Verdicts, records, input health: of files as they are, and read in pieces of few rows."""
+    traces = TraceProfile(12, 48, advances=False)
+    spec = None
+    for part, case in enumerate(cases_of(f"core doors/{seed}", Profile(), traces, 2)):
+        spec = spec or Spec(case.spec)
+        content = content_of(random.Random(seed), case)
+        content = whole(content) if part == 1 else content
+        for door, write in doors().items() if content.rows else ():
+            trace, arguments = write(content, tmp_path)
+            expected = bare(judged(spec, trace, **arguments))
+            found = [bare(judged(spec, trace, engine="c", **arguments))]
+            with in_pieces(200):
+                found.append(bare(judged(spec, trace, engine="c", **arguments)))
+            assert found == [expected, expected], door
 
 
 @pytest.mark.law

@@ -62,13 +62,6 @@ class Open:
         self.clouded = False
         self.void = False
 
-    def unsplit(self) -> Open:
-        """The same, as if only the run that takes the unknown for the worse were there."""
-        made = Open(self.triggered, self.token, self.seen)
-        made.number, made.doubtful_number = self.number, self.doubtful_number
-        made.doubt = self.doubt
-        return made
-
 
 class Clerk(Protocol):
     """Makes attempts, and keeps the records."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rvmon.plan.inputs import Reported, payloads_of
+from rvmon.plan.instances import occurrences_with
 from rvmon.spec.checked.formula import FieldValue
 from rvmon.trace.sample import Payload, Scalar, Value
 
@@ -52,16 +53,10 @@ def seen_by(instance: Instance | None, values: Mapping[str, Reported]) -> Mappin
     if instance is None or instance.source.event not in values:
         return values
     source = instance.source
-    seen: list[Payload | None] = []
-    for payload in payloads_of(values[source.event]):
-        value = None if payload is None else _known(payload, source.field)
-        if value is None:
-            seen.append(None)
-        elif value == instance.value:
-            seen.append(payload)
+    seen = occurrences_with(source, instance.value, values[source.event])
     rest: dict[str, Reported] = {n: v for n, v in values.items() if n != source.event}
     if seen:
-        rest[source.event] = tuple(seen)
+        rest[source.event] = seen
     return rest
 
 

@@ -21,6 +21,7 @@ from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.attempts.network_letters import Letters, letter_reader
 from rvmon.monitor.attempts.waiting import learnt, position_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.monitor.explained.network import WAITING
 from rvmon.plan.standing import Standing
 from rvmon.plan.stood import Stood
 from rvmon.runtime.values import NEVER
@@ -28,12 +29,6 @@ from rvmon.trace.sample import Scalar
 
 PATIENCE = 6
 """So often it is looked before it is worked out what time brings if the letter stays."""
-
-WAITING = PASSED + 1
-"""In the place of a location: neither `FAILED` nor `PASSED`.
-
-The token of an attempt is how it stands in a network, and the position whose value it is.
-"""
 
 
 class NetworkJudge(AttemptJudge):
@@ -345,16 +340,6 @@ class NetworkJudge(AttemptJudge):
         made = Moment(network, now)
         self._moments = [*self._moments[-1:], (network, stands, made)]
         return made
-
-    def situation(self, t: int) -> object:
-        """What is known as seen from `t`; equal for runs that go on alike."""
-        self._look(2 * self.position + 1)
-        standing = frozenset(
-            (attempt.token[0], attempt.better and attempt.better[0], position_of(attempt) - t)
-            for attempt in self.attempts
-        )
-        networks = (self.worse, self.better)
-        return standing, tuple(network and network.relative(t) for network in networks)
 
     def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
         """Whether the rule for the end of a trace makes an attempt true; to be asked last."""

@@ -15,9 +15,10 @@ from rvmon.dataflow.chain import Windows
 from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import Network
 from rvmon.monitor.attempts.attempt_judge import Open
-from rvmon.monitor.attempts.network_judge import WAITING, NetworkJudge
+from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.attempts.network_letters import Clear, Letters, Noted, journal_of
 from rvmon.monitor.attempts.waiting import position_of
+from rvmon.monitor.explained.network import WAITING
 from rvmon.runtime.values import NEVER
 
 
@@ -198,12 +199,6 @@ class WindowJudge(NetworkJudge):
     def next_due(self) -> int:
         """See `NetworkJudge`."""
         return super().next_due if self._windows is None else self.due
-
-    def situation(self, t: int) -> object:
-        """See `NetworkJudge`."""
-        if self._windows is not None:
-            self._fall_back()
-        return super().situation(t)
 
     def held_at_end(self, attempt: Open, end: int, reached: int) -> bool:
         """See `NetworkJudge`."""

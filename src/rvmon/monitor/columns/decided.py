@@ -12,8 +12,8 @@ from rvmon.automaton.machine import Token
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.columns.tables import Table
 from rvmon.monitor.columns.track import UNSEEN
+from rvmon.monitor.explained.findings import Finding, Reasons
 from rvmon.monitor.records.deferred_reasons import DeferredReasons
-from rvmon.monitor.records.reasons import Finding, Reasons
 from rvmon.verdict.attempt import Attempt, decided_attempt
 from rvmon.verdict.verdict import Verdict
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.monitor.columns.decided import DecidedAttempts, Decisions
+from rvmon.monitor.explained.findings import Finding, Reasons
 from rvmon.monitor.reasons.sentence import AfterTrigger, LastWith, Place, Turned
-from rvmon.monitor.records.reasons import Finding, Reasons
 from rvmon.verdict.attempt_json import Pattern, attempt_text, numbers_texts
 from rvmon.verdict.instants import formatted, seconds_of
 

@@ -28,6 +28,7 @@ from rvmon.formula.expand import expanded
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation, UnmonitorableError
+from rvmon.formula.residual import Residual
 from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.plan.graph import Graph, graph_of, leaf_count, leaf_texts
@@ -100,9 +101,14 @@ class CompiledRequirement:
         return self._built if isinstance(self._built, Automaton) else None
 
     @cached_property
-    def slim(self) -> Automaton | None:
-        """Its automaton for those who are given verdicts only: what is owed may be merged."""
+    def shaped(self) -> Automaton | None:
+        """Its automaton as the core has it, which those of its shape share; `None`: as above."""
         return self._shapes.reduced(self._owed, self.alphabet, self._budget)
+
+    @cached_property
+    def shaped_residuals(self) -> Sequence[Residual]:
+        """What is owed in the locations of that."""
+        return self._shapes.residuals(self._owed, self.alphabet, self._budget)
 
     @property
     def _budget(self) -> Budget:

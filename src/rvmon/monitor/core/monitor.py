@@ -1,10 +1,11 @@
-"""Online monitors that the core runs; their records have no reasons."""
+"""Online monitors that the core runs."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from heapq import nsmallest
 from typing import Any
 
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -126,9 +127,17 @@ class CoreMonitor(Monitor):
         self._note_times()
 
     def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
-        """See `Monitor.owed`; without deadlines and forecasts."""
+        """See `Monitor.owed`."""
         found = [] if self._report is not None else self._core.open()
-        return Counter(one.requirement for one in found), found[:most]
+        if most is None:
+            return Counter(one.requirement for one in found), found
+        oldest: dict[object, Attempt] = {}
+        for one in found:
+            each = self._planned.instance(one)
+            if each not in oldest or one.triggered < oldest[each].triggered:
+                oldest[each] = one
+        chosen = nsmallest(most, oldest.values(), key=lambda one: one.triggered)
+        return Counter(one.requirement for one in found), chosen
 
     def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:

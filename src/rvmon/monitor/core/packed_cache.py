@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,12 +22,12 @@ class Kept:
     Attributes:
         data: the packed plan.
         single: events of which only one payload can be judged at one instant.
-        fillable: see `rvmon.plan.plan.Plan.fillable`.
+        readers: by name that is read, the ids of the requirements that do.
     """
 
     data: bytes
     single: frozenset[str]
-    fillable: frozenset[str]
+    readers: Mapping[str, tuple[str, ...]]
 
 
 class Place:
@@ -58,14 +59,14 @@ class Place:
             return None
         try:
             key, names, data = body.split(b"\n", 2)
-            single, fillable = json.loads(names)
-            found = Kept(data, frozenset(single), frozenset(fillable))
-        except (ValueError, TypeError, RecursionError):
+            single, readers = json.loads(names)
+            found = Kept(data, frozenset(single), {n: tuple(ids) for n, ids in readers.items()})
+        except (ValueError, TypeError, AttributeError, RecursionError):
             return None
         return found if key == self._key.encode() else None
 
     def write(self, made: Kept) -> None:
         """Keep a plan; if that fails, never mind."""
         if self._path is not None:
-            names = json.dumps([sorted(made.single), sorted(made.fillable)])
+            names = json.dumps([sorted(made.single), made.readers])
             keep(self._path, b"\n".join([self._key.encode(), names.encode(), made.data]))

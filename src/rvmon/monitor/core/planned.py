@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rvmon import native
@@ -21,6 +21,7 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.core.packed import Packed
     from rvmon.monitor.compiled.specification import CompiledSpec
+    from rvmon.monitor.core.notes import Note
 
 VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
 DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
@@ -32,7 +33,9 @@ _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
 _TOLD = ("requirement", "number", "triggered", "decided", "verdict", "decision", "in_doubt")
 """The fields of an attempt that the core tells."""
 
-_LATER = tuple(one.name for one in fields(Attempt) if one.name not in _TOLD)
+Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | None]
+"""What an attempt keeps: captured values, its note, how all stood then, letters but for the last
+piece of them, that; see `module_notes.h`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +49,8 @@ class PlannedCore:
         words: of signals, events, fields: a number for each label, or field.
         kinds: of the same; of events they mean nothing.
         single: of each name, whether only one payload of it can be judged at one instant.
-        fillable: see `rvmon.plan.plan.Plan.fillable`.
+        readers: by name that is read, the ids of the requirements that do.
+        compiled: the specification, to tell of attempts; `None`: there are none.
     """
 
     packed: Packed
@@ -55,7 +59,14 @@ class PlannedCore:
     words: tuple[Mapping[str, int] | None, ...]
     kinds: bytes
     single: bytes
-    fillable: frozenset[str]
+    readers: Mapping[str, tuple[str, ...]]
+    compiled: CompiledSpec | None
+
+    @property
+    def _specification(self) -> CompiledSpec:
+        if self.compiled is None:
+            raise ValueError("a plan of watches has no attempts to tell of")
+        return self.compiled
 
     @property
     def single_payloads(self) -> frozenset[str]:
@@ -115,14 +126,46 @@ class PlannedCore:
             for field, value in payload.items()
         }
 
-    def _details(self, attempt: Attempt, noted: tuple[float | None, ...] | None) -> dict[str, Any]:
-        """The fields of an attempt that are not set in C: nothing, but for captured values."""
-        bare = Attempt(attempt.requirement, 0, 0, None, attempt.verdict)
-        found = {name: getattr(bare, name) for name in _LATER}
-        if noted is not None:
-            number = self.packed.ids.index(attempt.requirement)
-            found["captured"] = self.captured.of(number, noted)
-        return found
+    def instance(self, attempt: Attempt) -> object:
+        """What is the same of attempts of one instance, or one alone with values of its own."""
+        one = self._specification.checked.requirements[attempt.requirement]
+        if one.captures:
+            return attempt.requirement, attempt.in_doubt, attempt.number
+        each = None if one.for_each is None else attempt.captured[one.for_each.name]
+        return attempt.requirement, attempt.in_doubt, each
+
+    def _details(self, attempt: Attempt, noted: Noted) -> Mapping[str, Any]:
+        """The fields of an attempt that are not set in C."""
+        from rvmon.monitor.core.notes import note_of
+
+        captured, *note = noted
+        return self.details(attempt, captured, note_of(*note))
+
+    def details(
+        self, attempt: Attempt, captured: Sequence[float | None] | None, note: Note
+    ) -> Mapping[str, Any]:
+        """The fields of an attempt that are not set in C.
+
+        Args:
+            attempt: what is set in C.
+            captured: the values that it captured; `None`: it captures none.
+            note: what the core noted of it.
+        """
+        # What tells of attempts is imported now: many are never asked.
+        from rvmon.monitor.core.notes import NotesReader
+
+        ids = self.packed.ids
+        compiled = self._specification
+        reader = compiled.forms.get(("told", ids))
+        if not isinstance(reader, NotesReader):
+            reader = NotesReader(compiled, ids)
+            compiled.forms["told", ids] = reader
+        values = () if captured is None else captured
+        return {
+            **reader.details(attempt, note),
+            "captured": self.captured.of(ids.index(attempt.requirement), values),
+            "robustness": None,
+        }
 
 
 def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) -> PlannedCore:
@@ -140,10 +183,10 @@ def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) ->
     found = compiled.forms.get(("core", ids))
     if not isinstance(found, PlannedCore):
         place = Place(spec, ids, next_law=compiled.next_law) if compiled.is_kept else None
-        found = None if place is None else _checked(spec, ids, place.read())
+        found = None if place is None else _checked(compiled, ids, place.read())
         if found is None:
             made = _made(compiled, ids)
-            found = _planned(spec, ids, made)
+            found = planned_as(spec, ids, made, compiled)
             if place is not None:
                 place.write(made)
         compiled.forms["core", ids] = found
@@ -154,17 +197,21 @@ def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
     # What makes it is imported now: it is seldom made where it is kept.
     from rvmon.core.plan import pack
     from rvmon.monitor.compiled.code_plan import plan_alone
+    from rvmon.monitor.inputs.health import readers_of
 
     plan = plan_alone(compiled, ids)
-    single = frozenset().union(*(one.single_payloads for one in compiled.chosen(ids)))
-    return Kept(pack(plan, next_law=compiled.next_law).data, single, plan.fillable)
+    chosen = compiled.chosen(ids)
+    single = frozenset().union(*(one.single_payloads for one in chosen))
+    return Kept(pack(plan, next_law=compiled.next_law).data, single, readers_of(chosen))
 
 
-def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> PlannedCore | None:
+def _checked(
+    compiled: CompiledSpec, ids: tuple[str, ...], before: Kept | None
+) -> PlannedCore | None:
     """What was kept, made ready; `None` if that is nothing, or no plan of these requirements."""
     if before is None:
         return None
-    found = _planned(spec, ids, before)
+    found = planned_as(compiled.checked, ids, before, compiled)
     try:
         found.monitor(frozenset())
     except ValueError:
@@ -172,7 +219,17 @@ def _checked(spec: CheckedSpec, ids: tuple[str, ...], before: Kept | None) -> Pl
     return found
 
 
-def _planned(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore:
+def planned_as(
+    spec: CheckedSpec, ids: tuple[str, ...], made: Kept, compiled: CompiledSpec | None = None
+) -> PlannedCore:
+    """A packed plan made ready.
+
+    Args:
+        spec: declares the names.
+        ids: of its requirements.
+        made: the plan.
+        compiled: the specification, if attempts are asked for.
+    """
     plan = packed(spec, ids, made.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:
@@ -195,7 +252,8 @@ def _planned(spec: CheckedSpec, ids: tuple[str, ...], made: Kept) -> PlannedCore
         ),
         bytes(map(_KINDS.index, kinds)),
         bytes(name in made.single for name in names),
-        made.fillable,
+        made.readers,
+        compiled,
     )
 
 

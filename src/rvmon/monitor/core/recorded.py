@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -10,8 +10,7 @@ import numpy as np
 from rvmon import native
 from rvmon.monitor.core.planned import DECISIONS, VERDICTS, PlannedCore
 from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.attempt_json import Pattern, attempt_text, numbers_texts
-from rvmon.verdict.instants import seconds_of
+from rvmon.verdict.attempt_json import attempt_text
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
@@ -24,7 +23,7 @@ _OPEN = DECISIONS.index(Decision.OPEN)
 
 RECORD = np.dtype(
     [
-        *((name, np.int64) for name in ("triggered", "decided", "captured")),
+        *((name, np.int64) for name in ("triggered", "decided", "captured", "note")),
         *(("requirement", np.int32), ("number", np.uint32)),
         *((name, np.uint8) for name in ("verdict", "decision", "in_doubt")),
     ],
@@ -39,16 +38,24 @@ _WHOLE, _REAL = 1, 2
 
 
 class RecordedAttempts(LazyAttempts):
-    """Attempts without reasons, made from the records of a run.
+    """Attempts made from the records of a run; what they say beside is worked out when read.
 
     Args:
         planned: the plan that it judged by.
         records: array of `RECORD`, in the order of reports.
         numbers: array of `NUMBER` [records, most], the values that they captured.
+        notes: of these records, and the letters that they refer to.
     """
 
-    def __init__(self, planned: PlannedCore, records: NDArray[Any], numbers: NDArray[Any]) -> None:
+    def __init__(
+        self,
+        planned: PlannedCore,
+        records: NDArray[Any],
+        numbers: NDArray[Any],
+        notes: tuple[bytes, Sequence[tuple[Any, bytes]]],
+    ) -> None:
         self._planned = planned
+        self._notes = notes
         self._ids = planned.packed.ids
         self._records = records
         self._numbers = numbers
@@ -62,7 +69,8 @@ class RecordedAttempts(LazyAttempts):
     def __getitem__(self, index: slice) -> Sequence[Attempt]: ...
     def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
         if isinstance(index, slice):
-            return RecordedAttempts(self._planned, self._records[index], self._numbers[index])
+            chosen = self._records[index], self._numbers[index]
+            return RecordedAttempts(self._planned, *chosen, self._notes)
         return self._attempt(self._records[index], self._numbers[index])
 
     def __iter__(self) -> Iterator[Attempt]:
@@ -77,41 +85,34 @@ class RecordedAttempts(LazyAttempts):
 
     def texts(self, origin: int) -> Iterator[tuple[str, str]]:
         """See `LazyAttempts`."""
-        if self._numbers.size:
-            return ((one.requirement, attempt_text(one, origin)) for one in self)
-        return self._alike_texts(origin)
-
-    def _alike_texts(self, origin: int) -> Iterator[tuple[str, str]]:
-        records = self._records
-        alike = records["requirement"].astype(np.int64)
-        for name in ("verdict", "decision", "in_doubt"):
-            alike = alike << 8 | records[name]
-        texts = np.empty(len(records), object)
-        for kind in set(alike.tolist()):  # these differ in numbers alone
-            own = np.flatnonzero(alike == kind)
-            columns: dict[str, Any] = {"number": records["number"][own].tolist()}
-            for name in ("triggered", "decided"):
-                instants = records[name][own]
-                columns[name] = instants.tolist()
-                columns[f"{name}_s"] = numbers_texts(seconds_of(instants, origin))
-            texts[own] = Pattern(self[own.item(0)], [""]).texts(columns, [])
-        return zip(map(self._ids.__getitem__, records["requirement"].tolist()), texts, strict=True)
+        return ((one.requirement, attempt_text(one, origin)) for one in self)
 
     def _attempt(self, record: Any, numbers: NDArray[Any]) -> Attempt:
-        triggered, decided, captured, requirement, number, verdict, decision, in_doubt = (
+        triggered, decided, captured, note, requirement, number, verdict, decision, in_doubt = (
             record.tolist()
         )
-        values = () if captured < 0 else tuple(map(_number_of, numbers))
-        return Attempt(
-            self._ids[requirement],
-            number,
-            triggered,
-            None if decision == _OPEN else decided,
-            VERDICTS[verdict],
-            DECISIONS[decision],
-            captured=self._planned.captured.of(requirement, values),
-            in_doubt=bool(in_doubt),
-        )
+        values = None if captured < 0 else tuple(map(_number_of, numbers))
+        made = Attempt.__new__(Attempt)
+        made.requirement = self._ids[requirement]
+        made.number = number
+        made.triggered = triggered
+        made.decided = None if decision == _OPEN else decided
+        made.verdict = VERDICTS[verdict]
+        made.decision = DECISIONS[decision]
+        made.in_doubt = bool(in_doubt)
+        made._details = self._details
+        made._noted = values, note
+        return made
+
+    def _details(
+        self, attempt: Attempt, noted: tuple[Sequence[float | None] | None, int]
+    ) -> Mapping[str, Any]:
+        """See `PlannedCore.details`."""
+        from rvmon.monitor.core.notes import note_at
+
+        captured, place = noted
+        notes, spans = self._notes
+        return self._planned.details(attempt, captured, note_at(notes, place, spans))
 
 
 def _number_of(number: Any) -> float | None:
@@ -140,7 +141,7 @@ def report_of_run(
         *_, is_complete = own
         complete[name] = bool(is_complete)
         counts[name] = {verdict: own[VERDICTS.index(verdict)] for verdict in _COUNTED}
-    records, numbers = run.records()
+    records, numbers, words, letters = run.records()
     made = np.frombuffer(records, RECORD)
     captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
     order = _order(made)
@@ -149,9 +150,9 @@ def report_of_run(
             name: fold([one for one, count in own.items() if count], complete=complete[name])
             for name, own in counts.items()
         },
-        attempts=RecordedAttempts(planned, made, captured)
+        attempts=RecordedAttempts(planned, made, captured, (words, letters))
         if order is None
-        else RecordedAttempts(planned, made[order], captured[order]),
+        else RecordedAttempts(planned, made[order], captured[order], (words, letters)),
         counts=counts,
         origin=origin,
         end=end,

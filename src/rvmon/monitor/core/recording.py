@@ -1,18 +1,23 @@
-"""Recordings that the core judges: of columns their blocks, else each sample."""
+"""Recordings that the core judges: of what comes as columns all rows at once, else each sample."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rvmon.errors import TimeOrderError
+from rvmon.monitor.core.findings import Findings
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recorded import report_of_run
 from rvmon.monitor.inputs.validate import Validator
-from rvmon.readers.source import Columns, Source
+from rvmon.readers.batch import NO_UPDATE, YES
+from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict.report import Report
@@ -20,85 +25,159 @@ from rvmon.verdict.report import Report
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_NO, _YES = np.uint8(0), np.uint8(2)
-"""What a row says of an event; see `core.h`."""
+    from rvmon.readers.batch import Batch, Cells, Occurrences
 
-_TYPES: Mapping[Kind, tuple[int, Any]] = {
-    Kind.REAL: (0, np.float64),
-    Kind.INT: (1, np.int64),
-    Kind.BOOL: (2, np.bool_),
-}
-"""How a column is laid out: its number in `core.h`, and the type of its values."""
+_LAYOUTS: Mapping[Kind, int] = {Kind.REAL: 0, Kind.INT: 1, Kind.BOOL: 2, Kind.LABEL: 1}
+"""The numbers of layouts of values in `core.h`."""
 
 
-def judge_columns(planned: PlannedCore, columns: Columns, end: int | None) -> Report:
-    """Judge a recording by its columns.
-
-    Args:
-        planned: the plan of the requirements.
-        columns: of the recording: every signal is updated in each row, an event occurs where its
-            column is true; NaN is unknown.
-        end: of the trace in ticks; `None`: its last row.
-
-    Raises:
-        NotPlainError: the columns turn out to be none.
-        TimeOrderError: an instant is not after the one before.
-    """
-    run = planned.monitor(frozenset(planned.numbers) - frozenset(columns.names))
-    before = 0
-    for block in columns.read():
-        times = np.ascontiguousarray(block.times, np.int64)
-        laid = tuple(_column(planned, name, values) for name, values in block.columns.items())
-        taken = run.rows(times, laid)
-        if taken < len(times):
-            raise _out_of_order(before + taken, int(times[taken]))
-        before += taken
-    origin, _, _ = run.times()
-    return report_of_run(planned, run, origin or 0, run.finish(end))
-
-
-def _column(
-    planned: PlannedCore, name: str, values: NDArray[Any]
-) -> tuple[int, int, NDArray[Any] | None, NDArray[np.uint8] | None]:
-    """A column as `native.Monitor.rows` takes it."""
-    number, kind = planned.numbers[name], planned.packed.signals.get(name)
-    if kind is None:
-        return number, 0, None, np.where(values, _YES, _NO)
-    layout, type_ = _TYPES[kind]
-    return number, layout, np.ascontiguousarray(values, type_), None
-
-
-def judge_samples(checked: CheckedSpec, planned: PlannedCore, source: Source) -> Report:
-    """Judge a recording by its samples.
+def judge_recording(checked: CheckedSpec, planned: PlannedCore, source: Source) -> Report:
+    """Judge a recording.
 
     Args:
         checked: the specification.
         planned: the plan of its requirements.
-        source: the recording.
+        source: the recording, in order.
 
     Raises:
-        TimeOrderError: an instant is not after the one before.
+        TimeOrderError: an instant is before the one above it.
         TraceError: a name or a value that the specification does not know, or an instant with two
-            payloads of one event.
+            payloads of one event of which one can be judged.
     """
-    declared = frozenset(planned.numbers)
-    names = source.names
-    expected = None if names is None else names & declared
-    validator = Validator(checked, expected, planned.single_payloads)
-    run = planned.monitor(frozenset() if names is None else declared - names)
-    for row, sample in enumerate(source.samples(ordered=True)):
+    judge = RecordingRun(checked, planned, source, finds=True)
+    for piece in source.pieces():
+        judge.take(piece)
+    return judge.report()
+
+
+class RecordingRun:
+    """A run of the core, and what it is to be given.
+
+    Args:
+        checked: the specification.
+        planned: the plan that it judges by.
+        source: the recording that the pieces come from.
+        finds: whether somebody asks for the health of the input.
+
+    Attributes:
+        core: the run.
+    """
+
+    def __init__(
+        self, checked: CheckedSpec, planned: PlannedCore, source: Source, *, finds: bool
+    ) -> None:
+        declared = frozenset((*checked.signals, *checked.events))
+        names = source.names
+        absent = frozenset() if names is None else declared - names
+        self._planned = planned
+        self._validator = Validator(
+            checked, None if names is None else names & declared, planned.single_payloads
+        )
+        self._expected = declared - absent
+        self._findings = Findings(checked, planned, absent) if finds else None
+        self.core = planned.monitor(absent & planned.numbers.keys())
+        self._row = 0
+        self._end = source.end
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Judge a piece of the recording, behind those before."""
+        if isinstance(piece, Sample):
+            self._take_sample(piece)
+        else:
+            self._take_batch(piece)
+
+    def _take_sample(self, sample: Sample) -> None:
         t = whole_ticks(sample.t)
-        if run.judge(t, sample.values, False):
-            continue
-        values = planned.plain(t, validator.check(t, sample.values))
-        if not run.judge(t, values, True):
-            raise _out_of_order(row, t)
-    origin, _, _ = run.times()
-    return report_of_run(planned, run, origin or 0, run.finish(source.end))
+        values = sample.values
+        if not self.core.judge(t, values, False):
+            values = self._validator.check(t, values)
+            if not self.core.judge(t, self._planned.plain(t, values), True):
+                raise TimeOrderError(
+                    f"row {self._row} at {format_ticks(t)} is not after the one before: sort the "
+                    "recording by time"
+                )
+        if self._findings is not None:
+            self._findings.note_sample(t, values)
+        self._row += 1
+
+    def _take_batch(self, batch: Batch) -> None:
+        """Judge rows; those that take a closer look as samples."""
+        count = len(batch.times)
+        done = 0
+        while done < count:
+            rest = batch.cut(done, count) if done else batch
+            columns = self._laid(rest)
+            taken = 0 if columns is None else self.core.rows(rest.times, columns)
+            if taken and self._findings is not None:
+                self._findings.note_batch(rest.cut(0, taken) if taken < len(rest.times) else rest)
+            if taken:
+                self._row += taken
+                done += taken
+            if done < count:
+                last = batch.times[done if columns is not None else -1]
+                end = int(batch.times.searchsorted(last, "right"))
+                events = self._planned.packed.events
+                for sample in coalesce(batch.rows(done, end), events, Conflicts()):
+                    self._take_sample(sample)
+                done = end
+
+    def _laid(self, batch: Batch) -> tuple[Any, ...] | None:
+        """Rows as `native.Monitor.rows` takes them; `None`: they take a closer look."""
+        if not self._expected >= {*batch.signals, *batch.events}:
+            return None
+        planned = self._planned
+        found: list[tuple[Any, ...]] = []
+        try:
+            for name, cells in batch.signals.items():
+                number = planned.numbers[name]
+                kind = planned.packed.signals[name]
+                found.append((number, _cells(cells, kind, planned.words[number])))
+            for name, one in batch.events.items():
+                says = np.ascontiguousarray(one.says)
+                found.append((planned.numbers[name], says, self._fields(name, one)))
+        except KeyError:
+            return None
+        return tuple(found)
+
+    def _fields(self, event: str, one: Occurrences) -> tuple[Any, ...] | None:
+        """The fields of an event as columns, if some have one."""
+        if not one.fields:
+            return None
+        found: list[tuple[Any, ...]] = []
+        for place, ((of, field), kind) in enumerate(self._planned.packed.fields.items()):
+            if of == event:
+                cells = one.fields.get(field)
+                words = self._planned.words[len(self._planned.numbers) + place]
+                if cells is None:
+                    nothing = np.full(len(one.says), NO_UPDATE, np.uint8)
+                    found.append((_LAYOUTS[kind], None, nothing))
+                else:
+                    found.append(_cells(cells, kind, words))
+        return tuple(found)
+
+    def report(self) -> Report:
+        """End the run."""
+        origin, _, _ = self.core.times()
+        report = report_of_run(self._planned, self.core, origin or 0, self.core.finish(self._end))
+        health = () if self._findings is None else self._findings.found(self.core)
+        return replace(report, health=health)
 
 
-def _out_of_order(row: int, t: int) -> TimeOrderError:
-    """The error of a row at `t` ticks that is not after the one before."""
-    return TimeOrderError(
-        f"row {row} at {format_ticks(t)} is not after the one before: sort the recording by time"
-    )
+def _cells(
+    cells: Cells, kind: Kind, words: Mapping[str, int] | None
+) -> tuple[int, NDArray[Any], NDArray[np.uint8] | None]:
+    """Cells as `native.Monitor.rows` takes them.
+
+    Raises:
+        KeyError: there is a label that is none.
+    """
+    values = cells.values
+    if cells.labels is not None and words is not None:
+        numbers = np.array([words.get(label, -1) for label in cells.labels], np.int64)
+        values = numbers[values]
+        if (numbers < 0).any():
+            wrong = values < 0 if cells.says is None else (values < 0) & (cells.says == YES)
+            if wrong.any():
+                raise KeyError
+    says = None if cells.says is None else np.ascontiguousarray(cells.says)
+    return _LAYOUTS[kind], np.ascontiguousarray(values), says

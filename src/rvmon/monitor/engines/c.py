@@ -1,4 +1,4 @@
-"""The engine `c`: the core, whose records have no reasons."""
+"""The engine `c`: the core."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from rvmon.monitor.engines import rows
 from rvmon.monitor.engines.registry import Asked, engine_named
-from rvmon.readers.blocks import NotPlainError
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -41,20 +40,16 @@ class C:
         return monitor
 
     def judge(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-        """By columns, else by samples."""
+        """All rows of a batch at once, samples one by one."""
         if _is_nothing(compiled, asked):
             return engine_named("auto").judge(compiled, source, asked)
         if compiled.checked.max_delay is not None:  # its samples are put in order first
             return rows.judge_samples(self, compiled, source, asked)
         from rvmon.monitor.core.planned import planned_core
-        from rvmon.monitor.core.recording import judge_columns, judge_samples
+        from rvmon.monitor.core.recording import judge_recording
 
         planned = planned_core(compiled, asked.only)
-        try:
-            columns = source.columns(lambda: planned.fillable)
-            report = judge_columns(planned, columns, source.end)
-        except NotPlainError:
-            report = judge_samples(compiled.checked, planned, source)
+        report = judge_recording(compiled.checked, planned, source)
         return replace(report, engine=self.name)
 
 

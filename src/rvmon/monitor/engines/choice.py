@@ -28,7 +28,7 @@ class EngineChoice:
 def choices(requirements: Sequence[CompiledRequirement]) -> Mapping[str, EngineChoice]:
     """What `auto` takes, by id.
 
-    Never `c`, which gives no reasons.
+    Never `c`, which makes no snapshots.
 
     Args:
         requirements: that are judged together.

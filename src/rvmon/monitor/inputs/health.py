@@ -89,6 +89,12 @@ class HealthLog:
             elif column.dtype.kind == "f":
                 self.alternations.note_known(name, len(column))
 
+    def add(self, kind: HealthKind, shown: str, name: str, times: NDArray[Any]) -> None:
+        """Count unknown values at instants, in order, of a name that is shown so."""
+        if len(times):
+            count, first = self._seen.get((kind, shown, name), (0, int(times[0])))
+            self._seen[kind, shown, name] = (count + len(times), first)
+
     def _add(self, shown: str, name: str, value: object, t: int) -> None:
         key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
         count, first = self._seen.get(key, (0, t))
@@ -101,8 +107,13 @@ class HealthLog:
         intake: Intake | None,
     ) -> list[Health]:
         """All findings of the run."""
-        readers = _readers(requirements)
-        found = self.seen(requirements)
+        return self.told(readers_of(requirements), arrivals, intake)
+
+    def told(
+        self, readers: Mapping[str, tuple[str, ...]], arrivals: Arrivals, intake: Intake | None
+    ) -> list[Health]:
+        """The same by name with the requirements that read it."""
+        found = self._seen_by(readers)
         found += self._unfed(readers, arrivals)
         found += [
             Health(HealthKind.STALE, name, count, first, readers.get(name, ()))
@@ -116,7 +127,9 @@ class HealthLog:
 
     def seen(self, requirements: Sequence[CompiledRequirement]) -> list[Health]:
         """The unknown values that were counted."""
-        readers = _readers(requirements)
+        return self._seen_by(readers_of(requirements))
+
+    def _seen_by(self, readers: Mapping[str, tuple[str, ...]]) -> list[Health]:
         return [
             Health(kind, shown, count, first, readers.get(name, ()))
             for (kind, shown, name), (count, first) in self._seen.items()
@@ -165,8 +178,8 @@ def by_name(entry: Health) -> tuple[str, HealthKind]:
     return entry.name, entry.kind
 
 
-def _readers(requirements: Sequence[CompiledRequirement]) -> dict[str, tuple[str, ...]]:
-    """By name the requirements that read it."""
+def readers_of(requirements: Sequence[CompiledRequirement]) -> dict[str, tuple[str, ...]]:
+    """By name that is read, the ids of the requirements that do."""
     readers: dict[str, tuple[str, ...]] = {}
     for compiled in requirements:
         for name in compiled.reads:

@@ -23,8 +23,6 @@ Captured = Mapping[str, Scalar]
 class EvaluatorMaker:
     """Makes evaluators, and gives them rules."""
 
-    judge_of = staticmethod(judge_of)
-
     def __init__(
         self,
         spec: CheckedSpec,
@@ -55,7 +53,7 @@ class EvaluatorMaker:
         started_elsewhere: bool = False,
     ) -> Sequence[AttemptJudge]:
         """What judges the attempts of a requirement, and what judges beside it."""
-        judge = self.judge_of(
+        judge = judge_of(
             compiled,
             self.engine,
             evaluator,

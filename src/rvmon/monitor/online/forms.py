@@ -11,7 +11,6 @@ from rvmon.monitor.compiled.code_plan import plan_requirements
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan
-from rvmon.runtime.rule import Rule
 from rvmon.runtime.unit import Unit
 
 
@@ -38,7 +37,6 @@ def forms_of(
     compiled: CompiledSpec,
     requirements: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
-    rule: type[Rule] | None = None,
     *,
     measured: bool = False,
 ) -> Forms:
@@ -48,11 +46,10 @@ def forms_of(
         compiled: the specification.
         requirements: chosen from it.
         sources: the names that can arrive; `None`: all.
-        rule: see `rvmon.codegen.python_unit.unit_class`.
         measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
     """
     fed = [one for one in requirements if one.is_fed]
-    plan = plan_requirements(compiled, fed, measured=measured, stepped=rule is not None)
+    plan = plan_requirements(compiled, fed, measured=measured)
     machines = [
         None if rule.automaton is None else one.machine("automaton")
         for one, rule in zip(fed, plan.rules, strict=True)
@@ -60,5 +57,5 @@ def forms_of(
     # What judges attempts in doubt is made when one comes up.
     machines += [None for _ in plan.hidden_of]
     others = [one for one in requirements if not one.is_fed]
-    unit = unit_class(plan, sources, Unit, rule)
+    unit = unit_class(plan, sources, Unit)
     return Forms(fed, others, plan, unit, machines)

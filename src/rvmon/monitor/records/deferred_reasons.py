@@ -10,9 +10,10 @@ from rvmon.automaton.machine import Machine
 from rvmon.monitor.attempts.attempt_judge import Clerk, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement
-from rvmon.monitor.records.explain_machine import explained, just_before
-from rvmon.monitor.records.explanation import truths_shown
-from rvmon.monitor.records.reasons import Reasons
+from rvmon.monitor.explained.explanation import truths_shown
+from rvmon.monitor.explained.findings import Reasons
+from rvmon.monitor.explained.machine import explained
+from rvmon.monitor.records.explain_machine import just_before
 from rvmon.plan.plan import Plan
 from rvmon.plan.standing import Standing
 from rvmon.plan.stood import Stood

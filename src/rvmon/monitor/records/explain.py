@@ -6,9 +6,10 @@ from rvmon.automaton.machine import Token
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge
-from rvmon.monitor.records.explain_machine import explain_decision, explain_open
-from rvmon.monitor.records.explain_network import network_open
-from rvmon.monitor.records.explanation import Explanation
+from rvmon.monitor.explained.explanation import Explanation, unborn_of
+from rvmon.monitor.explained.undecided import Judged, Undecided
+from rvmon.monitor.records.explain_machine import explain_decision, runs_of, tokens_by_now
+from rvmon.monitor.records.explain_network import networks_of
 
 
 def why_decided(
@@ -22,19 +23,34 @@ def why_decided(
             raise TypeError(f"no explanation for {type(judge).__name__}")
 
 
-def why_open(judge: AttemptJudge, attempt: Open, now: int, end: int | None = None) -> Explanation:
-    """What an undecided attempt waits for.
+def undecided(judge: AttemptJudge, attempt: Open, now: int) -> tuple[Judged, Undecided]:
+    """An undecided attempt and what judges it, as they stand.
 
     Args:
         judge: of the attempt.
         attempt: undecided.
         now: twice the instant that time has come to, one more if its letter is known.
-        end: the last instant of the trace, if it has ended.
     """
+    judged: Judged
     match judge:
         case NetworkJudge():
-            return network_open(judge, attempt, now, end)
+            judged = networks_of(judge, now)
+            worse, better = attempt.token, attempt.better or attempt.token
         case MachineJudge():
-            return explain_open(judge, attempt, now, end)
+            judged = runs_of(judge)
+            worse, better = tokens_by_now(judge, attempt, now)
         case _:
             raise TypeError(f"no explanation for {type(judge).__name__}")
+    reads, doubt = judge.flow.graph.reads, attempt.doubt
+    names = {name for place, _ in judge.leaves for name in reads[place].names}
+    return judged, Undecided(
+        judge.compiled,
+        attempt.triggered,
+        worse,
+        better,
+        doubt,
+        unborn_of(names, judge.flow.outages, doubt),
+        attempt.sure,
+        attempt.void,
+        judge.flow.is_cut,
+    )

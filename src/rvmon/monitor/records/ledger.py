@@ -9,19 +9,14 @@ from rvmon.automaton.location import FAILED, PASSED
 from rvmon.automaton.machine import Token
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.network_judge import NetworkJudge
-from rvmon.monitor.records.explain import why_decided, why_open
+from rvmon.monitor.explained.explanation import Explanation, truths_shown
+from rvmon.monitor.explained.undecided import forecast_of, why_nothing, why_open, why_settled
+from rvmon.monitor.records.explain import undecided, why_decided
 from rvmon.monitor.records.explain_network import network_details, note_decision
-from rvmon.monitor.records.explanation import Explanation, truths_shown
-from rvmon.monitor.records.forecast import forecast_of
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt, Decision, decided_attempt
 from rvmon.verdict.end import settle_at_end
 from rvmon.verdict.verdict import Verdict
-
-_SETTLED = {
-    Decision.HELD_TO_END: "held to the end of the trace",
-    Decision.POLICY: "settled by `at end: {policy}`",
-}
 
 
 class Ledger:
@@ -113,22 +108,19 @@ class Ledger:
         if verdict is Verdict.PASS and not attempt.sure:
             return
         now = max(2 * reached, 2 * end + 1)
-        why = _why_open(judge, attempt, now, end)
+        judged, its = undecided(judge, attempt, now)
+        why = why_open(judged, its, now, end)
         if decision is not Decision.OPEN:
-            reason = _SETTLED[decision].format(policy=requirement.at_end)
-            why = replace(why, reason=reason)
+            why = replace(why, reason=why_settled(decision, requirement.at_end))
         decided = None if decision is Decision.OPEN else end
         record = _record(judge, attempt, decided, verdict, decision, why)
         if decided is None:
-            record = replace(record, forecast=_forecast(judge, attempt, now))
+            record = replace(record, forecast=forecast_of(judged, its, now))
         self._decided.append((judge, attempt, record))
 
     def say_nothing(self, judge: AttemptJudge, attempt: Open) -> None:
         """Take an attempt that stays undecided, whatever comes."""
-        reason = "it was over before all that it speaks of had a value"
-        if judge.flow.is_cut:
-            reason = "it is not known which values it captured"
-        why = Explanation(reason)
+        why = why_nothing(cut=judge.flow.is_cut)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
         self.void.append((judge.compiled.rank, attempt, record))
 
@@ -146,10 +138,11 @@ class Ledger:
         return found
 
     def open_record(self, judge: AttemptJudge, attempt: Open, now: int) -> Attempt:
-        """The record of an attempt that is still running; `now` as in `why_open`."""
-        why = _why_open(judge, attempt, now)
+        """The record of an attempt that is still running; `now` as in `undecided`."""
+        judged, its = undecided(judge, attempt, now)
+        why = why_open(judged, its, now)
         record = _record(judge, attempt, None, Verdict.INCONCLUSIVE, Decision.OPEN, why)
-        return replace(record, forecast=_forecast(judge, attempt, now))
+        return replace(record, forecast=forecast_of(judged, its, now))
 
     def flush(self) -> Sequence[Attempt]:
         """Number what started, and give the records of what was decided, in the law's order."""
@@ -224,23 +217,6 @@ def _record(
         why.blame,
         in_doubt=not attempt.sure,
     )
-
-
-def _why_open(judge: AttemptJudge, attempt: Open, now: int, end: int | None = None) -> Explanation:
-    """What an undecided attempt waits for; one in doubt waits for nothing but to be met."""
-    if attempt.sure:
-        why = why_open(judge, attempt, now, end)
-        # What is owed of signals without a value does not fail, and time gives them none.
-        is_unborn = attempt.void and not judge.flow.is_cut
-        return replace(why, deadline=None) if is_unborn else why
-    if attempt.token[0] == FAILED:
-        cause = f"; {attempt.doubt}" if attempt.doubt else ""
-        return Explanation(f"it is not known whether there was a trigger{cause}")
-    return replace(why_open(judge, attempt.unsplit(), now, end), deadline=None)
-
-
-def _forecast(judge: AttemptJudge, attempt: Open, now: int) -> Verdict | None:
-    return forecast_of(judge, attempt, now) if attempt.sure and not attempt.void else None
 
 
 def _turn(entry: tuple[int, AttemptJudge, Open]) -> tuple[int, int, int]:

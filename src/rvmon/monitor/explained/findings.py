@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from rvmon.automaton.location import location_of
-from rvmon.automaton.machine import Machine, Token
+from rvmon.automaton.machine import Token
 from rvmon.formula.progress import after, value
-from rvmon.formula.residual import NO_CLOCK
+from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.reasons.cause import Cause, CauseFinder
@@ -19,6 +19,13 @@ from rvmon.monitor.reasons.sentence import Sentence
 
 Instant = TypeVar("Instant")
 """In ticks: one, or an array of them."""
+
+
+class Residuals(Protocol):
+    """What runs stand in the locations of."""
+
+    def residual(self, location: int) -> Residual:
+        """What is owed in a location."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +54,7 @@ class Reasons:
     What was owed, in which of its windows, and the letter: more makes no difference to a reason.
     """
 
-    def __init__(self, compiled: CompiledRequirement, machine: Machine) -> None:
+    def __init__(self, compiled: CompiledRequirement, machine: Residuals) -> None:
         self.words = compiled.words
         self._alphabet = compiled.alphabet
         self._machine = machine

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from rvmon.formula.core import Core
 from rvmon.formula.horizon import horizon
 from rvmon.formula.state import TRUE, UNKNOWN
-from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
-from rvmon.monitor.reasons.doubt import outage_in_words
+from rvmon.monitor.reasons.doubt import Doubt, outage_in_words
+from rvmon.plan.outages import Outage
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks
@@ -26,16 +27,16 @@ class Explanation:
 
 
 def earlier(
-    attempt: Open, worse: tuple[int, bool] | None, better: tuple[int, bool] | None
+    worse: tuple[int, bool] | None, better: tuple[int, bool] | None, *, void: bool
 ) -> int | None:
     """When two runs come to a decision: the one for the worse has to pass, or the other to fail.
 
     Args:
-        attempt: whose they are; one that is void does not pass.
         worse: what time alone makes of the run that takes the unknown for the worse, and when.
         better: the same of the run that takes it for the better.
+        void: whether the attempt does not pass.
     """
-    found = [worse[0]] if worse is not None and worse[1] and not attempt.void else []
+    found = [worse[0]] if worse is not None and worse[1] and not void else []
     found += [better[0]] if better is not None and not better[1] else []
     return min(found, default=None)
 
@@ -46,30 +47,35 @@ def still_owed(owed: str, end: int | None) -> str:
     return f"still owed{when}: {owed}"
 
 
-def unborn(judge: AttemptJudge, attempt: Open, end: int | None) -> str:
-    """Which of what a requirement reads has had no value so far: nothing holds of it, or fails.
+def unborn_of(
+    names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
+) -> tuple[Outage, ...]:
+    """Which of some names have had no value so far; what has left the attempt open is named there.
 
-    What has left the attempt open is named there.
+    Args:
+        names: that a requirement reads.
+        outages: what is not known now.
+        doubt: of the attempt.
     """
-    reads, outages = judge.flow.graph.reads, judge.flow.outages
-    names = {name for place, _ in judge.leaves for name in reads[place].names & outages.keys()}
-    if attempt.doubt is not None:
-        names -= {one.name for one in attempt.doubt.outages}
-    found = [outages[name] for name in sorted(names)]
+    told = set() if doubt is None else {one.name for one in doubt.outages}
+    found = (outages[name] for name in sorted(set(names) & outages.keys() - told))
+    return tuple(one for one in found if one.why is HealthKind.MISSING)
+
+
+def unborn(outages: Sequence[Outage], end: int | None) -> str:
+    """Which of what a requirement reads has had no value so far: nothing holds of it, or fails."""
     ended = "" if end is not None else " so far"
-    return "".join(
-        f"; {outage_in_words(one)}{ended}" for one in found if one.why is HealthKind.MISSING
-    )
+    return "".join(f"; {outage_in_words(one)}{ended}" for one in outages)
 
 
-def longer(judge: AttemptJudge, attempt: Open, end: int | None) -> str:
+def longer(owed: Core, triggered: int, end: int | None) -> str:
     """How much longer a trace that has ended would decide an attempt, whatever it brings."""
     if end is None:
         return ""
-    reach = horizon(judge.compiled.obligation.owed)
+    reach = horizon(owed)
     if reach is None:
         return "; it has no deadline"
-    latest = attempt.triggered + reach
+    latest = triggered + reach
     if latest <= end:
         return "; 1 ns more would have decided it"
     return f"; a recording more than {format_ticks(latest - end)} longer would have decided it"

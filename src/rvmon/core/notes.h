@@ -1,0 +1,48 @@
+/* Notes: what the files share that keep and tell them. */
+#ifndef RVMON_NOTES_H
+#define RVMON_NOTES_H
+
+#include "calls.h"
+
+/* Truths in a word, two bits each. */
+#define TRUTHS_IN_WORD 32
+/* Letters in a piece. */
+#define LETTERS_IN_PIECE 64
+
+static inline int32_t words_for(int32_t nodes)
+{
+    return (nodes + TRUTHS_IN_WORD - 1) / TRUTHS_IN_WORD;
+}
+
+static inline int64_t *entry_of(const truths *ring, int32_t i, int32_t words)
+{
+    return &ring->words[(int64_t)((ring->head + i) & (ring->room - 1)) * (words + 1)];
+}
+
+/* ---- notes.c */
+stood stood_of(const run *r, int32_t node, bool before);
+void pack_truths(const run *r, list nodes, bool before, int64_t *words);
+const int64_t *truths_at(const truths *ring, int32_t words, int64_t t);
+int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words);
+
+/* ---- letters.c */
+rv_piece *made_piece(rv_monitor *m, int32_t stride);
+rv_piece *next_piece(rv_monitor *m, noting *n, int32_t stride);
+void forget_letters(rv_monitor *m, noting *n);
+int32_t span_from(rv_monitor *m, noting *n, int64_t begin);
+void unpin_letters(rv_monitor *m);
+
+/* ---- told.c */
+enum { NOTE_DECIDED, NOTE_OPEN, NOTE_NOTHING };
+enum {
+    NOTE_NETWORK = 1,          /* a network judges */
+    NOTE_CUT = 2,              /* it is not known any more which values were captured */
+    NOTE_PARTED = 4,           /* the two readings differ */
+    NOTE_HOLLOW = 8,
+    NOTE_SURE = 16
+};
+/* Words before those of the leaves. */
+#define NOTE_HEAD 7
+void drop_told_open(rv_monitor *m);
+
+#endif

@@ -1,0 +1,1 @@
+"""What records say beside the verdict, from plain data: whoever judged has noted it."""

@@ -1,0 +1,143 @@
+"""Rows as columns: values, what each row says of them, labels, payloads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import repeat
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.trace.sample import Sample, Value
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+NO, UNKNOWN, YES, NO_UPDATE = 0, 1, 2, 255
+"""What a row may say of a name: an event does not occur, it is unknown, it is so, nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """The values of a signal or of a field.
+
+    Attributes:
+        values: float64[n], int64[n] or bool[n]; of labels int32[n], places in `labels`. NaN is
+            unknown.
+        says: uint8[n], `UNKNOWN`, `YES` or `NO_UPDATE`; `None`: there is a value in each row.
+        labels: what the places stand for; `None`: these are no labels.
+    """
+
+    values: NDArray[Any]
+    says: NDArray[np.uint8] | None = None
+    labels: Sequence[str] | None = None
+
+    @property
+    def first_said(self) -> int | None:
+        """The first row that says something, of which there is one."""
+        if self.says is None:
+            return 0
+        said = self.says != NO_UPDATE
+        return int(said.argmax()) if said.any() else None
+
+    def cut(self, start: int, stop: int) -> Cells:
+        """Some of the rows."""
+        says = None if self.says is None else self.says[start:stop]
+        return replace(self, values=self.values[start:stop], says=says)
+
+    def of_rows(self, start: int, stop: int) -> Iterator[Any]:
+        """What rows say as samples have it; `NO_UPDATE` itself: nothing."""
+        values = self.values[start:stop].tolist()
+        says = repeat(YES) if self.says is None else self.says[start:stop].tolist()
+        for value, said in zip(values, says, strict=False):
+            if said == NO_UPDATE:
+                yield _NOTHING
+            elif said == UNKNOWN:
+                yield None
+            else:
+                yield value if self.labels is None else self.labels[value]
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrences:
+    """Where an event occurs.
+
+    Attributes:
+        says: uint8[n].
+        fields: by name; a row with a value of one has a payload.
+    """
+
+    says: NDArray[np.uint8]
+    fields: Mapping[str, Cells] = field(default_factory=dict)
+
+    def cut(self, start: int, stop: int) -> Occurrences:
+        """Some of the rows."""
+        fields = {name: one.cut(start, stop) for name, one in self.fields.items()}
+        return Occurrences(self.says[start:stop], fields)
+
+    def unknown_at(self, times: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The instants at which it may occur."""
+        found: NDArray[np.int64] = times[self.says == UNKNOWN]
+        return found
+
+    def of_rows(self, start: int, stop: int) -> Iterator[Any]:
+        """As `Cells.of_rows`."""
+        payloads: list[dict[str, Any]] = [{} for _ in range(start, stop)]
+        for name, one in self.fields.items():
+            for payload, value in zip(payloads, one.of_rows(start, stop), strict=True):
+                if value is not _NOTHING:
+                    payload[name] = value
+        for said, payload in zip(self.says[start:stop].tolist(), payloads, strict=True):
+            yield (payload or True) if said == YES else _SAID[said]
+
+
+_NOTHING = object()
+
+_SAID = {NO: False, UNKNOWN: None, NO_UPDATE: _NOTHING}
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Some rows of a recording.
+
+    Attributes:
+        times: int64[n] ticks; there may be several rows of one instant.
+        signals: by name.
+        events: by name.
+        first: number of the first row, or of its line.
+    """
+
+    times: NDArray[np.int64]
+    signals: Mapping[str, Cells]
+    events: Mapping[str, Occurrences]
+    first: int = 0
+
+    def cut(self, start: int, stop: int) -> Batch:
+        """Some of the rows."""
+        return Batch(
+            self.times[start:stop],
+            {name: one.cut(start, stop) for name, one in self.signals.items()},
+            {name: one.cut(start, stop) for name, one in self.events.items()},
+            self.first + start,
+        )
+
+    def rows(self, start: int, stop: int) -> Iterator[Sample]:
+        """Some of the rows, one by one."""
+        columns: dict[str, Iterator[Any]] = {
+            **{name: one.of_rows(start, stop) for name, one in self.signals.items()},
+            **{name: one.of_rows(start, stop) for name, one in self.events.items()},
+        }
+        for t in self.times[start:stop].tolist():
+            found: dict[str, Value] = {}
+            for name, cells in columns.items():
+                value = next(cells)
+                if value is not _NOTHING:
+                    found[name] = value
+            yield Sample(t, found)
+
+    def up_to(self, until: int | None) -> Batch:
+        """The rows up to an instant (ticks); all of them without one."""
+        if until is None or not len(self.times) or self.times[-1] <= until:
+            return self
+        return self.cut(0, int(self.times.searchsorted(until, "right")))

@@ -1,0 +1,149 @@
+"""Notes of the core: what its records say beside the verdict, whenever that is read."""
+
+import gc
+import pickle
+import random
+
+import pytest
+from benchmarks.reason_differential import compare
+from tests.tools.drive import feed
+
+import rvmon
+from rvmon.session import Spec
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+
+MS = 1_000_000
+
+
+def spec_of(text):
+    """A specification in held time."""
+    return rvmon.loads(f"spec watch\ntime held\n{text}")
+
+
+RESPONSE = """
+signal p, q : bool
+requirement R "answer"
+  upon rise(p)
+  then within 5 ms q
+requirement W "lasting"
+  upon rise(p)
+  then eventually[0 ms, 20 ms] always[0 ms, 3 ms] q
+"""
+
+
+@pytest.mark.parametrize("model", list(TimeModel), ids=str)
+def test_the_core_tells_what_auto_tells(model):
+    """All fields, of decided and open attempts, with what is unknown, keys and captures."""
+    from collections import Counter
+
+    tally, wrong = Counter(), []
+    for number in range(24):
+        rng = random.Random(f"notes/{model}/{number}")
+        spec = Spec(random_spec(rng, Profile(time=model)))
+        for _ in range(2):
+            wrong += compare(spec, random_trace(rng, spec.checked, TraceProfile()), tally)
+    assert not wrong, wrong[0]
+    assert sum(count for what, count in tally.items() if what.startswith("attempts")) > 200
+    assert sum(count for what, count in tally.items() if "prefix" in what) > 50
+
+
+def test_a_reason_can_be_read_long_after(tmp_path):
+    """After many samples, after a reset, when the monitor is gone, in another process."""
+    monitor = spec_of(RESPONSE).monitor(engine="c")
+    monitor.step_ns(0, {"p": False, "q": False})
+    monitor.step_ns(7 * MS, {"p": True})
+    failed = [*monitor.advance_ns(13 * MS), *monitor.advance_ns(30 * MS)]
+    copies = pickle.dumps(monitor.advance_ns(31 * MS)), list(failed)
+    for t in range(32, 20_000):
+        monitor.step_ns(t * MS, {"p": t % 2 == 0, "q": t % 7 == 0})
+    monitor.reset()
+    monitor.step_ns(0, {"p": True, "q": True})
+    del monitor
+    gc.collect()
+    first, second = failed
+    assert first.reason == (
+        "`q` had to come true between 0.007 s and 0.012 s, and did not; "
+        "it had never been true before"
+    )
+    assert dict(first.at_trigger) == {"p": True, "q": False}
+    assert first.deadline == 12 * MS
+    assert second.requirement == "W"
+    assert second.reason.startswith("`for 3 ms q` had to come true between 0.007 s and 0.027 s")
+    assert pickle.loads(pickle.dumps(copies[1])) == failed  # noqa: S301
+
+
+def test_reasons_of_a_report_are_those_of_its_monitor():
+    """What a step handed out and what the report has are equal in all they say."""
+    monitor = spec_of(RESPONSE).monitor(engine="c")
+    told = []
+    for t in range(400):
+        told += monitor.step_ns(t * MS, {"p": t % 9 < 4, "q": t % 5 == 0})
+    report = monitor.finish_ns(400 * MS)
+    decided = {(one.requirement, one.number): one for one in report.attempts}
+    assert len(told) > 50
+    for one in told:
+        assert decided[one.requirement, one.number] == one
+
+
+def test_many_open_attempts_say_what_they_wait_for():
+    """Each says its own deadline, however many are open."""
+    spec = spec_of("event p\nsignal q : bool\nrequirement R\n  upon p\n  then within 200 s q\n")
+    monitor = spec.monitor(engine="c")
+    for t in range(20_000):
+        monitor.step_ns(t * MS, {"p": True, "q": False})
+    waiting = monitor.open
+    assert len(waiting) == 20_000
+    assert [one.deadline for one in waiting[::1000]] == [
+        (t + 200_000) * MS for t in range(0, 20_000, 1000)
+    ]
+    assert waiting[7].owed == "`within 200 s q` by 200.007 s"
+    assert dict(waiting[7].at_trigger) == {"p": True, "q": False}
+    counts, oldest = monitor.owed(1)
+    assert counts == {"R": 20_000}
+    assert [one.number for one in oldest] == [1]
+
+
+def test_letters_are_those_of_the_attempt():
+    """Of attempts that share pieces of letters each is told of by its own."""
+    text = "signal p, q : bool\nrequirement W\n  upon rise(p)\n"
+    spec = spec_of(f"{text}  then eventually[0 ms, 900 ms] always[0 ms, 9 ms] q\n")
+    rng = random.Random(7)
+    samples = [
+        (t * MS, {"p": rng.random() < 0.5, "q": rng.random() < 0.9}) for t in range(0, 3000, 2)
+    ]
+    core, auto = spec.monitor(engine="c"), spec.monitor()
+    told, wanted = [], []
+    for t, values in samples:
+        told += core.step_ns(t, values)
+        wanted += auto.step_ns(t, values)
+    assert len(wanted) > 100
+    assert told == wanted
+
+
+def test_what_an_endless_run_owes_is_told_by_its_last_part():
+    """An attempt that is open all the time says why it failed, long after what it saw first."""
+    spec = spec_of(
+        "signal p, q : bool\nrequirement U\n  upon start\n  then always (p -> within 3 ms q)\n"
+    )
+    core, auto = spec.monitor(engine="c"), spec.monitor()
+    for t in range(30_000):
+        values = {"p": t % 4 == 0, "q": t % 4 == 2 and t < 29_990}
+        told, wanted = core.step_ns(t * MS, values), auto.step_ns(t * MS, values)
+        assert [*told] == [*wanted]
+    (failed, *_) = core.finish().attempts
+    assert failed.verdict.name == "FAIL"
+    assert failed.reason.startswith("`q` had to come true between 29.98")
+
+
+def test_open_attempts_are_told_of_at_any_time():
+    """To ask changes nothing of what is said later."""
+    rng = random.Random(3)
+    spec = Spec(random_spec(rng, Profile(time=TimeModel.HELD, captures=True)))
+    case = random_trace(rng, spec.checked, TraceProfile())
+    asked, other = spec.monitor(engine="c"), spec.monitor(engine="c")
+    for action in case.actions:
+        assert feed(asked, action) == feed(other, action)
+        assert asked.open == asked.open
+    assert asked.finish_ns(case.end).attempts == other.finish_ns(case.end).attempts

@@ -1,0 +1,341 @@
+"""What the core keeps beside what becomes of attempts."""
+
+import random
+import struct
+from dataclasses import replace
+
+import pytest
+from tests.tools.coverage import with_random_coverage
+from tests.tools.plan_reader import Plan, layouts, walk
+from tests.tools.watched import truths_plan
+
+import rvmon
+from rvmon.core import sections
+from rvmon.core.plan import pack
+from rvmon.core.sections import Section, hash_of
+from rvmon.coverage.bins import Bins
+from rvmon.dataflow.network_plan import plan_of_all
+from rvmon.errors import RvmonError
+from rvmon.formula.core_form import Lowering
+from rvmon.formula.factory import Factory
+from rvmon.monitor import compile_spec
+from rvmon.monitor.compiled.code_plan import plan_alone
+from rvmon.monitor.core.packed_cache import Kept
+from rvmon.monitor.core.planned import planned_as
+from rvmon.monitor.core.watching import known_truths
+from rvmon.plan.plan import WatchGroup
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.trace.sample import Sample
+
+AHEAD = "signal p : bool\nsignal x : real\nrequirement R\n  upon p\n  then within 3 ns x > 1\n"
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_every_index_of_a_plan_that_judges_nothing_is_in_its_bounds(seed):
+    """What all requirements owe is kept the truths of."""
+    compiled = compile_spec(random_spec(random.Random(seed), Profile(requirements=3, depth=3)))
+    plan = Plan(pack(truths_plan(compiled)).data)
+    assert plan.records["PARTS"][0]["truths"] == 0
+    walk(plan)
+
+
+def owed(text):
+    """The specification, and what its requirement owes."""
+    checked = rvmon.loads(text).checked
+    consequent = checked.requirements["R"].consequent
+    return checked, Lowering(Factory(), checked.period, False).core(consequent, True)
+
+
+def truths(text, values, end):
+    """Where what is owed is surely true, and surely false."""
+    checked, core = owed(text)
+    samples = [Sample(t, one) for t, one in values.items()]
+    (found,) = known_truths(checked, [core], samples, end, None, {})
+    return found.true, found.false
+
+
+@pytest.mark.parametrize(
+    ("time", "expected"),
+    [
+        ("held", (((4, 9),), ((2, 3),))),
+        ("sampled every 2 ns", (((3, 4),), ((1, 2),))),
+        ("sampled", (((1, 1),), ((0, 0),))),
+    ],
+)
+def test_truths_reach_as_far_as_they_are_known(time, expected):
+    """What looks ahead is known where the recording decides it: of its last instants it is not."""
+    values = {2: {"x": 0.0}, 7: {"x": 2.0}, 10: {"x": 0.0}}
+    assert truths(f"time {time}\n{AHEAD}", values, 12) == expected
+
+
+def test_an_unknown_value_is_neither_true_nor_false():
+    """It ends what is known, and parts the two readings."""
+    text = "signal p : bool\nrequirement R\n  always p\n".replace(
+        "always p", "upon start\n  then p"
+    )
+    values = {0: {"p": True}, 4: {"p": None}, 6: {"p": False}}
+    assert truths(text, values, 8) == (((0, 3),), ((6, 8),))
+
+
+def test_another_run_begins_anew():
+    """Nothing is left of the one before, unknown values among it."""
+    text = "signal p : bool\nrequirement R\n  upon start\n  then p\n"
+    checked = rvmon.loads(text).checked
+    compiled = compile_spec(checked)
+    plan = truths_plan(compiled)
+    planned = planned_as(checked, (), Kept(pack(plan).data, frozenset(), frozenset()))
+    place = plan_of_all(plan.truths, plan.gap).places[plan.truths[0]]
+    run = planned.monitor(frozenset())
+    seen = []
+    for values in ([None, True], [True, None], [None, True]):
+        for t, value in enumerate(values):
+            assert run.judge(t, {"p": value}, True)
+        run.finish(3)
+        seen.append(run.truths(place))
+        run.reset()
+    assert seen[0] == seen[2] != seen[1]
+    assert seen[0] == (struct.pack("=qq", 1, 3), b"")
+    assert run.truths(place) == (b"", b"")
+
+
+@pytest.mark.parametrize("place", [-1, 99, 1 << 40])
+def test_an_operator_that_is_none(place):
+    """It is refused, and so is any of a plan that keeps no truths."""
+    compiled = compile_spec(rvmon.loads(AHEAD).checked)
+    planned = planned_as(
+        compiled.checked, (), Kept(pack(truths_plan(compiled)).data, frozenset(), frozenset())
+    )
+    with pytest.raises(ValueError, match="keeps no truths"):
+        planned.monitor(frozenset()).truths(place)
+
+
+BINS = """signal p, q : bool
+event e
+coverpoint level = p {yes: true, no: false}
+coverpoint often {e: e, both: p and q}
+coverpoint asked = p {yes: true, no: false}
+  upon q
+cross all = level, often
+"""
+
+
+def bins(text, **law):
+    """What the core counts by, and the plan of it."""
+    made = Bins(rvmon.loads(text).checked)
+    data = pack(made.plan, **law).data
+    return made, planned_as(made.spec, (), Kept(data, frozenset(), frozenset()))
+
+
+def changed(data, section, record, name, value):
+    """A plan with another number in a record."""
+    fields = layouts()[record]
+    names = [one for one, _ in fields]
+    before = "".join(form for _, form in fields[: names.index(name)])
+    made = bytearray(data)
+    at = Plan(data).places[section][0] + struct.calcsize(f"={before}")
+    struct.pack_into(f"={len(value)}i", made, at, *value)
+    struct.pack_into("=Q", made, 24, hash_of(bytes(made[sections.HEADER.size :])))
+    return bytes(made)
+
+
+def is_taken(data):
+    """Whether the core takes a plan."""
+    checked = rvmon.loads(BINS).checked
+    planned = planned_as(checked, (), Kept(data, frozenset(), frozenset()))
+    try:
+        planned.monitor(frozenset())
+    except ValueError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_every_index_of_what_is_counted_is_in_its_bounds(seed):
+    """Whatever bins, occasions and crosses there are."""
+    profile = Profile(requirements=1, captures=False, for_each=False)
+    spec = with_random_coverage(random.Random(seed), profile)
+    plan = Plan(pack(Bins(spec).plan).data)
+    assert plan.records["WATCHES"]
+    assert len(plan.records["GROUPS"]) == len(spec.coverpoints) + len(spec.crosses)
+    walk(plan)
+
+
+@pytest.mark.parametrize(
+    ("section", "record", "name", "value"),
+    [
+        (Section.PARTS, "part_plan", "truths", (1,)),
+        (Section.PARTS, "part_plan", "truths", (-2,)),
+        (Section.PARTS, "part_plan", "watches", (1, 7)),
+        (Section.PARTS, "part_plan", "watches", (0, -1)),
+        (Section.PARTS, "part_plan", "groups", (0, 5)),
+        (Section.WATCHES, "watch_plan", "node", (99,)),
+        (Section.WATCHES, "watch_plan", "node", (-1,)),
+        (Section.WATCHES, "watch_plan", "is_pulse", (2,)),
+        (Section.WATCHES, "watch_plan", "groups", (1 << 30, 1)),
+        (Section.GROUPS, "group_plan", "occasion", (7,)),
+        (Section.GROUPS, "group_plan", "occasion", (-2,)),
+        (Section.GROUPS, "group_plan", "first", (1,)),
+        (Section.GROUPS, "group_plan", "axes", (0, 0)),
+        (Section.GROUPS, "group_plan", "axes", (0, 1)),
+        (Section.GROUPS, "group_plan", "axes", (1 << 30, 2)),
+        (Section.LINKS, "link_plan", "judge", (7,)),
+        (Section.LINKS, "link_plan", "judge", (-1,)),
+        (Section.LINKS, "link_plan", "kind", (9,)),
+        (Section.LINKS, "link_plan", "kind", (1,)),
+    ],
+)
+def test_what_leads_nowhere_is_refused(section, record, name, value):
+    """The core takes the plan as it was packed, and no other number in it."""
+    data = pack(Bins(rvmon.loads(BINS).checked).plan).data
+    assert is_taken(data)
+    assert not is_taken(changed(data, section, record, name, value))
+
+
+def test_axes_that_are_none_are_refused():
+    """So are items that nobody has room for."""
+    data = pack(Bins(rvmon.loads(BINS).checked).plan).data
+    plan = Plan(data)
+    first, count = plan.records["GROUPS"][-1]["axes"]
+    at = plan.places[Section.LISTS][0] + 4 * first
+    assert (count, plan.run("LISTS", first, count)) == (4, (0, 2, 2, 2))
+    for axes in ((0, 0, 2, 2), (-1, 2, 2, 2), (6, 2, 2, 2), (0, 2, 2, 1 << 30)):
+        made = bytearray(data)
+        struct.pack_into("=4i", made, at, *axes)
+        struct.pack_into("=Q", made, 24, hash_of(bytes(made[sections.HEADER.size :])))
+        assert not is_taken(bytes(made))
+    made = Bins(rvmon.loads(BINS).checked).plan
+    large = replace(made, groups=(WatchGroup((range(7),) * 8, None),))
+    with pytest.raises(RvmonError, match="combinations"):
+        pack(large)
+
+
+def test_hits_begin_anew_with_each_run():
+    """And what stands of a run before does not stand any more."""
+    made, planned = bins(BINS)
+    run = planned.monitor(frozenset())
+    for _ in range(2):
+        assert not any(run.hits())
+        for t, values in enumerate([{"p": True, "q": True, "e": True}, {"e": True}, {"p": False}]):
+            assert run.judge(t, values, True)
+        hits = made.hits(run.hits())
+        assert {name: one.count for name, one in hits["all"].items()} == {
+            "yes × e": 2,
+            "yes × both": 1,
+        }
+        assert [one.first for one in hits["level"].values()] == [0, 2]
+        run.reset()
+
+
+def test_what_comes_too_late_is_not_counted():
+    """Nor does it concern anybody where no requirement is."""
+    made, planned = bins(BINS)
+    run = planned.monitor(frozenset())
+    assert run.judge(0, {"p": True, "q": False}, True)
+    assert run.judge(9, {"p": False}, True)
+    assert run.late([0, 1], 5)
+    assert {name: hit.count for name, hit in made.hits(run.hits())["level"].items()} == {
+        "yes": 1,
+        "no": 1,
+    }
+
+
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 ns"])
+def test_what_is_lost_hits_nothing_and_ends_nothing(time):
+    """Behind an outage it is not known when an occasion came, nor that a stretch had ended."""
+    made, planned = bins(f"time {time}\n{BINS}", next_law=True)
+    run = planned.monitor(frozenset())
+    assert run.judge(0, {"p": True, "q": False}, True)
+    assert run.lose([0, 1], 5)
+    assert run.found([0, 1], 8)
+    assert run.judge(9, {"p": True, "q": True}, True)
+    assert run.judge(12, {"q": False}, True)
+    assert run.judge(15, {"q": True}, True)
+    run.finish(20)
+    hits = made.hits(run.hits())
+    counted = {name: {item: one.count for item, one in own.items()} for name, own in hits.items()}
+    assert counted == {
+        "level": {"yes": 1},
+        "often": {"both": 2},
+        "asked": {"yes": 1},
+        "all": {"yes × both": 2},
+    }
+    assert hits["asked"]["yes"].first == 15
+
+
+MANY = "signal a, b : bool\nrequirement {0}\n  upon a\n  then within {1} s b\n"
+
+
+def traced(text):
+    """The plan of requirements of which it is asked where attempts go."""
+    compiled = compile_spec(rvmon.loads(text).checked)
+    plan = plan_alone(compiled, traced=list(compiled.requirements))
+    data = pack(plan).data
+    ids = tuple(compiled.requirements)
+    return compiled, data, planned_as(compiled.checked, ids, Kept(data, frozenset(), frozenset()))
+
+
+def moves(run, number):
+    """From which location to which attempts went: how often, and when first."""
+    locations, counted = run.passages(number)
+    return {
+        divmod(place, locations): hit
+        for place, hit in enumerate(struct.iter_unpack("=qq", counted))
+        if hit[0]
+    }
+
+
+def test_a_segment_adds_its_size():
+    """Many attempts that go the same way at once count as many, for each requirement its own."""
+    text = MANY.format("R", 3000) + MANY.format("S", 5).partition("\n")[2]
+    compiled, data, planned = traced(text)
+    one, other = Plan(data).records["AUTOMATA"][:2]
+    assert one["edges"] == other["edges"]
+    automaton = compiled.requirements["R"].automaton
+    start = automaton.initial
+    (waiting,) = set(range(2, len(automaton.locations))) - {start}
+    run = planned.monitor(frozenset())
+    second = 10**9
+    for k in range(100):
+        assert run.judge(2 * k * second, {"a": True, "b": False}, True)
+        assert run.judge((2 * k + 1) * second, {"a": False}, True)
+    assert run.judge(200 * second, {"b": True}, True)
+    run.finish(None)
+    begun, fast, slow = {(start, start): (100, 0)}, 2, 98
+    assert moves(run, 0) == begun | {(start, waiting): (100, 0), (waiting, 1): (100, 200 * second)}
+    late = 5 * second + 1
+    assert moves(run, 1) == begun | {
+        (start, waiting): (100, 0),
+        (waiting, 0): (slow, late),
+        (waiting, 1): (fast, 200 * second),
+    }
+    run.reset()
+    assert moves(run, 0) == {}
+
+
+def test_an_attempt_in_two_minds_goes_nowhere():
+    """Unknown values that make a difference; what makes none is no other letter."""
+    text = "signal a, b, c : bool\nrequirement R\n  upon a\n  then within 2 s (b and not c)\n"
+    compiled, _, planned = traced(text)
+    start = compiled.requirements["R"].automaton.initial
+    run = planned.monitor(frozenset())
+    for t, values in enumerate(
+        [{"a": True, "b": None, "c": False}, {"a": False, "b": False}, {"a": True, "c": None}]
+    ):
+        assert run.judge(t, values, True)
+    run.finish(3)
+    assert moves(run, 0)[start, start] == (1, 2)
+
+
+@pytest.mark.parametrize(
+    ("record", "name", "value"),
+    [("automaton_plan", "locations", (65,)), ("judge_plan", "automaton", (-1,))],
+)
+def test_moves_are_counted_in_small_automata_alone(record, name, value):
+    """What asks for others is refused."""
+    _, data, planned = traced(MANY.format("R", 3))
+    planned.monitor(frozenset())
+    section = Section.AUTOMATA if record == "automaton_plan" else Section.JUDGES
+    kept = Kept(changed(data, section, record, name, value), frozenset(), frozenset())
+    checked = rvmon.loads(MANY.format("R", 3)).checked
+    with pytest.raises(ValueError, match="plan"):
+        planned_as(checked, ("R",), kept).monitor(frozenset())
