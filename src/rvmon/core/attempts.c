@@ -214,6 +214,7 @@ void lay_down(run *r, int32_t index, int32_t at)
     judge *j = &r->judges[index];
     attempt_at(r->home, at)->next = j->moot;
     j->moot = at;
+    r->home->monitor->laid_count++;
     if (r->standing != NULL) {
         note_moot(r, index, attempt_at(r->home, at)->triggered);
     }

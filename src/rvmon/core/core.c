@@ -87,6 +87,7 @@ static bool begin_run(rv_monitor *m)
     int32_t i;
     m->record_count = 0;
     m->captured_count = 0;
+    m->laid_count = 0;
     forget_notes(m, 0, 0);
     m->sorted = 0;
     m->began = RV_NO_TIME;

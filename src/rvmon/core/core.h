@@ -165,6 +165,13 @@ const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
 int32_t rv_captured_of(const rv_monitor *m, int32_t requirement);
 void rv_forget_records(rv_monitor *m);
 
+/* For a run of weeks: have but the newest records of each requirement and verdict be kept, so many, and
+ * as many of the attempts that stay open for good. Nothing is dropped but by `rv_trim`, which looks
+ * whether it is worth it, and says whether records are others than before; at the end of a run it always
+ * is. What was dropped is counted on. */
+int rv_keep(rv_monitor *m, int64_t most);
+bool rv_trim(rv_monitor *m);
+
 /* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. Notes
  * of them are valid until the next call. */
 typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);

@@ -216,6 +216,7 @@ METHOD(found)
 METHOD(late)
 METHOD(finish)
 METHOD(reset)
+METHOD(keep)
 METHOD(flush)
 METHOD(open)
 METHOD(records)
@@ -297,6 +298,7 @@ static PyMethodDef monitor_methods[] = {
     {"found", monitor_found, METH_VARARGS, NULL},
     {"late", monitor_late, METH_VARARGS, NULL},
     {"finish", monitor_finish, METH_O, NULL},
+    {"keep", monitor_keep, METH_O, NULL},
     {"flush", monitor_flush, METH_NOARGS, NULL},
     {"open", monitor_open, METH_NOARGS, NULL},
     {"records", monitor_records, METH_NOARGS, NULL},

@@ -197,20 +197,34 @@ static void gather_records(const monitor *c, int64_t first, bool open, gathering
     }
 }
 
+/* Have records be dropped that are too many, all being given out. */
+static void trim_given(monitor *c)
+{
+    if (rv_trim(c->m)) {
+        const rv_record *records;
+        c->given = rv_records(c->m, &records);
+        forget_standing(&c->notes);
+    }
+}
+
 /* The attempts that were decided since the last time. */
 static PyObject *decided_since(monitor *c)
 {
     const rv_record *records;
     const int64_t count = rv_records(c->m, &records);
     const int64_t first = c->given;
+    PyObject *made;
     gathering g;
     if (count == first) {
+        trim_given(c);
         return PyTuple_New(0); /* always the same one */
     }
     c->given = count;
     begin_gathering(&g, c);
     gather_records(c, first, false, &g);
-    return attempts_of(&g);
+    made = attempts_of(&g);
+    trim_given(c);
+    return made;
 }
 
 #endif

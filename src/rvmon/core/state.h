@@ -415,6 +415,10 @@ struct rv_monitor {
     void *let_go_user;
     int64_t settled_notes;     /* so many words are of records; behind them those of open attempts */
     int32_t settled_spans;
+    int64_t *kept_of;          /* room to count records by requirement and verdict; NULL: all are kept */
+    int64_t keep;              /* so many are, of each */
+    int64_t laid_count;        /* attempts that were laid down since some were dropped, and before */
+    int64_t trim_at;           /* so many of both are borne */
     uint32_t epoch;            /* of notes: what was placed in another one is forgotten */
     before_decision before;    /* the token of the attempt at hand, before it moves */
     int64_t began;

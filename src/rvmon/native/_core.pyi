@@ -94,6 +94,9 @@ class Monitor:
         """End the run; gives the last instant of the trace."""
 
     def reset(self) -> None: ...
+    def keep(self, most: int, /) -> None:
+        """See `rv_keep`; records are dropped once they were given out."""
+
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 
