@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* So much more may be there than was kept before something is dropped, which costs what is there. */
-#define PATIENCE 256
+#define PATIENCE 32
 /* Where an attempt stands that is to be dropped: at no location. */
 #define DROPPED (-1)
 
@@ -192,7 +192,9 @@ static int64_t trim_laid(rv_monitor *m, home *h)
         }
     }
     arena_give(&m->memory, all, size);
-    rest_all(h);
+    if (h->touched_count > 0) {
+        rest_all(h);
+    }
     return left;
 }
 

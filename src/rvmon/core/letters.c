@@ -209,9 +209,9 @@ void pin_kept_letters(rv_monitor *m)
     int32_t i;
     m->pins++;
     for (i = m->span_count - 1; i >= 0; i--) {
-        const span_of_letters *span = &m->spans[i];
-        rv_piece *one = span->first;
-        while ((one != span->last) && (one->pinned != m->pins)) {
+        const span_of_letters *own = &m->spans[i];
+        rv_piece *one = own->first;
+        while ((one != own->last) && (one->pinned != m->pins)) {
             one->pinned = m->pins;
             one = one->next;
         }

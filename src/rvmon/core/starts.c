@@ -115,7 +115,10 @@ void enter(run *r, int32_t index, int32_t at, int64_t t)
 {
     judge *j = &r->judges[index];
     attempt *x = attempt_at(r->home, at);
-    if (remains(r, index, at, t)) {
+    const bool stays = remains(r, index, at, t);
+    if (stays && is_moot(x)) {
+        lay_down(r, index, at);
+    } else if (stays) {
         set_rule_due(r, index, least(r->rules.due[index], x->due));
         if (j->last < 0) {
             j->first = at;
