@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.automaton.table import tables_of
 from rvmon.codegen.comment import comment
 from rvmon.codegen.grown import last_values
 from rvmon.codegen.python_class import listed, node_constants, node_functions, slots, takes
@@ -15,6 +14,7 @@ from rvmon.codegen.python_visit import VisitWriter, indented, is_straight
 from rvmon.formula.state import State
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.runtime.solo import only_location
+from rvmon.runtime.table_machine import tables_of
 from rvmon.spec.checked.specification import Mode
 
 _TABULATED = 5
