@@ -70,7 +70,7 @@ def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals
     from rvmon.explain.truths import look_through
 
     questions = [question for _, waits in late.values() for question in waits.values()]
-    questions += [parts_asked(spec.checked, spec.requirements[name]) for name in silent]
+    questions += [parts_asked(spec.requirements[name]) for name in silent]
     if spec.checked.max_delay is None:
         pieces = _read_again(spec, recording, questions, end)
     else:

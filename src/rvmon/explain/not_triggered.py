@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from rvmon.explain.spans import holds
 from rvmon.explain.truths import Question, Seen, Truth, look_through
@@ -14,8 +15,6 @@ from rvmon.spec.checked.formula import (
     BoundAtom,
     EventAtom,
     Formula,
-    Probe,
-    ProbeAtom,
     SignalAtom,
 )
 from rvmon.spec.checked.reads import names_read
@@ -61,17 +60,15 @@ def why_not_triggered(
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
     """
-    question = parts_asked(spec, requirement)
+    question = parts_asked(requirement)
     return miss_in(spec, requirement, look_through(spec, [question], samples, end, names))
 
 
-def parts_asked(spec: CheckedSpec, requirement: Requirement) -> Question:
-    """The parts of a trigger, and whether the signals that these read had a value."""
+def parts_asked(requirement: Requirement) -> Question:
+    """The parts of a trigger."""
     if requirement.for_each is not None:
         return Question(())
-    parts = [part for option in _options(requirement) for part in option]
-    births = [_birth(name) for name in sorted(_signals(spec, parts))]
-    return Question(tuple(dict.fromkeys((*parts, *births))))
+    return Question(tuple(dict.fromkeys(chain(*_options(requirement)))))
 
 
 def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
@@ -80,12 +77,12 @@ def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
         return "the recording has no sample"
     if requirement.for_each is not None or requirement.trigger == BoundAtom(Bound.END):
         return ""
-    question = parts_asked(spec, requirement)
+    question = parts_asked(requirement)
     truths = dict(zip(question.formulas, seen.truths(question), strict=True))
     misses = [_miss(parts, truths) for parts in _options(requirement)]
     best = min(misses, key=lambda miss: len(miss.missing))
     if best.missing and best.at is None:
-        unborn = _unborn(spec, best.parts, truths, seen.names)
+        unborn = _unborn(spec, best.parts, seen)
         return "; ".join(_apart(best.parts, truths, unborn, seen.begin, seen.end))
     return _sentence(best, truths)
 
@@ -93,16 +90,6 @@ def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
 def _options(requirement: Requirement) -> list[tuple[Formula, ...]]:
     """The ways in which a trigger comes true, and the parts of each."""
     return [_flat(part, BinaryOp.AND) for part in _flat(requirement.trigger, BinaryOp.OR)]
-
-
-def _signals(spec: CheckedSpec, parts: Iterable[Formula]) -> set[str]:
-    """The signals that some parts read."""
-    return {name for part in parts for name in names_read(part)} & spec.signals.keys()
-
-
-def _birth(signal: str) -> Formula:
-    """What is true where a signal has a value."""
-    return ProbeAtom(Probe.KNOWN, signal)
 
 
 def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
@@ -167,15 +154,11 @@ def _apart(
         yield f"`{name}` {unborn[name]}"
 
 
-def _unborn(
-    spec: CheckedSpec,
-    parts: Sequence[Formula],
-    seen: Mapping[Formula, Truth],
-    sources: frozenset[str] | None,
-) -> Mapping[str, str]:
+def _unborn(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> Mapping[str, str]:
     """Of the signals that parts read, those without any value, and what is reported of them."""
-    lacking = {name for name in _signals(spec, parts) if not seen[_birth(name)].sure}
-    absent = set() if sources is None else lacking - sources
+    read = {name for part in parts for name in names_read(part)} & spec.signals.keys()
+    lacking = read & seen.unborn
+    absent = set() if seen.names is None else lacking - seen.names
     return dict.fromkeys(absent, "has no source") | dict.fromkeys(
         lacking - absent, "never had a value"
     )

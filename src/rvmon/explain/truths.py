@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
@@ -17,6 +17,7 @@ from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, TimeModel
 from rvmon.spec.print.printer import format_formula
+from rvmon.trace.gaps import is_unknown
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 
 if TYPE_CHECKING:
@@ -62,12 +63,14 @@ class Seen:
         begin: the instant of the first sample, ticks; `None`: there is none.
         end: the last instant.
         positions: of the recording; `None` where every tick is one.
+        unborn: the signals that never had a value.
     """
 
     names: frozenset[str] | None
     begin: int | None
     end: int
     positions: Sequence[int] | None
+    unborn: frozenset[str]
     _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
 
     def truths(self, question: Question) -> list[Truth]:
@@ -103,19 +106,21 @@ def look_through(
     runs = [run for one in groups.values() if (run := one.begun(names)) is not None]
     begin: int | None = None
     instants = array("q")
+    unborn = set(spec.signals)
     for piece in pieces:
         times = (piece.t,) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])
         if spec.time is TimeModel.SAMPLED:
             instants.extend(times if isinstance(times, tuple) else _unlike(times.tolist()))
+        if unborn:
+            unborn -= _born(piece, unborn)
         for run in runs:
             run.take(piece)
     positions = None if begin is None else _positions(spec, begin, end, instants)
     ticks = _Ticks(positions, begin or 0, end)
-    return Seen(
-        names, begin, end, positions, {whose: one.truths(ticks) for whose, one in groups.items()}
-    )
+    truths = {whose: one.truths(ticks) for whose, one in groups.items()}
+    return Seen(names, begin, end, positions, frozenset(unborn), truths)
 
 
 def truths_of(
@@ -195,6 +200,14 @@ class _Group:
         }
         found[None] = Truth((), ticks.others(()))
         return {text: found[core] for text, core in self._cores.items()}
+
+
+def _born(piece: Batch | Sample, unborn: Set[str]) -> set[str]:
+    """The signals that have a value in a piece and had none before."""
+    if isinstance(piece, Sample):
+        values = piece.values
+        return {name for name in unborn & values.keys() if not is_unknown(values[name])}
+    return {name for name in unborn & piece.signals.keys() if piece.signals[name].holds_value}
 
 
 def _unlike(instants: Iterable[int]) -> Iterator[int]:

@@ -41,6 +41,12 @@ class Cells:
         said = self.says != NO_UPDATE
         return int(said.argmax()) if said.any() else None
 
+    @property
+    def holds_value(self) -> bool:
+        """Whether some row says what it is."""
+        known = self.values == self.values
+        return bool((known if self.says is None else known & (self.says == YES)).any())
+
     def cut(self, start: int, stop: int) -> Cells:
         """Some of the rows."""
         says = None if self.says is None else self.says[start:stop]

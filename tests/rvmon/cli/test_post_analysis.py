@@ -157,3 +157,16 @@ def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, m
     assert {name: list(found) for name, found in report.late.items()} == {
         f"R{n}": [1] for n in range(9)
     }
+
+
+def test_a_trigger_of_instances_hides_no_miss(tmp_path):
+    """Of two requirements with one trigger, one `for each`, the other has its sentence."""
+    text = (
+        "spec s\nevent go(k: int)\nsignal p, q : bool\n"
+        "requirement R1\n  upon p and q then within 1 s go.k == k\n  for each k in go.k\n"
+        "requirement R2\n  upon p and q then within 1 s go\n"
+    )
+    path = tmp_path / "a.jsonl"
+    path.write_text('{"t": 0, "p": false, "q": false}\n{"t": 1, "p": true}\n{"t": 2, "p": false}\n')
+    report = judge(rvmon.loads(text), str(path), Options()).report
+    assert report.misses == {"R2": "`q` was never true while `p` was (first at 1 s)"}
