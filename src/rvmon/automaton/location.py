@@ -13,6 +13,9 @@ FAILED, PASSED = 0, 1
 NOW = -1
 """As the source of a clock: it is started at the position of the step."""
 
+Token = tuple[int, tuple[int, ...]]
+"""Where an attempt is: its location, and for each clock the instant at which it was started."""
+
 
 @dataclass(frozen=True, slots=True)
 class Location:

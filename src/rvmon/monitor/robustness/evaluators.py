@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.codegen.python_unit import margins_function
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.core import Literal
