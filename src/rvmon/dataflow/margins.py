@@ -8,8 +8,8 @@ from itertools import product
 from typing import Any
 
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
-from rvmon.plan.inputs import Input
-from rvmon.plan.numbers import events_of, reader
+from rvmon.plan.numbers import events_of
+from rvmon.runtime.expressions import Input, reader
 from rvmon.spec.checked.arithmetic import UnitRule
 from rvmon.spec.checked.formula import (
     Arithmetic,

@@ -19,9 +19,10 @@ from rvmon.monitor.robustness.values import (
     Stream,
     margins_from,
 )
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.as_blocks import Columns
+from rvmon.readers.batch import NotPlainError
 from rvmon.readers.reading import Reading
-from rvmon.readers.source import Columns, Source
+from rvmon.readers.source import Source
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

@@ -18,7 +18,7 @@ from rvmon.monitor.columns.timeline import Timeline
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import graph_of
 from rvmon.plan.planning import plan_of_evaluator
-from rvmon.readers.source import Columns
+from rvmon.readers.as_blocks import Columns
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec
 

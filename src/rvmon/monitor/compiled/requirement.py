@@ -14,7 +14,6 @@ from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.shapes import Shapes
-from rvmon.automaton.table import TableMachine
 from rvmon.codegen.python_windows import windows_class
 from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
@@ -33,6 +32,7 @@ from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.plan.graph import Graph, graph_of, leaf_count, leaf_texts
 from rvmon.plan.numbers import events_of, inputs_of
+from rvmon.runtime.table_machine import TableMachine
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 

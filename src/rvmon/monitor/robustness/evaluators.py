@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.codegen.python_unit import margins_function
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.core import Literal
@@ -107,18 +107,18 @@ class UnitFlow(UnitStanding):
         return self.unit.absent
 
     def value_of(self, signal: str) -> Scalar:
-        """See `rvmon.plan.inputs.Input`."""
+        """See `rvmon.runtime.expressions.Input`."""
         found: Scalar = self.unit.s[self.unit.SIGNALS.index(signal)]
         return found
 
     def history_of(self, signal: str) -> History:
-        """See `rvmon.plan.inputs.Input`."""
+        """See `rvmon.runtime.expressions.Input`."""
         found = self.unit.h[self.unit.SIGNALS.index(signal)]
         assert found is not None  # noqa: S101 - who reads it has asked for it
         return found
 
     def payloads_of(self, _: str) -> Sequence[Payload | None]:
-        """See `rvmon.plan.inputs.Input`."""
+        """See `rvmon.runtime.expressions.Input`."""
         raise AssertionError("they are gone when a sample was taken")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from weakref import WeakKeyDictionary
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.dataflow.margins import INFINITE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.records.ledger import Ledger, verdict_at_end

@@ -15,9 +15,9 @@ from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Clerk, Open
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.robustness.values import Robustness
-from rvmon.plan.inputs import Input
 from rvmon.plan.leaves import reads
 from rvmon.plan.standing import Standing
+from rvmon.runtime.expressions import Input
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Scalar
 
