@@ -367,6 +367,21 @@ void forget_last(run *r);
 bool is_idle(const run *r);
 void let_go(run *r);
 
+/* ---- margins.c, margin_results.c: by how much what attempts owe holds; nothing where that is not asked
+ * for */
+bool margins_prepare(rv_monitor *m);
+void margins_reset(rv_monitor *m);
+bool margins_make(run *r);
+void margins_clear(run *r);
+void margins_begin(run *r, int32_t index, int64_t t, int32_t record);
+void margins_visit(run *r, int64_t t);
+void margins_settle(home *h, int64_t reached);
+void margins_miss(run *r);
+void margins_close(home *h, int64_t end, int64_t reached);
+int32_t measured_attempt(run *r, int64_t triggered, uint32_t number);
+void margin_numbered(rv_monitor *m, int32_t record, bool sure, uint32_t number);
+void margin_vanished(rv_monitor *m, int32_t record);
+
 /* ---- keys.c: instances of a `for each` */
 bool begin_keys(home *h);
 void open_instances(home *h, int64_t t);

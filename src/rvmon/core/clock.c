@@ -179,6 +179,9 @@ void visit(run *r, int64_t t)
     r->at.position = t;
     r->at.awaited = NEVER;
     have_judged(r, t);
+    if (r->margins != NULL) {
+        margins_visit(r, t); /* before what occurred is forgotten */
+    }
     if (r->at.phase == 0) {
         settle_phase(r);
     }
@@ -258,7 +261,8 @@ void approach(run *r, int64_t t)
 void arrive(run *r, int64_t t)
 {
     const int64_t gap = GAP(r);
-    const bool dirty = r->at.dirty || is_soiled(r) || (r->at.presence != ARE_THERE);
+    const bool dirty = r->at.dirty || is_soiled(r) || (r->at.presence != ARE_THERE)
+                       || (r->margins != NULL);
     if (r->at.presence == MAY_BE_THERE) {
         r->at.presence = r->at.started ? ARE_THERE_NEXT : ARE_THERE;
     }

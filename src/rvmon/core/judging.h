@@ -18,6 +18,7 @@ typedef struct {
     bool sure;                 /* else it is in doubt whether there was a trigger */
     bool clouded;              /* whether its trigger was unknown while it ran */
     bool hollow;               /* over before all that it speaks of had a value */
+    int32_t record;            /* of its margin, 1 for the first; 0: it is not measured */
     int64_t clocks[];
 } attempt;
 

@@ -31,6 +31,7 @@ typedef struct {
     PyObject *verdicts;
     PyObject *decisions;
     PyObject *details;         /* gives an attempt its other fields */
+    struct figures *figures;   /* what figures are made of; NULL: steps give attempts */
 } monitor;
 
 /* Raises what it comes to that the core did not do something. */

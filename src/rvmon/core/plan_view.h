@@ -90,6 +90,8 @@ typedef struct {
     const int32_t *lists;
     const int32_t *ints;
     const int64_t *ticks;
+    const margin_plan *margins; /* by judge */
+    const measure_plan *measures;
     int64_t counts[SECTIONS];
     int32_t part_count;
 } plan;

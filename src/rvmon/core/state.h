@@ -3,6 +3,7 @@
 #define RVMON_STATE_H
 
 #include "judging.h"
+#include "measuring.h"
 #include "plan_view.h"
 
 #define NEVER RV_NEVER
@@ -197,6 +198,8 @@ struct run {
     rv_number *kept;           /* by signal, what came at that instant */
     uint8_t *has_kept;
     uint8_t *keeps;            /* whether what comes at that instant counts behind it */
+    measuring *margins;        /* by judge; NULL: nothing is measured */
+    int32_t asked;             /* attempts whose margins are to come */
     /* What is copied with them. */
     struct progress {
         int64_t origin;
@@ -327,6 +330,8 @@ struct rv_monitor {
     int64_t last;
     int64_t after;             /* a sample has to be later */
     int64_t reached;
+    margin_shape *shapes;      /* by judge, what is measured; NULL: nothing is */
+    margin_results margins;
     uint8_t *late;             /* by requirement, whether something came too late for it */
     /* Where only samples are positions. */
     uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */
@@ -335,6 +340,7 @@ struct rv_monitor {
                                 * may be now */
     int64_t dense_end;         /* that of the last such stretch */
     int64_t heard;             /* how far names are known to have been lost; RV_NO_TIME: none was */
+    bool measures_positions;
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;

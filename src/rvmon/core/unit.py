@@ -87,7 +87,11 @@ class Unit:
     @cached_property
     def _looks_back(self) -> bool:
         plan = self._plan
-        return any(plan_of(rule.owed, plan.gap).looks_back for _, rule in plan.judges)
+        return any(
+            plan_of(rule.owed, plan.gap).looks_back
+            or (rule.measured is not None and rule.measured.looks_back)
+            for _, rule in plan.judges
+        )
 
     @cached_property
     def _reach(self) -> Reach | None:
@@ -135,6 +139,7 @@ class Unit:
 def _consequent(rule: PlannedRule) -> Iterator[State]:
     """The state formulas of an attempt."""
     yield from rule.alphabet.propositions
+    yield from rule.asked
     named = [rule.again, rule.unborn]
     if rule.requirement.mode is Mode.WHENEVER:
         named += [rule.trigger, rule.running]

@@ -83,6 +83,7 @@ def _rule(
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
+        measured=one.measured_plan if measured else None,
     )
 
 
@@ -93,12 +94,15 @@ def _blurs(one: CompiledRequirement) -> State | None:
     return obligation.doubt or (obligation.trigger if one.is_beside else None)
 
 
-def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Plan:
+def plan_alone(
+    compiled: CompiledSpec, only: Iterable[str] | None = None, *, measured: bool = False
+) -> Plan:
     """The plan of what the core judges.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
+        measured: whether it is to measure them as well.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
@@ -108,5 +112,5 @@ def plan_alone(compiled: CompiledSpec, only: Iterable[str] | None = None) -> Pla
     if ids is not None and not ids:
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
-    rules = [_rule(one, explained=False) for one in compiled.chosen(ids)]
+    rules = [_rule(one, explained=False, measured=measured) for one in compiled.chosen(ids)]
     return plan_in_units(compiled.checked, rules)

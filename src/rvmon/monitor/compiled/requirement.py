@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from rvmon.automaton.automaton import Automaton
@@ -390,5 +390,15 @@ def compiled_requirements(
             raise RvmonError(
                 f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
             ) from None
-        made[name] = CompiledRequirement(rank, checked, requirement, obligation, factory, shapes)
+        measured = partial(
+            lower,
+            requirement,
+            factory,
+            checked.period,
+            measured=True,
+            next_law=next_law,
+            sampled=checked.gap is None,
+        )
+        given = (rank, checked, requirement, obligation, factory, shapes)
+        made[name] = CompiledRequirement(*given, measured=measured)
     return made

@@ -129,37 +129,42 @@ class PlannedCore:
         return found
 
 
-def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) -> PlannedCore:
+def planned_core(
+    compiled: CompiledSpec, only: Collection[str] | None = None, *, measured: bool = False
+) -> PlannedCore:
     """The packed plan of some requirements; made once for a specification.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
+        measured: whether attempts are to be measured as well.
 
     Raises:
         RvmonError: a requirement is beyond the core.
     """
     spec = compiled.checked
     ids = tuple(one for one in spec.requirements if only is None or one in only)
-    found = compiled.forms.get(("core", ids))
+    key = "core", ids, measured
+    found = compiled.forms.get(key)
     if not isinstance(found, PlannedCore):
-        place = Place(spec, ids, next_law=compiled.next_law) if compiled.is_kept else None
+        how = {"next_law": compiled.next_law, "measured": measured}
+        place = Place(spec, ids, **how) if compiled.is_kept else None
         found = None if place is None else _checked(spec, ids, place.read())
         if found is None:
-            made = _made(compiled, ids)
+            made = _made(compiled, ids, measured=measured)
             found = _planned(spec, ids, made)
             if place is not None:
                 place.write(made)
-        compiled.forms["core", ids] = found
+        compiled.forms[key] = found
     return found
 
 
-def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
+def _made(compiled: CompiledSpec, ids: tuple[str, ...], *, measured: bool) -> Kept:
     # What makes it is imported now: it is seldom made where it is kept.
     from rvmon.core.plan import pack
     from rvmon.monitor.compiled.code_plan import plan_alone
 
-    plan = plan_alone(compiled, ids)
+    plan = plan_alone(compiled, ids, measured=measured)
     single = frozenset().union(*(one.single_payloads for one in compiled.chosen(ids)))
     return Kept(pack(plan, next_law=compiled.next_law).data, single, plan.fillable)
 

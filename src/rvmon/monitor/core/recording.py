@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import rvmon.core._core as native
+
 from rvmon.errors import TimeOrderError
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recorded import report_of_run
@@ -45,6 +47,13 @@ def judge_columns(planned: PlannedCore, columns: Columns, end: int | None) -> Re
         TimeOrderError: an instant is not after the one before.
     """
     run = planned.monitor(frozenset(planned.numbers) - frozenset(columns.names))
+    take_columns(run, planned, columns)
+    origin, _, _ = run.times()
+    return report_of_run(planned, run, origin or 0, run.finish(end))
+
+
+def take_columns(run: native.Monitor, planned: PlannedCore, columns: Columns) -> None:
+    """Have a run take a recording by its columns; see `judge_columns`."""
     before = 0
     for block in columns.read():
         times = np.ascontiguousarray(block.times, np.int64)
@@ -53,8 +62,6 @@ def judge_columns(planned: PlannedCore, columns: Columns, end: int | None) -> Re
         if taken < len(times):
             raise _out_of_order(before + taken, int(times[taken]))
         before += taken
-    origin, _, _ = run.times()
-    return report_of_run(planned, run, origin or 0, run.finish(end))
 
 
 def _column(

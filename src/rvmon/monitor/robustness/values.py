@@ -60,6 +60,17 @@ class Measured:
     in_doubt: bool = False
 
 
+FIGURES = (
+    Measured,
+    Robustness,
+    (
+        *(Measured.requirement, Measured.number, Measured.t, Measured.robustness),
+        *(Measured.in_doubt, Robustness.low, Robustness.high, Robustness.kept),
+    ),
+)
+"""What the core makes figures of, in the order of `module_margins.h`."""
+
+
 class Stream(Sequence[tuple[int, Robustness]]):
     """Figures at instants, as arrays; each is made when it is asked for.
 

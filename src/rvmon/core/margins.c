@@ -1,0 +1,490 @@
+/* What is measured of the attempts of a run: the leaves are read at each position, and given to gauges;
+ * what these answer is the figure of an attempt that begins at that position. */
+#include "margins.h"
+
+#include <string.h>
+
+static const margin_shape *shape_of(const run *r, int32_t index)
+{
+    return &r->home->monitor->shapes[r->part->plan->judges.first + index];
+}
+
+/* Whether each position of a sample is asked for. */
+static bool is_streamed(const run *r, int32_t index)
+{
+    return r->home->monitor->measures_positions && (r->part->plan->captured == 0)
+           && (index < r->part->plan->requirements);
+}
+
+/* Whether what is measured has to be followed though nothing is asked for. */
+static bool is_kept_up(const run *r, int32_t index)
+{
+    return (shape_of(r, index)->plan->looks_back != 0) || is_streamed(r, index);
+}
+
+/* Whether its attempts begin at the end: the last position may be asked for when all is over. */
+static bool awaits_the_end(const run *r, int32_t index)
+{
+    return r->part->judges[index].trigger < 0;
+}
+
+static gauging gauging_of(const run *r, int32_t index, int64_t now, int64_t reached)
+{
+    gauging w;
+    (void)memset(&w, 0, sizeof w);
+    w.monitor = r->home->monitor;
+    w.shape = shape_of(r, index);
+    w.q = &r->margins[index];
+    w.g = &w.q->readings[0];
+    w.step = step_of(r);
+    w.now = now;
+    w.reached = reached;
+    w.sparse = GAP(r) == 0;
+    return w;
+}
+
+/* Work out once what is measured has which shape. */
+bool margins_prepare(rv_monitor *m)
+{
+    const int64_t count = m->plan.counts[SEC_MARGINS];
+    int64_t i;
+    if (count == 0) {
+        return true;
+    }
+    m->shapes = arena_take(&m->memory, (size_t)count * sizeof *m->shapes);
+    for (i = 0; (m->shapes != NULL) && (i < count); i++) {
+        if (!make_shape(m, &m->plan.margins[i], &m->shapes[i])) {
+            return false;
+        }
+    }
+    return m->shapes != NULL;
+}
+
+/* Have a run that is new be measured. */
+bool margins_make(run *r)
+{
+    rv_monitor *m = r->home->monitor;
+    const int32_t judges = r->part->plan->judges.count;
+    int32_t i;
+    int32_t k;
+    if (m->shapes == NULL) {
+        return true;
+    }
+    r->margins = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->margins);
+    for (i = 0; (r->margins != NULL) && (i < judges); i++) {
+        const margin_shape *s = shape_of(r, i);
+        measuring *q = &r->margins[i];
+        const size_t size = (size_t)(s->plan->measures.count + 1) * sizeof(double);
+        for (k = 0; k < 2; k++) {
+            q->letters[k].low = arena_take(&m->memory, size);
+            q->letters[k].high = arena_take(&m->memory, size);
+            if ((q->letters[k].low == NULL) || (q->letters[k].high == NULL)) {
+                return false;
+            }
+        }
+        if (!gauge_make(m, s, &q->readings[0])) {
+            return false;
+        }
+    }
+    return r->margins != NULL;
+}
+
+/* Have nothing be asked for, and nothing be known. */
+void margins_clear(run *r)
+{
+    int32_t i;
+    r->asked = 0;
+    for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
+        measuring *q = &r->margins[i];
+        q->asks_first = 0;
+        q->asks_end = 0;
+        q->letter_count = 0;
+        q->position = -LIMIT;
+        q->active = false;
+        q->parted = false;
+        q->blind = false;
+    }
+}
+
+/* Give the letters up to a position to the gauges. */
+static void give_letters(gauging *w, int64_t last)
+{
+    measuring *q = w->q;
+    int32_t given = 0;
+    for (; (given < q->letter_count) && (q->letters[given].at <= last); given++) {
+        w->g = &q->readings[0];
+        gauge_take(w, q->letters[given].at, q->letters[given].low);
+        if (q->parted) {
+            w->g = &q->readings[1];
+            gauge_take(w, q->letters[given].at, q->letters[given].high);
+        }
+    }
+    if ((given == 1) && (q->letter_count == 2)) {
+        const margin_letter one = q->letters[0];
+        q->letters[0] = q->letters[1];
+        q->letters[1] = one;
+    }
+    q->letter_count -= given;
+}
+
+/* What is known of an attempt by what its formula is at least and at most, and by the rule for the end.
+ * What it owes with values that nobody knows may be anything. */
+static rv_margin figure_of(const run *r, int32_t index, const margin_ask *one, double kept)
+{
+    const bool cut = r->cut < NEVER;
+    rv_margin made;
+    (void)memset(&made, 0, sizeof made);
+    made.t = one->position * step_of(r);
+    made.requirement = r->part->judges[index].requirement;
+    made.low = cut ? -INFINITE : one->low;
+    made.high = one->high;
+    made.kept = cut ? -INFINITE : kept;
+    made.of_position = (one->record == 0) ? 1 : 0;
+    return made;
+}
+
+/* Tell the figures that are answered in both readings. */
+static void tell_answers(run *r, int32_t index)
+{
+    measuring *q = &r->margins[index];
+    const int64_t first = q->readings[0].answered;
+    const int64_t answered = q->parted ? least(first, q->readings[1].answered) : first;
+    while (q->asks_first < answered) {
+        const margin_ask *one = ask_at(q, q->asks_first);
+        const rv_margin figure = figure_of(r, index, one, one->low);
+        q->asks_first++;
+        r->asked -= (one->record != 0) ? 1 : 0;
+        figure_found(r->home->monitor, &figure, one->record);
+    }
+    if ((q->asks_first == q->asks_end) && !is_kept_up(r, index) && !awaits_the_end(r, index)) {
+        q->active = false;
+        q->letter_count = 0;
+    }
+}
+
+/* Let the leaves be known up to a position. */
+static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
+{
+    gauging w = gauging_of(r, index, now, reached);
+    measuring *q = w.q;
+    give_letters(&w, now);
+    w.g = &q->readings[0];
+    gauge_run(&w);
+    if (q->parted) {
+        w.g = &q->readings[1];
+        w.side = 1;
+        gauge_run(&w);
+    }
+    tell_answers(r, index);
+}
+
+/* What is at most is another from the first letter on in which something is unknown. */
+static void part_margins(run *r, int32_t index)
+{
+    measuring *q = &r->margins[index];
+    q->parted = gauge_copy(r->home->monitor, shape_of(r, index), &q->readings[1], &q->readings[0]);
+}
+
+/* Read the leaves at a position, up to which they are given to the gauges. */
+static void read_measures(run *r, int32_t index, int64_t position)
+{
+    const margin_shape *s = shape_of(r, index);
+    measuring *q = &r->margins[index];
+    bool differs = false;
+    bool passes = false;
+    int32_t i;
+    for (i = 0; i < s->plan->measures.count; i++) {
+        const margin_range now = measured_leaf(r, &s->measures[i]);
+        margin_range then = now;
+        q->letters[0].low[i] = now.low;
+        q->letters[0].high[i] = now.high;
+        differs = differs || (now.low != now.high);
+        passes = passes_on(r, &s->measures[i], &then) || passes;
+        q->letters[1].low[i] = then.low;
+        q->letters[1].high[i] = then.high;
+    }
+    q->letters[0].at = position;
+    q->letters[1].at = position + 1;
+    q->letter_count = passes ? 2 : 1;
+    if (differs && !q->parted) {
+        part_margins(r, index);
+    }
+}
+
+/* Come to a position: up to the one before it, the leaves are known. */
+static void enter_position(run *r, int32_t index, int64_t t)
+{
+    const margin_shape *s = shape_of(r, index);
+    measuring *q = &r->margins[index];
+    const int64_t position = floored(t, step_of(r));
+    const bool asked = q->asks_first < q->asks_end;
+    gauging w = gauging_of(r, index, position - 1, t);
+    if (q->active && !asked && !is_kept_up(r, index)) {
+        q->active = false; /* it awaits the end */
+    }
+    if (!q->active) {
+        q->active = true;
+        q->parted = false;
+        q->letter_count = 0;
+        gauge_begin(s, &q->readings[0], position, q->asks_first);
+    } else if (awaits_the_end(r, index)) {
+        come_to_margin(r, index, position - 1, t);
+    } else {
+        give_letters(&w, position - 1);
+    }
+    read_measures(r, index, position);
+    q->position = t;
+}
+
+/* Ask for a position of which the letter is not given yet. */
+static void ask_for(run *r, int32_t index, int64_t position, int32_t record)
+{
+    measuring *q = &r->margins[index];
+    rv_monitor *m = r->home->monitor;
+    margin_ask *one;
+    int64_t i;
+    if (q->asks_end - q->asks_first == q->asks_room) {
+        const int32_t room = (q->asks_room > 0) ? 2 * q->asks_room : 4;
+        margin_ask *made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made)
+                                                  : NULL;
+        if (made == NULL) {
+            m->spoilt = true;
+            return;
+        }
+        for (i = q->asks_first; i < q->asks_end; i++) {
+            made[i & (room - 1)] = *ask_at(q, i);
+        }
+        arena_give(&m->memory, q->asks, (size_t)q->asks_room * sizeof *made);
+        q->asks = made;
+        q->asks_room = room;
+    }
+    one = ask_at(q, q->asks_end);
+    q->asks_end++;
+    one->position = position;
+    one->low = -INFINITE;
+    one->high = INFINITE;
+    one->record = record;
+    r->asked += (record != 0) ? 1 : 0;
+}
+
+/* Measure an attempt that begins at the position at `t`. */
+void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
+{
+    measuring *q;
+    if ((r->margins == NULL) || (record == 0)) {
+        return;
+    }
+    q = &r->margins[index];
+    if (q->blind || (r->at.presence != ARE_THERE) || r->at.dense) {
+        const margin_ask none = {floored(t, step_of(r)), -INFINITE, INFINITE, record};
+        const rv_margin figure = figure_of(r, index, &none, -INFINITE);
+        figure_found(r->home->monitor, &figure, record);
+        return;
+    }
+    if (!q->active || (q->position < t)) {
+        enter_position(r, index, t);
+    }
+    ask_for(r, index, floored(t, step_of(r)), record);
+}
+
+/* Read what is measured at the position at `t`, when attempts have begun there. */
+void margins_visit(run *r, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        measuring *q = &r->margins[i];
+        if (q->blind || (!q->active && !is_kept_up(r, i) && !awaits_the_end(r, i))) {
+            continue;
+        }
+        if (!q->active || (q->position < t)) {
+            enter_position(r, i, t);
+        }
+        if (is_streamed(r, i) && (t - step_of(r) < r->at.after)) {
+            ask_for(r, i, floored(t, step_of(r)), 0);
+        }
+    }
+}
+
+/* Tell what has become known in a run now that time has come to an instant. */
+static void settle_run(run *r, int64_t reached)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        measuring *q = &r->margins[i];
+        if (q->active && !awaits_the_end(r, i)) {
+            const int64_t seen = (q->position == reached) ? reached : reached - 1;
+            come_to_margin(r, i, floored(seen, step_of(r)), reached);
+        }
+    }
+}
+
+void margins_settle(home *h, int64_t reached)
+{
+    run *r;
+    bool over = false;
+    if (h->monitor->shapes == NULL) {
+        return;
+    }
+    for (r = h->root; r != NULL; r = following(h, r)) {
+        const int32_t asked = r->asked;
+        settle_run(r, reached);
+        if ((asked > 0) && (r->asked == 0) && (h->part->plan->captured > 0)) {
+            touch_run(r); /* it may be let go of */
+            over = true;
+        }
+    }
+    if (over) {
+        rest_all(h);
+    }
+}
+
+/* Positions are missed in an outage: what was measured may be anything, and what looks back stays so. */
+void margins_miss(run *r)
+{
+    int32_t i;
+    for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
+        measuring *q = &r->margins[i];
+        q->blind = shape_of(r, i)->plan->looks_back != 0;
+        for (; q->asks_first < q->asks_end; q->asks_first++) {
+            const margin_ask *one = ask_at(q, q->asks_first);
+            const margin_ask none = {one->position, -INFINITE, INFINITE, one->record};
+            const rv_margin figure = figure_of(r, i, &none, -INFINITE);
+            r->asked -= (one->record != 0) ? 1 : 0;
+            figure_found(r->home->monitor, &figure, one->record);
+        }
+        q->active = false;
+    }
+}
+
+/* What is asked for by one assumption about what lies behind the end; false if memory is short. */
+static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reached, double *answers)
+{
+    gauging w = gauging_of(r, index, end->last, reached);
+    measuring *q = w.q;
+    const int32_t side = ((end->rest == REST_GREATEST) && q->parted) ? 1 : 0;
+    int64_t i;
+    int32_t k;
+    if (!gauge_copy(w.monitor, w.shape, &q->scratch, &q->readings[side])) {
+        return false;
+    }
+    for (i = q->asks_first; i < q->scratch.answered; i++) {
+        answers[i - q->asks_first] = (side == 0) ? ask_at(q, i)->low : ask_at(q, i)->high;
+    }
+    w.g = &q->scratch;
+    w.answers = answers;
+    for (k = 0; k < q->letter_count; k++) {
+        if (q->letters[k].at <= floored(end->instant, w.step)) {
+            gauge_take(&w, q->letters[k].at, (side == 0) ? q->letters[k].low : q->letters[k].high);
+        }
+    }
+    gauge_run(&w);
+    w.end = end;
+    gauge_run(&w);
+    return true;
+}
+
+typedef bool (*take_figure)(void *user, const rv_margin *figure, int32_t record);
+
+/* The figures of a judge if the trace has ended; false if whoever takes them wants no more. */
+static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached, take_figure take,
+                        void *user)
+{
+    rv_monitor *m = r->home->monitor;
+    measuring *q = &r->margins[index];
+    const int64_t count = q->asks_end - q->asks_first;
+    const size_t size = (size_t)(3 * count + 1) * sizeof(double);
+    margin_end end = {instant, LIMIT, REST_LEAST};
+    double *found;
+    bool more = true;
+    int64_t i;
+    if (count == 0) {
+        return true;
+    }
+    if (GAP(r) > 0) {
+        end.last = floored(instant, step_of(r));
+    }
+    found = arena_take(&m->memory, size);
+    m->spoilt = m->spoilt || (found == NULL);
+    for (; (found != NULL) && (end.rest <= REST_END); end.rest++) {
+        if (!try_end(r, index, &end, reached, &found[end.rest * count])) {
+            arena_give(&m->memory, found, size);
+            found = NULL;
+        }
+    }
+    for (i = 0; more && (found != NULL) && (i < count); i++) {
+        margin_ask one = *ask_at(q, q->asks_first + i);
+        one.low = found[i];
+        one.high = found[count + i];
+        {
+            const rv_margin figure = figure_of(r, index, &one, found[2 * count + i]);
+            more = take(user, &figure, one.record);
+        }
+    }
+    arena_give(&m->memory, found, size);
+    return more;
+}
+
+static bool found_at_end(void *user, const rv_margin *figure, int32_t record)
+{
+    figure_found(user, figure, record);
+    return true;
+}
+
+/* Tell all figures that are left, when time has come to the end. */
+void margins_close(home *h, int64_t end, int64_t reached)
+{
+    run *r;
+    int32_t i;
+    for (r = h->root; (h->monitor->shapes != NULL) && (r != NULL); r = following(h, r)) {
+        for (i = 0; i < h->part->plan->judges.count; i++) {
+            (void)each_at_end(r, i, end, reached, found_at_end, h->monitor);
+        }
+        margins_clear(r);
+    }
+}
+
+/* Figures as an embedding program takes them. */
+typedef struct {
+    rv_monitor *monitor;
+    rv_take_margin take;
+    void *user;
+} telling;
+
+static bool tell_open(void *user, const rv_margin *figure, int32_t record)
+{
+    const telling *to = user;
+    rv_margin told;
+    if ((record == 0) || to->monitor->margins.records[record - 1].vanished) {
+        return true;
+    }
+    told = as_told(to->monitor, figure, record);
+    return to->take(to->user, &told);
+}
+
+void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user)
+{
+    telling to = {m, take, user};
+    const margin_results *s = &m->margins;
+    const int64_t end = (m->last == m->reached) ? m->reached : m->reached - 1;
+    int32_t i;
+    int32_t k;
+    if ((m->shapes == NULL) || (m->last == RV_NO_TIME) || m->finished) {
+        return;
+    }
+    for (i = s->ready; i < s->found_count; i++) {
+        if ((s->owners[i] != 0) && !tell_open(&to, &s->found[i], s->owners[i])) {
+            return;
+        }
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        home *h = &m->homes[i];
+        run *r;
+        for (r = h->root; r != NULL; r = following(h, r)) {
+            for (k = 0; k < h->part->plan->judges.count; k++) {
+                if (!each_at_end(r, k, end, m->reached, tell_open, &to)) {
+                    return;
+                }
+            }
+        }
+    }
+}
