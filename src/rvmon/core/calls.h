@@ -256,6 +256,7 @@ void home_take_amid(home *h, int64_t t);
 int64_t last_position(const rv_monitor *m);
 
 /* ---- core.c */
+void settle_margins(rv_monitor *m, int64_t t);
 const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 

@@ -266,10 +266,10 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
 }
 
 /* Tell by how much what is owed holds, as far as that is settled now that time has come to `t`. */
-static void settle_margins(rv_monitor *m, int64_t t)
+void settle_margins(rv_monitor *m, int64_t t)
 {
     int32_t i;
-    for (i = 0; (m->shapes != NULL) && (i < m->plan.part_count); i++) {
+    for (i = 0; (m->shapes != NULL) && !m->hurries && (i < m->plan.part_count); i++) {
         margins_settle(&m->homes[i], t);
     }
 }

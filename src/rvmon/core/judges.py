@@ -73,8 +73,8 @@ class Judges:
             self._hear(number, rule, tabled=tabled)
             self._add(number, rule, owner, numbers[owner], (place, form, diagram))
             if rule.measured is not None:
-                measured = (rule.measured, self._index, plan.spec, rule.requirement)
-                add_margin(sections, *measured)
+                network = plan_of(rule.measured, plan.gap)
+                add_margin(sections, network, self._index, plan.spec, rule.requirement)
 
     def links(self, place: int) -> Iterator[tuple[int, ...]]:
         """What a node tells judges, as records."""

@@ -140,8 +140,12 @@ static margin_range distance_of(const run *r, const measure_plan *m)
     } else {
         found = of_occurrences(r, a, m->factor);
     }
-    /* What is not born is what it is taken for. */
-    return is_anything(&found) ? of_truth(r->truth[m->node]) : found;
+    /* What is not born is what it is taken for. Once all is, nobody follows the truth of what has a
+     * distance. */
+    if (is_anything(&found) && ((r->at.phase == 0) || (a->op == ATOM_PAYLOAD))) {
+        found = of_truth(r->truth[m->node]);
+    }
+    return found;
 }
 
 margin_range measured_leaf(const run *r, const measure_plan *m)

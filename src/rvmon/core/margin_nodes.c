@@ -101,14 +101,14 @@ static void follow_until(gauging *w, int32_t place, int64_t at)
     const margin_edge *edges = &w->g->edges[w->shape->places[place].edge];
     const margin_range bounds = bounds_of(node_plan_of(w, place), edges);
     parts_follow(w, &w->g->nodes[place].parts, at, bounds.low, bounds.high,
-                 w->shape->places[place].alone);
+                 is_thin(w, place));
 }
 
 /* Tell the value of a stretch up to a position. */
 static void tell_stretch(gauging *w, int32_t place, int64_t first, int64_t last, double value)
 {
     margin_node *o = &w->g->nodes[place];
-    if (!w->sparse || w->shape->places[place].alone) {
+    if (!w->sparse || is_thin(w, place)) {
         tell_step(w, place, first, value);
         return;
     }

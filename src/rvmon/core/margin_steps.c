@@ -84,7 +84,7 @@ bool is_asked(const gauging *w, int64_t left, int64_t right)
 void tell_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
-    if (w->shape->places[place].alone && (place < w->shape->count - 1) && (s->end > s->first)
+    if (is_thin(w, place) && (place < w->shape->count - 1) && (s->end > s->first)
         && is_last_unread(w, place) && !is_asked(w, step_at(s, s->end - 1)->at, at - 1)) {
         step_at(s, s->end - 1)->value = value;
         return;
@@ -107,7 +107,7 @@ void note_position(gauging *w, int64_t at)
         for (i = 0; i < w->shape->count; i++) {
             const int32_t kind = w->shape->nodes[i].kind;
             if ((kind == OP_WINDOW) || (kind == OP_SHIFT)
-                || ((kind == OP_UNTIL) && !w->shape->places[i].alone)) {
+                || ((kind == OP_UNTIL) && !is_thin(w, i))) {
                 oldest = least(oldest, w->g->nodes[i].positions);
             }
         }

@@ -30,17 +30,10 @@ static bool awaits_the_end(const run *r, int32_t index)
 
 static gauging gauging_of(const run *r, int32_t index, int64_t now, int64_t reached)
 {
-    gauging w;
-    (void)memset(&w, 0, sizeof w);
-    w.monitor = r->home->monitor;
-    w.shape = shape_of(r, index);
-    w.q = &r->margins[index];
-    w.g = &w.q->readings[0];
-    w.step = step_of(r);
-    w.now = now;
-    w.reached = reached;
-    w.sparse = GAP(r) == 0;
-    return w;
+    measuring *q = &r->margins[index];
+    const gauging made = {r->home->monitor, shape_of(r, index), &q->readings[0], q, NULL, 0, NULL,
+                          step_of(r), now, reached, GAP(r) == 0, !is_streamed(r, index)};
+    return made;
 }
 
 /* Work out once what is measured has which shape. */
@@ -218,7 +211,6 @@ static void enter_position(run *r, int32_t index, int64_t t)
     measuring *q = &r->margins[index];
     const int64_t position = floored(t, step_of(r));
     const bool asked = q->asks_first < q->asks_end;
-    gauging w = gauging_of(r, index, position - 1, t);
     if (q->active && !asked && !is_kept_up(r, index)) {
         q->active = false; /* it awaits the end */
     }
@@ -229,8 +221,11 @@ static void enter_position(run *r, int32_t index, int64_t t)
         gauge_begin(s, &q->readings[0], position, q->asks_first);
     } else if (awaits_the_end(r, index)) {
         come_to_margin(r, index, position - 1, t);
-    } else {
+    } else if (q->letter_count > 0) {
+        gauging w = gauging_of(r, index, position - 1, t);
         give_letters(&w, position - 1);
+    } else {
+        /* They are given. */
     }
     read_measures(r, index, position);
     q->position = t;
@@ -281,7 +276,8 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
         figure_found(r->home->monitor, &figure, record);
         return;
     }
-    if (!q->active || (q->position < t)) {
+    /* At the end, the letter of the last position stands; a later sample may have been taken. */
+    if (!q->active || ((q->position < t) && !awaits_the_end(r, index))) {
         enter_position(r, index, t);
     }
     ask_for(r, index, floored(t, step_of(r)), record);

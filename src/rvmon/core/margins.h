@@ -31,6 +31,7 @@ typedef struct {
     int64_t now;               /* up to where leaves are known */
     int64_t reached;           /* the instant that time has come to */
     bool sparse;               /* whether only samples are positions */
+    bool thin;                 /* whether few positions are asked for */
 } gauging;
 
 /* Least and greatest value. */
@@ -59,6 +60,12 @@ static inline double margin_behind(const margin_end *end, bool kept)
 {
     const bool good = (end->rest == REST_GREATEST) || ((end->rest == REST_END) && kept);
     return good ? INFINITE : -INFINITE;
+}
+
+/* Whether the value of an operator matters at positions alone that are asked for, and these are few. */
+static inline bool is_thin(const gauging *w, int32_t place)
+{
+    return w->thin && w->shape->places[place].alone;
 }
 
 /* Up to where an operand is known. */

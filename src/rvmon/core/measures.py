@@ -1,4 +1,4 @@
-"""By how much what attempts owe holds: formulas as networks, and what their leaves are measured by."""
+"""By how much what attempts owe holds: networks of formulas, and what their leaves count as."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from rvmon.core.sections import Section, Sections
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import State
+from rvmon.plan.numbers import events_of
 from rvmon.spec.checked.arithmetic import UnitRule
 from rvmon.spec.checked.formula import (
     Arithmetic,
@@ -61,7 +62,10 @@ def add_margin(
 
 
 def _measure(
-    core: Literal | Constant, index: Mapping[State, int], spec: CheckedSpec, requirement: Requirement
+    core: Literal | Constant,
+    index: Mapping[State, int],
+    spec: CheckedSpec,
+    requirement: Requirement,
 ) -> tuple[float, int, int, int]:
     """Factor, kind, whether it is negated, and the node."""
     if isinstance(core, Constant):
@@ -75,6 +79,22 @@ def _measure(
     if not isinstance(leaf, Compare) or _compares_labels(leaf, spec, requirement):
         return 1.0, Measure.TRUTH, turned, node
     return base_factor(leaf, spec), Measure.DISTANCE, turned, node
+
+
+def is_followed(core: Literal | Constant, spec: CheckedSpec, requirement: Requirement) -> bool:
+    """Whether it matters to what is measured that a node of a leaf is kept up.
+
+    A distance is read off the values; while something is not born all nodes are kept up.
+    """
+    if isinstance(core, Constant):
+        return False
+    leaf = core.proposition.leaf
+    return (
+        core.sense is Sense.KNOWN_FALSE
+        or not isinstance(leaf, Compare)
+        or bool(events_of(leaf.left, leaf.right))
+        or _compares_labels(leaf, spec, requirement)
+    )
 
 
 def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement) -> bool:

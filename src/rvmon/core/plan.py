@@ -6,7 +6,6 @@ from rvmon.core.automata import Automata
 from rvmon.core.packed import Numbering, Packed, packed
 from rvmon.core.part import Part
 from rvmon.core.sections import Section, Sections
-from rvmon.errors import RvmonError
 from rvmon.plan.plan import Plan
 
 
@@ -18,10 +17,8 @@ def pack(plan: Plan, *, next_law: bool = False) -> Packed:
         next_law: whether they are judged by the law to come.
 
     Raises:
-        RvmonError: there is no requirement, or an expression is beyond the core.
+        RvmonError: an expression is beyond the core.
     """
-    if not plan.asked:
-        raise RvmonError("the specification has no requirements: there is nothing to compile")
     sections = Sections()
     automata = Automata(sections)
     numbering = Numbering(plan.spec)
@@ -36,7 +33,7 @@ def pack(plan: Plan, *, next_law: bool = False) -> Packed:
         len(plan.events),
         sum(len(event.fields) for event in plan.spec.events.values()),
         len(plan.asked),
-        max(len(rule.captured) for rule in plan.asked),
+        max((len(rule.captured) for rule in plan.asked), default=0),
     )
     ids = tuple(rule.requirement.id for rule in plan.asked)
     return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes, next_law=next_law))

@@ -99,7 +99,7 @@ void set_alarm(run *r, int64_t position)
     }
     r->at.alarm = least(position, timers_next(&r->rules));
     if (GAP(r) == 0) {
-        const bool busy = (r->margins != NULL) || (r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy
+        const bool busy = (r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy
                           || (r->part->plan->stateful.count > 0) || is_restless(r)
                           || (r->failing_count > 0) || (r->at.presence != ARE_THERE)
                           || ((r->cut < NEVER) && (r->cut > r->at.position));

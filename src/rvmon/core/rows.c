@@ -4,6 +4,8 @@
 #include <string.h>
 
 #define NO_UPDATE 255
+/* So many rows are taken until it is asked which figures they have settled. */
+#define ROWS_TOGETHER 64
 
 /* What a column says in a row; NO_UPDATE: nothing. */
 static int32_t said(const rv_column *c, int64_t row)
@@ -64,6 +66,16 @@ static int32_t lay_row(const rv_monitor *m, const rv_column *columns, int32_t co
     return made;
 }
 
+/* Find the figures that rows have settled which were taken together. */
+static void settle_now(rv_monitor *m)
+{
+    if (m->hurries && !m->spoilt && (m->reached != RV_NO_TIME)) {
+        m->hurries = false;
+        settle_margins(m, m->reached);
+        m->hurries = true;
+    }
+}
+
 int rv_rows(rv_monitor *m, const int64_t *times, int64_t rows, const rv_column *columns,
             int32_t count, int64_t *done)
 {
@@ -76,11 +88,17 @@ int rv_rows(rv_monitor *m, const int64_t *times, int64_t rows, const rv_column *
         m->spoilt = true;
         status = RV_NO_MEMORY;
     }
+    m->hurries = m->shapes != NULL;
     while ((status == RV_OK) && (*done < rows)) {
         const int32_t made = lay_row(m, columns, count, *done, updates, fields);
         status = rv_step(m, times[*done], updates, made);
         *done += (status == RV_OK) ? 1 : 0;
+        if (m->hurries && (*done % ROWS_TOGETHER == 0)) {
+            settle_now(m);
+        }
     }
+    settle_now(m);
+    m->hurries = false;
     arena_give(&m->memory, updates, (size_t)(count + 1) * sizeof *updates);
     arena_give(&m->memory, fields, fields_size);
     return status;

@@ -341,6 +341,7 @@ struct rv_monitor {
     int64_t dense_end;         /* that of the last such stretch */
     int64_t heard;             /* how far names are known to have been lost; RV_NO_TIME: none was */
     bool measures_positions;
+    bool hurries;              /* whether rows are judged, and figures can wait for some more of them */
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;

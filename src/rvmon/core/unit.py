@@ -87,11 +87,8 @@ class Unit:
     @cached_property
     def _looks_back(self) -> bool:
         plan = self._plan
-        return any(
-            plan_of(rule.owed, plan.gap).looks_back
-            or (rule.measured is not None and rule.measured.looks_back)
-            for _, rule in plan.judges
-        )
+        asked = [one for _, rule in plan.judges for one in (rule.owed, rule.measured)]
+        return any(plan_of(one, plan.gap).looks_back for one in asked if one is not None)
 
     @cached_property
     def _reach(self) -> Reach | None:

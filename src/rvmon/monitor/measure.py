@@ -105,12 +105,14 @@ def _by_columns(
     try:
         columns = source.columns(lambda: planned.fillable)
         from rvmon.monitor.core.recording import take_columns
-        from rvmon.monitor.robustness.recorded import recorded_margins
+        from rvmon.monitor.robustness.recorded import RecordedMargins
 
+        found = RecordedMargins(planned.packed.ids)
         run = planned.monitor(frozenset(planned.numbers) - frozenset(columns.names))
         run.measure(FIGURES, streams)
-        take_columns(run, planned, columns)
+        take_columns(run, planned, columns, lambda: found.add(run.margins()))
     except NotPlainError:
         return None
     run.finish(source.end)
-    return recorded_margins(planned.packed.ids, run.margins())
+    found.add(run.margins())
+    return found.margins()

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.core import Core
 from rvmon.formula.state import Leaf, State, Unborn
@@ -40,7 +39,7 @@ class PlannedRule:
             may be others; `None`: none may.
         blurs_anywhere: whether, of what has a key that is not known, one may have begun anywhere.
         asked: further state formulas that are asked for their values.
-        measured: the network of what it owes as far as that is measured; `None`: it is not.
+        measured: what it owes as far as that is measured; `None`: it is not.
     """
 
     requirement: Requirement
@@ -59,7 +58,7 @@ class PlannedRule:
     blurs: State | None = None
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()
-    measured: NetworkPlan | None = None
+    measured: Core | None = None
 
     @property
     def states(self) -> Iterator[State]:

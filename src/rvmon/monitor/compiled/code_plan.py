@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rvmon.errors import UnknownNameError
+from rvmon.dataflow.network_plan import plan_of as network_of
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.core import Literal
+from rvmon.formula.factory import Factory
 from rvmon.formula.state import State
 from rvmon.monitor.compiled.refusal import of_tables
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -19,7 +22,6 @@ def plan_requirements(
     compiled: CompiledSpec,
     requirements: Sequence[CompiledRequirement],
     *,
-    measured: bool = False,
     stepped: bool = False,
 ) -> Plan:
     """The plan of some requirements of a specification, of which somebody will ask what is owed.
@@ -29,14 +31,12 @@ def plan_requirements(
     Args:
         compiled: the specification.
         requirements: chosen from it.
-        measured: whether somebody will ask for the values of all that robustness is made of.
         stepped: whether automata judge where windows are followed else.
     """
-    key = "plan", tuple(one.requirement.id for one in requirements), measured, stepped
+    key = "plan", tuple(one.requirement.id for one in requirements), stepped
     made = compiled.forms.get(key)
     if not isinstance(made, Plan):
-        how = {"explained": True, "measured": measured, "stepped": stepped}
-        rules = [_rule(one, **how) for one in requirements]
+        rules = [_rule(one, explained=True, stepped=stepped) for one in requirements]
         made = plan_of(compiled.checked, rules)
         compiled.forms[key] = made
     return made
@@ -52,11 +52,15 @@ def _rule(
 ) -> PlannedRule:
     if explained:
         # In this process what judges attempts in doubt is made when one comes up.
-        is_judged = hidden or (one.follows_windows and not (measured or stepped))
+        is_judged = hidden or (one.follows_windows and not stepped)
         automaton = None if is_judged or of_tables(one) is not None else one.automaton
     else:
-        automaton = one.slim
+        automaton = None if measured and one.counts_alone else one.slim
     obligation = one.obligation
+    owed, alphabet = obligation.owed, one.alphabet
+    if measured and one.counts_alone:
+        owed = Factory().constant(True)
+        alphabet = alphabet_of(owed)
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
 
@@ -65,12 +69,13 @@ def _rule(
             return None
         return _rule(other, explained=explained, hidden=True, measured=measured)
 
-    read = [core for _, core in one.measured_plan.leaves] if measured else []
+    figured = one.measured_owed if measured else None
+    read = [] if figured is None else [core for _, core in network_of(figured, one.gap).leaves]
     return PlannedRule(
         one.requirement,
         obligation.trigger,
-        obligation.owed,
-        one.alphabet,
+        owed,
+        alphabet,
         automaton,
         one.in_runs(automaton),
         again=obligation.again,
@@ -83,7 +88,7 @@ def _rule(
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
-        measured=one.measured_plan if measured else None,
+        measured=figured,
     )
 
 
@@ -102,14 +107,16 @@ def plan_alone(
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
-        measured: whether it is to measure them as well.
+        measured: whether it is to measure them as well; there may be none then.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
         RvmonError: one of them is beyond all engines; which one and why is in the message.
     """
     ids = requirements_asked(compiled.checked, only)
-    if ids is not None and not ids:
+    if not (measured or compiled.chosen(ids)):
+        if not compiled.requirements:
+            raise RvmonError("the specification has no requirements: there is nothing to compile")
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     rules = [_rule(one, explained=False, measured=measured) for one in compiled.chosen(ids)]

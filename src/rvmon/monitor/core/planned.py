@@ -68,8 +68,8 @@ class PlannedCore:
     def monitor(
         self,
         absent: frozenset[str],
-        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]] | None = None,
-        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]] | None = None,
+        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Any]] | None = None,
+        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Any]] | None = None,
     ) -> native.Monitor:
         """Begin a run.
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import rvmon.core._core as native
-
 from rvmon.errors import TimeOrderError
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recorded import report_of_run
@@ -21,6 +20,8 @@ from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+_SOME = 4096
 
 _NO, _YES = np.uint8(0), np.uint8(2)
 """What a row says of an event; see `core.h`."""
@@ -52,21 +53,46 @@ def judge_columns(planned: PlannedCore, columns: Columns, end: int | None) -> Re
     return report_of_run(planned, run, origin or 0, run.finish(end))
 
 
-def take_columns(run: native.Monitor, planned: PlannedCore, columns: Columns) -> None:
-    """Have a run take a recording by its columns; see `judge_columns`."""
+def take_columns(
+    run: native.Monitor,
+    planned: PlannedCore,
+    columns: Columns,
+    after_some: Callable[[], object] | None = None,
+) -> None:
+    """Have a run take a recording by its columns; see `judge_columns`.
+
+    Args:
+        run: of the plan.
+        planned: the plan of the requirements.
+        columns: of the recording.
+        after_some: called each time when so many rows were taken as suit a cache of the processor.
+    """
     before = 0
     for block in columns.read():
         times = np.ascontiguousarray(block.times, np.int64)
-        laid = tuple(_column(planned, name, values) for name, values in block.columns.items())
-        taken = run.rows(times, laid)
-        if taken < len(times):
-            raise _out_of_order(before + taken, int(times[taken]))
-        before += taken
+        laid = [_column(planned, name, values) for name, values in block.columns.items()]
+        size = len(times) if after_some is None else _SOME
+        for first in range(0, len(times), size or 1):
+            rows = slice(first, first + size)
+            taken = run.rows(times[rows], tuple(_part(one, rows) for one in laid))
+            if taken < len(times[rows]):
+                row = first + taken
+                raise _out_of_order(before + row, int(times[row]))
+            if after_some is not None:
+                after_some()
+        before += len(times)
 
 
-def _column(
-    planned: PlannedCore, name: str, values: NDArray[Any]
-) -> tuple[int, int, NDArray[Any] | None, NDArray[np.uint8] | None]:
+_Column = tuple[int, int, "NDArray[Any] | None", "NDArray[np.uint8] | None"]
+
+
+def _part(column: _Column, rows: slice) -> _Column:
+    number, layout, *arrays = column
+    values, says = (None if one is None else one[rows] for one in arrays)
+    return number, layout, values, says
+
+
+def _column(planned: PlannedCore, name: str, values: NDArray[Any]) -> _Column:
     """A column as `native.Monitor.rows` takes it."""
     number, kind = planned.numbers[name], planned.packed.signals.get(name)
     if kind is None:

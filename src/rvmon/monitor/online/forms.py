@@ -39,8 +39,6 @@ def forms_of(
     requirements: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
     rule: type[Rule] | None = None,
-    *,
-    measured: bool = False,
 ) -> Forms:
     """Generate what monitors of some requirements run.
 
@@ -49,10 +47,9 @@ def forms_of(
         requirements: chosen from it.
         sources: the names that can arrive; `None`: all.
         rule: see `rvmon.codegen.python_unit.unit_class`.
-        measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
     """
     fed = [one for one in requirements if one.is_fed]
-    plan = plan_requirements(compiled, fed, measured=measured, stepped=rule is not None)
+    plan = plan_requirements(compiled, fed, stepped=rule is not None)
     machines = [
         None if rule.automaton is None else one.machine("automaton")
         for one, rule in zip(fed, plan.rules, strict=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NoReturn
 
-from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
+from rvmon.errors import RvmonError, SnapshotError, TraceError
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.health import HealthLog
@@ -25,7 +25,7 @@ from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample, Value
-from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
+from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict

@@ -11,7 +11,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from rvmon.errors import OverlapError, TraceError, UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.planned import PlannedCore, planned_core
+from rvmon.monitor.core.planned import planned_core
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE, Intake
 from rvmon.monitor.inputs.order import refuse_earlier
 from rvmon.monitor.inputs.validate import Validator
@@ -74,7 +74,8 @@ class RobustnessMonitor:
         if holds_back:
             self.step, self.step_ns = self._take_at, self._look_closer
         else:
-            self.step, self.step_ns = self._core.step, self._core.step_ns
+            core: Any = self._core  # its steps give figures now
+            self.step, self.step_ns = core.step, core.step_ns
 
     def _take_at(self, t: float, values: Mapping[str, Any]) -> Sequence[Measured]:
         """Take a sample at seconds."""

@@ -60,15 +60,14 @@ class Measured:
     in_doubt: bool = False
 
 
-FIGURES = (
-    Measured,
-    Robustness,
-    (
-        *(Measured.requirement, Measured.number, Measured.t, Measured.robustness),
-        *(Measured.in_doubt, Robustness.low, Robustness.high, Robustness.kept),
-    ),
+_FIELDS = (
+    *((Measured, name) for name in ("requirement", "number", "t", "robustness", "in_doubt")),
+    *((Robustness, name) for name in ("low", "high", "kept")),
 )
-"""What the core makes figures of, in the order of `module_margins.h`."""
+"""In the order of `module_margins.h`."""
+
+FIGURES = Measured, Robustness, tuple(getattr(type_, name) for type_, name in _FIELDS)
+"""What the core makes figures of: types, and what sets their fields."""
 
 
 class Stream(Sequence[tuple[int, Robustness]]):

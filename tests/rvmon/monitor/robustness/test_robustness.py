@@ -4,10 +4,11 @@ import doctest
 from collections import deque
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import rvmon
-from rvmon.errors import UnknownNameError
+from rvmon.errors import TraceError, UnknownNameError
 
 HEAD = "spec s\nsignal x : real [cm]\nsignal p : bool\nevent e\nrequirement R1\n  "
 INFINITE = float("inf")
@@ -230,21 +231,51 @@ def test_the_page_about_it_is_true():
     assert (failures, tried > 4) == (0, True)
 
 
-def test_integers_beyond_all_floats():
-    """A number that no float holds is infinitely far from a bound, above it or below."""
+def test_a_number_that_no_double_holds_is_refused():
+    """The sample is not taken, and the monitor goes on without it."""
     spec = rvmon.loads(
         "spec s\nsignal x : real\nevent e\nrequirement R1\n  upon e\n  then within 3 s x > 1\n"
     )
-    for value, low in ((10**400, INFINITE), (-(10**400), 4.0)):
-        monitor = spec.robustness_monitor()
-        monitor.step(0, {"x": 1.0, "e": True})
-        monitor.step(1, {"x": value})
-        monitor.step(2, {"x": 5.0})
-        [measured] = monitor.finish(9)
-        assert measured.robustness.low == low
+    monitor = spec.robustness_monitor()
+    monitor.step(0, {"x": 1.0, "e": True})
+    with pytest.raises(TraceError, match="too large for a double"):
+        monitor.step(1, {"x": 10**400})
+    monitor.step(2, {"x": 5.0})
+    [measured] = monitor.finish(9)
+    assert measured.robustness.low == 4.0
 
 
-def test_what_is_measured_by_generated_code_and_what_is_not_is_given_in_order():
+@pytest.mark.parametrize(
+    ("x", "y", "low"),
+    [
+        (2**53 + 1, 2**53, -1.0),
+        (2**63 - 1, -(2**63), -float(2**64)),
+        (-(2**63), 2**63 - 1, float(2**64)),
+        (2**63 - 1, 2**63 - 2, -1.0),
+    ],
+)
+def test_whole_numbers_are_subtracted_exactly(x, y, low):
+    """Their difference is rounded once."""
+    spec = rvmon.loads("spec s\nsignal x, y : int\nevent e\nrequirement R1\n  upon e then x < y\n")
+    [found] = spec.robustness_monitor().step(0, {"x": x, "y": y, "e": True})
+    assert found.robustness.low == low
+
+
+@pytest.mark.parametrize("x", [INFINITE, -INFINITE])
+@pytest.mark.parametrize("op", ["<", "<=", "==", "!=", ">=", ">"])
+def test_what_is_equally_infinite_is_not_apart(x, op):
+    """Its margin is 0, by samples and by columns."""
+    spec = rvmon.loads(
+        f"spec s\ntime sampled\nsignal x, y : real\nrequirement R1\n  upon start then x {op} y\n"
+    )
+    [found] = spec.robustness_monitor().step(0, {"x": x, "y": x})
+    assert found.robustness.low == found.robustness.high == 0
+    columns = {"t": np.array([0.0, 1.0]), "x": np.array([x, 1.0]), "y": np.array([x, 3.0])}
+    [(_, other), _] = spec.robustness(columns).streams["R1"]
+    assert other.low == other.high == 0
+
+
+def test_what_captures_values_and_what_does_not_is_given_in_order():
     """Requirements of one file have the figures that each has alone, at the same samples."""
     head = "spec s\nsignal x : real\nsignal p : bool\nevent e\n"
     texts = [
@@ -269,10 +300,10 @@ def test_what_is_measured_by_generated_code_and_what_is_not_is_given_in_order():
 
 
 def test_a_sample_of_plain_numbers_goes_on_from_one_that_was_not():
-    """What is unknown, or no float, is measured in between."""
+    """What is unknown is measured in between."""
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R1\n  always within 2 s x > 1\n")
     monitor = spec.robustness_monitor(streams=True)
-    values = [2.0, 10**400, None, 3.0, 0.0, 0.0, 0.5, 4.0]
+    values = [2.0, INFINITE, None, 3.0, 0.0, 0.0, 0.5, 4.0]
     for t, x in enumerate(values):
         monitor.step(t, {"x": x})
     found = {one.t // 10**9: one.robustness for one in monitor.finish() if one.number is None}
