@@ -114,9 +114,14 @@ static inline bool means_the_same(const run *r, int32_t local, const rv_number *
     return (value->kind == r->value[local].kind) && (s->low < x) && (x < s->high);
 }
 
+void margins_stir(run *r, int32_t what);
+
 static inline void take_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
+    if (r->margins != NULL) {
+        margins_stir(r, in->event ? r->part->plan->signals.count + in->local : in->local);
+    }
     if (!in->event && (u->says == RV_SAYS_YES) && means_the_same(r, in->local, &u->value)) {
         r->value[in->local] = u->value;
     } else {

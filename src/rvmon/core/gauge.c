@@ -223,8 +223,28 @@ static void lay_out(const plan *p, margin_shape *s, const bool *fixed)
         if (n->kind == OP_LEAF) {
             s->leaves[n->left] = fixed[i] ? -1 : i;
         }
-        s->sweeps = s->sweeps || (n->kind == OP_UNTIL);
+        s->passes = s->passes || (n->kind == OP_WINDOW) || (n->kind == OP_SHIFT);
     }
+}
+
+/* So much after a position what is known of an operator comes to it, or later. */
+static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags, int64_t step)
+{
+    const operator_plan *n = &s->nodes[place];
+    const margin_place *own = &s->places[place];
+    const int64_t ahead = (n->high > LIMIT / step) ? LIMIT : n->high * step;
+    int64_t found = 0;
+    int32_t k;
+    for (k = 0; k < own->edge_count; k++) {
+        const int32_t operand = s->operands[own->edge + k];
+        if ((operand >= 0) && (lags[operand] > found)) {
+            found = lags[operand];
+        }
+    }
+    if ((n->kind == OP_WINDOW) || (n->kind == OP_SHIFT)) {
+        found = (ahead > 0) ? least(found + ahead, LIMIT) : 0;
+    }
+    return ((n->kind == OP_WINDOW) && (n->over > found)) ? n->over : found;
 }
 
 /* Work out the shape of what is measured; false if memory is short. */
@@ -233,6 +253,7 @@ bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s)
     const plan *p = &m->plan;
     const int32_t count = g->operators.count;
     bool *fixed = taken(m, count, sizeof *fixed);
+    int64_t *lags = taken(m, count, sizeof *lags);
     int32_t i;
     s->plan = g;
     s->nodes = &p->operators[g->operators.first];
@@ -240,7 +261,7 @@ bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s)
     s->count = count;
     s->places = taken(m, count, sizeof *s->places);
     s->leaves = taken(m, g->measures.count, sizeof *s->leaves);
-    if ((fixed == NULL) || (s->places == NULL) || (s->leaves == NULL)) {
+    if ((fixed == NULL) || (lags == NULL) || (s->places == NULL) || (s->leaves == NULL)) {
         return false;
     }
     for (i = 0; i < count; i++) {
@@ -256,6 +277,11 @@ bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s)
     find_fixed(p, s, fixed);
     lay_out(p, s, fixed);
     find_alone(s);
+    for (i = 0; i < count; i++) {
+        lags[i] = lag_of(s, i, lags, (p->header->gap > 0) ? p->header->gap : 1);
+    }
+    s->lag = lags[count - 1];
     arena_give(&m->memory, fixed, (size_t)(count + 1) * sizeof *fixed);
+    arena_give(&m->memory, lags, (size_t)(count + 1) * sizeof *lags);
     return true;
 }

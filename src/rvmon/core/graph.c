@@ -122,6 +122,9 @@ static void store(run *r, int32_t place, uint8_t value)
     const node_plan *n = &r->part->nodes[place];
     const uint8_t was = r->truth[place];
     int32_t i;
+    if (r->margins != NULL) {
+        margins_stir(r, r->part->plan->signals.count + r->part->plan->events.count + place);
+    }
     r->truth[place] = value;
     for (i = 0; i < n->links.count; i++) {
         const link_plan *l = &PLAN(r)->links[n->links.first + i];

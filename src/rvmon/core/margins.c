@@ -36,21 +36,34 @@ static gauging gauging_of(const run *r, int32_t index, int64_t now, int64_t reac
     return made;
 }
 
-/* Work out once what is measured has which shape. */
-bool margins_prepare(rv_monitor *m)
+/* Take it that what judges measure may be another: what a name says, signals first, then events, or the
+ * truth of a node, behind them. */
+void margins_stir(run *r, int32_t what)
 {
-    const int64_t count = m->plan.counts[SEC_MARGINS];
-    int64_t i;
-    if (count == 0) {
-        return true;
+    const margin_readers *readers = &r->part->readers;
+    int32_t i;
+    if (r->margins == NULL) {
+        return;
     }
-    m->shapes = arena_take(&m->memory, (size_t)count * sizeof *m->shapes);
-    for (i = 0; (m->shapes != NULL) && (i < count); i++) {
-        if (!make_shape(m, &m->plan.margins[i], &m->shapes[i])) {
-            return false;
+    for (i = readers->first[what]; i < readers->first[what + 1]; i++) {
+        const int32_t index = readers->judges[i];
+        if (!r->margins[index].stirred) {
+            r->margins[index].stirred = true;
+            r->stirred[r->stirred_count] = index;
+            r->stirred_count++;
         }
     }
-    return m->shapes != NULL;
+}
+
+static void stir_all(run *r)
+{
+    int32_t i;
+    r->stirred_count = 0;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        r->margins[i].stirred = true;
+        r->stirred[i] = i;
+    }
+    r->stirred_count = r->part->plan->judges.count;
 }
 
 /* Have a run that is new be measured. */
@@ -64,6 +77,14 @@ bool margins_make(run *r)
         return true;
     }
     r->margins = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->margins);
+    r->stirred = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->stirred);
+    r->margins_due.due = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int64_t));
+    r->margins_due.ids = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
+    r->margins_due.place = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
+    if ((r->stirred == NULL) || (r->margins_due.due == NULL) || (r->margins_due.ids == NULL)
+        || (r->margins_due.place == NULL)) {
+        return false;
+    }
     for (i = 0; (r->margins != NULL) && (i < judges); i++) {
         const margin_shape *s = shape_of(r, i);
         measuring *q = &r->margins[i];
@@ -87,6 +108,11 @@ void margins_clear(run *r)
 {
     int32_t i;
     r->asked = 0;
+    r->stirred_count = 0;
+    r->measured_at = -LIMIT;
+    if (r->margins != NULL) {
+        timers_clear(&r->margins_due, r->part->plan->judges.count);
+    }
     for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
         measuring *q = &r->margins[i];
         q->asks_first = 0;
@@ -96,6 +122,7 @@ void margins_clear(run *r)
         q->active = false;
         q->parted = false;
         q->blind = false;
+        q->stirred = false;
     }
 }
 
@@ -155,6 +182,23 @@ static void tell_answers(run *r, int32_t index)
     }
 }
 
+/* Set when time alone may settle the first position that is asked for, the leaves being known up to a
+ * position; NEVER: it cannot. */
+static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
+{
+    const margin_shape *s = shape_of(r, index);
+    const measuring *q = &r->margins[index];
+    int64_t due = NEVER;
+    if (q->active && (q->asks_first < q->asks_end) && !awaits_the_end(r, index)) {
+        due = sum(ask_at(q, q->asks_first)->position * step_of(r), s->lag);
+        if ((due <= reached) && !s->passes && (q->letter_count == 0)
+            && (now >= floored(reached, step_of(r)))) {
+            due = NEVER; /* all that is known was looked at */
+        }
+    }
+    timers_set(&r->margins_due, index, due);
+}
+
 /* Let the leaves be known up to a position. */
 static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
 {
@@ -169,6 +213,7 @@ static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
         gauge_run(&w);
     }
     tell_answers(r, index);
+    set_margin_due(r, index, now, reached);
 }
 
 /* What is at most is another from the first letter on in which something is unknown. */
@@ -229,6 +274,7 @@ static void enter_position(run *r, int32_t index, int64_t t)
     }
     read_measures(r, index, position);
     q->position = t;
+    timers_set(&r->margins_due, index, awaits_the_end(r, index) ? NEVER : -LIMIT);
 }
 
 /* Ask for a position of which the letter is not given yet. */
@@ -260,6 +306,10 @@ static void ask_for(run *r, int32_t index, int64_t position, int32_t record)
     one->high = INFINITE;
     one->record = record;
     r->asked += (record != 0) ? 1 : 0;
+    if ((q->asks_end == q->asks_first + 1) && !awaits_the_end(r, index)) {
+        const int64_t due = sum(position * step_of(r), shape_of(r, index)->lag);
+        timers_set(&r->margins_due, index, least(due, r->margins_due.due[index]));
+    }
 }
 
 /* Measure an attempt that begins at the position at `t`. */
@@ -277,39 +327,55 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
         return;
     }
     /* At the end, the letter of the last position stands; a later sample may have been taken. */
-    if (!q->active || ((q->position < t) && !awaits_the_end(r, index))) {
+    if (!q->active
+        || ((q->position < t) && (q->stirred || (GAP(r) == 0)) && !awaits_the_end(r, index))) {
         enter_position(r, index, t);
     }
     ask_for(r, index, floored(t, step_of(r)), record);
 }
 
-/* Read what is measured at the position at `t`, when attempts have begun there. */
+/* Read what a judge measures at the position at `t`, if it is asked for. */
+static void visit_measured(run *r, int32_t index, int64_t t)
+{
+    measuring *q = &r->margins[index];
+    const bool wanted = q->active || is_kept_up(r, index) || awaits_the_end(r, index);
+    q->stirred = false;
+    if (!q->blind && wanted && (!q->active || (q->position < t))) {
+        enter_position(r, index, t);
+    }
+}
+
+/* Read what is measured at the position at `t`, when attempts have begun there: where samples are
+ * positions of all, else of those whose leaves may be others. */
 void margins_visit(run *r, int64_t t)
 {
+    const int32_t streamed = r->home->monitor->measures_positions ? r->part->plan->requirements : 0;
     int32_t i;
-    for (i = 0; i < r->part->plan->judges.count; i++) {
-        measuring *q = &r->margins[i];
-        if (q->blind || (!q->active && !is_kept_up(r, i) && !awaits_the_end(r, i))) {
-            continue;
-        }
-        if (!q->active || (q->position < t)) {
-            enter_position(r, i, t);
-        }
-        if (is_streamed(r, i) && (t - step_of(r) < r->at.after)) {
+    if ((GAP(r) == 0) || (r->measured_at == -LIMIT)) {
+        stir_all(r);
+    }
+    r->measured_at = t;
+    for (i = 0; i < r->stirred_count; i++) {
+        visit_measured(r, r->stirred[i], t);
+    }
+    r->stirred_count = 0;
+    for (i = 0; i < streamed; i++) {
+        if (is_streamed(r, i) && !r->margins[i].blind && (t - step_of(r) < r->at.after)) {
             ask_for(r, i, floored(t, step_of(r)), 0);
         }
     }
 }
 
-/* Tell what has become known in a run now that time has come to an instant. */
+/* Tell what has become known in a run now that time has come to an instant: where leaves were read, or
+ * time alone may do. */
 static void settle_run(run *r, int64_t reached)
 {
-    int32_t i;
-    for (i = 0; i < r->part->plan->judges.count; i++) {
-        measuring *q = &r->margins[i];
-        if (q->active && !awaits_the_end(r, i)) {
-            const int64_t seen = (q->position == reached) ? reached : reached - 1;
-            come_to_margin(r, i, floored(seen, step_of(r)), reached);
+    const int64_t seen = (r->measured_at == reached) ? reached : reached - 1;
+    while (timers_next(&r->margins_due) <= reached) {
+        const int32_t index = r->margins_due.ids[0];
+        come_to_margin(r, index, floored(seen, step_of(r)), reached);
+        if (r->margins_due.due[index] <= reached) {
+            timers_set(&r->margins_due, index, reached + 1);
         }
     }
 }
@@ -350,6 +416,7 @@ void margins_miss(run *r)
         }
         q->active = false;
     }
+    r->measured_at = -LIMIT;
 }
 
 /* What is asked for by one assumption about what lies behind the end; false if memory is short. */

@@ -96,7 +96,7 @@ typedef struct {
     bool active;
     bool parted;
     bool blind;                /* whether it missed positions that matter */
-    bool streams;              /* whether each position of a sample is asked for */
+    bool stirred;              /* whether its leaves may be others than was read */
 } measuring;
 
 /* An attempt that is measured, until its figure is taken. */
@@ -126,8 +126,15 @@ typedef struct {
     int32_t count;
     int32_t edges;
     int32_t *leaves;           /* by measure, the place of its leaf; -1: nobody reads its steps */
-    bool sweeps;               /* whether the rule for the end matters */
+    int64_t lag;               /* no position is settled less than so many ticks behind it */
+    bool passes;               /* whether time alone can make something known */
 } margin_shape;
+
+/* Which judges measure what a name says, or a node. */
+typedef struct {
+    int32_t *first;            /* by name of a part, signals first, then by node; the end */
+    int32_t *judges;
+} margin_readers;
 
 /* Figures that were found, and attempts that wait for theirs. */
 typedef struct {

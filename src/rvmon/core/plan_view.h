@@ -2,7 +2,7 @@
 #ifndef RVMON_PLAN_VIEW_H
 #define RVMON_PLAN_VIEW_H
 
-#include "plan.h"
+#include "measuring.h"
 
 /* ---- memory.c: blocks of a few sizes, all given back at once */
 
@@ -67,6 +67,7 @@ typedef struct {
     int32_t *networked;        /* judges that networks are, neither automata nor chains */
     int32_t networked_count;
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
+    margin_readers readers;
     bool restarts;             /* whether some failure may be followed by another attempt */
 } part;
 

@@ -199,6 +199,10 @@ struct run {
     uint8_t *has_kept;
     uint8_t *keeps;            /* whether what comes at that instant counts behind it */
     measuring *margins;        /* by judge; NULL: nothing is measured */
+    timers margins_due;        /* by judge, when time alone may settle something */
+    int32_t *stirred;          /* judges whose leaves may be others than was read */
+    int64_t measured_at;       /* the position up to which all are known */
+    int32_t stirred_count;
     int32_t asked;             /* attempts whose margins are to come */
     /* What is copied with them. */
     struct progress {

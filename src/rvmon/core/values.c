@@ -96,6 +96,9 @@ static void learn_span(run *r, int32_t local)
 static void hold(run *r, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
+        if (r->margins != NULL) {
+            margins_stir(r, local);
+        }
         r->value[local] = *value;
         if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
             r->spans[local] = NO_SPAN; /* mostly the next value means something else again */

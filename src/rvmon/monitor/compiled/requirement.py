@@ -15,7 +15,6 @@ from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.shapes import Shapes
 from rvmon.automaton.table import TableMachine
-from rvmon.codegen.python_windows import windows_class
 from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
@@ -188,6 +187,8 @@ class CompiledRequirement:
     @cached_property
     def windows(self) -> type[Windows] | None:
         """What follows its network's windows; `None` if they are no chain."""
+        from rvmon.codegen.python_windows import windows_class
+
         chain = self._chain
         return None if chain is None else windows_class(self.network_plan, chain, self.gap)
 
