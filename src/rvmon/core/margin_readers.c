@@ -1,4 +1,5 @@
-/* Which judges measure what: worked out once, so that a sample costs what it changes. */
+/* What is worked out and made once: which judges measure what, so that a sample costs what it changes;
+ * what a run has where it is measured. */
 #include "margins.h"
 
 /* Readers while they are found: counted, then listed. */
@@ -118,4 +119,64 @@ bool margins_prepare(rv_monitor *m)
         }
     }
     return m->shapes != NULL;
+}
+
+/* Have a run that is new be measured. */
+bool margins_make(run *r)
+{
+    rv_monitor *m = r->home->monitor;
+    const int32_t judges = r->part->plan->judges.count;
+    int32_t i;
+    int32_t k;
+    if (m->shapes == NULL) {
+        return true;
+    }
+    r->margins = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->margins);
+    r->stirred = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->stirred);
+    r->margins_due.due = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int64_t));
+    r->margins_due.ids = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
+    r->margins_due.place = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
+    if ((r->stirred == NULL) || (r->margins_due.due == NULL) || (r->margins_due.ids == NULL)
+        || (r->margins_due.place == NULL)) {
+        return false;
+    }
+    for (i = 0; (r->margins != NULL) && (i < judges); i++) {
+        const margin_shape *s = shape_of(r, i);
+        measuring *q = &r->margins[i];
+        const size_t size = (size_t)(s->plan->measures.count + 1) * sizeof(double);
+        for (k = 0; k < 2; k++) {
+            q->letters[k].low = arena_take(&m->memory, size);
+            q->letters[k].high = arena_take(&m->memory, size);
+            if ((q->letters[k].low == NULL) || (q->letters[k].high == NULL)) {
+                return false;
+            }
+        }
+        if (!gauge_make(m, s, &q->readings[0])) {
+            return false;
+        }
+    }
+    return r->margins != NULL;
+}
+
+/* Have nothing be asked for, and nothing be known. */
+void margins_clear(run *r)
+{
+    int32_t i;
+    r->asked = 0;
+    r->stirred_count = 0;
+    r->measured_at = -LIMIT;
+    if (r->margins != NULL) {
+        timers_clear(&r->margins_due, r->part->plan->judges.count);
+    }
+    for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
+        measuring *q = &r->margins[i];
+        q->asks_first = 0;
+        q->asks_end = 0;
+        q->letter_count = 0;
+        q->position = -LIMIT;
+        q->active = false;
+        q->parted = false;
+        q->blind = false;
+        q->stirred = false;
+    }
 }

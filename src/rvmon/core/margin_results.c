@@ -72,8 +72,8 @@ rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record)
     return made;
 }
 
-/* Keep a figure until it is taken. */
-void figure_found(rv_monitor *m, const rv_margin *figure, int32_t record)
+/* Room for a figure, where it stays until it is taken; NULL: there is none. */
+rv_margin *figure_found(rv_monitor *m, int32_t record)
 {
     margin_results *s = &m->margins;
     if (s->found_count == s->found_room) {
@@ -82,12 +82,12 @@ void figure_found(rv_monitor *m, const rv_margin *figure, int32_t record)
         s->found = (made != NULL) ? made : s->found;
         s->owners = (owners != NULL) ? owners : s->owners;
         if ((made == NULL) || (owners == NULL)) {
-            return;
+            return NULL;
         }
     }
-    s->found[s->found_count] = *figure;
     s->owners[s->found_count] = record;
     s->found_count++;
+    return &s->found[s->found_count - 1];
 }
 
 static void free_record(margin_results *s, int32_t record)
@@ -132,7 +132,12 @@ int64_t rv_margins(rv_monitor *m, const rv_margin **margins)
     *margins = s->found;
     for (i = first; i < s->found_count; i++) {
         const int32_t record = s->owners[i];
-        const rv_margin figure = s->found[i];
+        rv_margin figure;
+        if ((record == 0) && (i == s->ready)) {
+            s->ready++; /* as mostly */
+            continue;
+        }
+        figure = s->found[i];
         if ((record != 0) && s->records[record - 1].vanished) {
             free_record(s, record);
         } else if (is_to_be_told(m, record)) {

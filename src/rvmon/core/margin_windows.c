@@ -94,9 +94,11 @@ static void enter_wedge(windowing *x, int64_t at, double value)
 static bool next_entry(windowing *x, int64_t most, margin_step *found)
 {
     if ((x->from != NULL) && (x->edge->read < x->from->end)) {
-        *found = *step_at(x->from, x->edge->read);
-        x->edge->read += (found->at <= most) ? 1 : 0;
-        return found->at <= most;
+        const margin_step *next = step_at(x->from, x->edge->read);
+        found->at = next->at;
+        found->value = next->value;
+        x->edge->read += (next->at <= most) ? 1 : 0;
+        return next->at <= most;
     }
     if (x->closes && (x->w->end->last + 1 <= most)) {
         x->closes = false;

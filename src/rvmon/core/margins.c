@@ -4,11 +4,6 @@
 
 #include <string.h>
 
-static const margin_shape *shape_of(const run *r, int32_t index)
-{
-    return &r->home->monitor->shapes[r->part->plan->judges.first + index];
-}
-
 /* Whether each position of a sample is asked for. */
 static bool is_streamed(const run *r, int32_t index)
 {
@@ -28,12 +23,22 @@ static bool awaits_the_end(const run *r, int32_t index)
     return r->part->judges[index].trigger < 0;
 }
 
-static gauging gauging_of(const run *r, int32_t index, int64_t now, int64_t reached)
+/* Filled in where it is used: a copy at once would wait for what was just written. */
+void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached)
 {
     measuring *q = &r->margins[index];
-    const gauging made = {r->home->monitor, shape_of(r, index), &q->readings[0], q, NULL, 0, NULL,
-                          step_of(r), now, reached, GAP(r) == 0, !is_streamed(r, index)};
-    return made;
+    w->monitor = r->home->monitor;
+    w->shape = shape_of(r, index);
+    w->g = &q->readings[0];
+    w->q = q;
+    w->answers = NULL;
+    w->side = 0;
+    w->end = NULL;
+    w->step = step_of(r);
+    w->now = now;
+    w->reached = reached;
+    w->sparse = GAP(r) == 0;
+    w->thin = !is_streamed(r, index);
 }
 
 /* Take it that what judges measure may be another: what a name says, signals first, then events, or the
@@ -66,66 +71,6 @@ static void stir_all(run *r)
     r->stirred_count = r->part->plan->judges.count;
 }
 
-/* Have a run that is new be measured. */
-bool margins_make(run *r)
-{
-    rv_monitor *m = r->home->monitor;
-    const int32_t judges = r->part->plan->judges.count;
-    int32_t i;
-    int32_t k;
-    if (m->shapes == NULL) {
-        return true;
-    }
-    r->margins = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->margins);
-    r->stirred = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->stirred);
-    r->margins_due.due = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int64_t));
-    r->margins_due.ids = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
-    r->margins_due.place = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
-    if ((r->stirred == NULL) || (r->margins_due.due == NULL) || (r->margins_due.ids == NULL)
-        || (r->margins_due.place == NULL)) {
-        return false;
-    }
-    for (i = 0; (r->margins != NULL) && (i < judges); i++) {
-        const margin_shape *s = shape_of(r, i);
-        measuring *q = &r->margins[i];
-        const size_t size = (size_t)(s->plan->measures.count + 1) * sizeof(double);
-        for (k = 0; k < 2; k++) {
-            q->letters[k].low = arena_take(&m->memory, size);
-            q->letters[k].high = arena_take(&m->memory, size);
-            if ((q->letters[k].low == NULL) || (q->letters[k].high == NULL)) {
-                return false;
-            }
-        }
-        if (!gauge_make(m, s, &q->readings[0])) {
-            return false;
-        }
-    }
-    return r->margins != NULL;
-}
-
-/* Have nothing be asked for, and nothing be known. */
-void margins_clear(run *r)
-{
-    int32_t i;
-    r->asked = 0;
-    r->stirred_count = 0;
-    r->measured_at = -LIMIT;
-    if (r->margins != NULL) {
-        timers_clear(&r->margins_due, r->part->plan->judges.count);
-    }
-    for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
-        measuring *q = &r->margins[i];
-        q->asks_first = 0;
-        q->asks_end = 0;
-        q->letter_count = 0;
-        q->position = -LIMIT;
-        q->active = false;
-        q->parted = false;
-        q->blind = false;
-        q->stirred = false;
-    }
-}
-
 /* Give the letters up to a position to the gauges. */
 static void give_letters(gauging *w, int64_t last)
 {
@@ -149,18 +94,26 @@ static void give_letters(gauging *w, int64_t last)
 
 /* What is known of an attempt by what its formula is at least and at most, and by the rule for the end.
  * What it owes with values that nobody knows may be anything. */
-static rv_margin figure_of(const run *r, int32_t index, const margin_ask *one, double kept)
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept)
 {
     const bool cut = r->cut < NEVER;
-    rv_margin made;
-    (void)memset(&made, 0, sizeof made);
-    made.t = one->position * step_of(r);
-    made.requirement = r->part->judges[index].requirement;
-    made.low = cut ? -INFINITE : one->low;
-    made.high = one->high;
-    made.kept = cut ? -INFINITE : kept;
-    made.of_position = (one->record == 0) ? 1 : 0;
-    return made;
+    made->t = one->position * step_of(r);
+    made->low = cut ? -INFINITE : one->low;
+    made->high = one->high;
+    made->kept = cut ? -INFINITE : kept;
+    made->requirement = r->part->judges[index].requirement;
+    made->number = 0;
+    made->in_doubt = 0;
+    made->of_position = (one->record == 0) ? 1 : 0;
+}
+
+/* Tell a figure that nothing can change any more. */
+static void tell_figure(const run *r, int32_t index, const margin_ask *one, double kept)
+{
+    rv_margin *made = figure_found(r->home->monitor, one->record);
+    if (made != NULL) {
+        fill_figure(made, r, index, one, kept);
+    }
 }
 
 /* Tell the figures that are answered in both readings. */
@@ -171,10 +124,9 @@ static void tell_answers(run *r, int32_t index)
     const int64_t answered = q->parted ? least(first, q->readings[1].answered) : first;
     while (q->asks_first < answered) {
         const margin_ask *one = ask_at(q, q->asks_first);
-        const rv_margin figure = figure_of(r, index, one, one->low);
         q->asks_first++;
         r->asked -= (one->record != 0) ? 1 : 0;
-        figure_found(r->home->monitor, &figure, one->record);
+        tell_figure(r, index, one, one->low);
     }
     if ((q->asks_first == q->asks_end) && !is_kept_up(r, index) && !awaits_the_end(r, index)) {
         q->active = false;
@@ -202,8 +154,9 @@ static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
 /* Let the leaves be known up to a position. */
 static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
 {
-    gauging w = gauging_of(r, index, now, reached);
-    measuring *q = w.q;
+    gauging w;
+    measuring *q = &r->margins[index];
+    begin_gauging(&w, r, index, now, reached);
     give_letters(&w, now);
     w.g = &q->readings[0];
     gauge_run(&w);
@@ -267,7 +220,8 @@ static void enter_position(run *r, int32_t index, int64_t t)
     } else if (awaits_the_end(r, index)) {
         come_to_margin(r, index, position - 1, t);
     } else if (q->letter_count > 0) {
-        gauging w = gauging_of(r, index, position - 1, t);
+        gauging w;
+        begin_gauging(&w, r, index, position - 1, t);
         give_letters(&w, position - 1);
     } else {
         /* They are given. */
@@ -322,8 +276,7 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
     q = &r->margins[index];
     if (q->blind || (r->at.presence != ARE_THERE) || r->at.dense) {
         const margin_ask none = {floored(t, step_of(r)), -INFINITE, INFINITE, record};
-        const rv_margin figure = figure_of(r, index, &none, -INFINITE);
-        figure_found(r->home->monitor, &figure, record);
+        tell_figure(r, index, &none, -INFINITE);
         return;
     }
     /* At the end, the letter of the last position stands; a later sample may have been taken. */
@@ -410,144 +363,10 @@ void margins_miss(run *r)
         for (; q->asks_first < q->asks_end; q->asks_first++) {
             const margin_ask *one = ask_at(q, q->asks_first);
             const margin_ask none = {one->position, -INFINITE, INFINITE, one->record};
-            const rv_margin figure = figure_of(r, i, &none, -INFINITE);
             r->asked -= (one->record != 0) ? 1 : 0;
-            figure_found(r->home->monitor, &figure, one->record);
+            tell_figure(r, i, &none, -INFINITE);
         }
         q->active = false;
     }
     r->measured_at = -LIMIT;
-}
-
-/* What is asked for by one assumption about what lies behind the end; false if memory is short. */
-static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reached, double *answers)
-{
-    gauging w = gauging_of(r, index, end->last, reached);
-    measuring *q = w.q;
-    const int32_t side = ((end->rest == REST_GREATEST) && q->parted) ? 1 : 0;
-    int64_t i;
-    int32_t k;
-    if (!gauge_copy(w.monitor, w.shape, &q->scratch, &q->readings[side])) {
-        return false;
-    }
-    for (i = q->asks_first; i < q->scratch.answered; i++) {
-        answers[i - q->asks_first] = (side == 0) ? ask_at(q, i)->low : ask_at(q, i)->high;
-    }
-    w.g = &q->scratch;
-    w.answers = answers;
-    for (k = 0; k < q->letter_count; k++) {
-        if (q->letters[k].at <= floored(end->instant, w.step)) {
-            gauge_take(&w, q->letters[k].at, (side == 0) ? q->letters[k].low : q->letters[k].high);
-        }
-    }
-    gauge_run(&w);
-    w.end = end;
-    gauge_run(&w);
-    return true;
-}
-
-typedef bool (*take_figure)(void *user, const rv_margin *figure, int32_t record);
-
-/* The figures of a judge if the trace has ended; false if whoever takes them wants no more. */
-static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached, take_figure take,
-                        void *user)
-{
-    rv_monitor *m = r->home->monitor;
-    measuring *q = &r->margins[index];
-    const int64_t count = q->asks_end - q->asks_first;
-    const size_t size = (size_t)(3 * count + 1) * sizeof(double);
-    margin_end end = {instant, LIMIT, REST_LEAST};
-    double *found;
-    bool more = true;
-    int64_t i;
-    if (count == 0) {
-        return true;
-    }
-    if (GAP(r) > 0) {
-        end.last = floored(instant, step_of(r));
-    }
-    found = arena_take(&m->memory, size);
-    m->spoilt = m->spoilt || (found == NULL);
-    for (; (found != NULL) && (end.rest <= REST_END); end.rest++) {
-        if (!try_end(r, index, &end, reached, &found[end.rest * count])) {
-            arena_give(&m->memory, found, size);
-            found = NULL;
-        }
-    }
-    for (i = 0; more && (found != NULL) && (i < count); i++) {
-        margin_ask one = *ask_at(q, q->asks_first + i);
-        one.low = found[i];
-        one.high = found[count + i];
-        {
-            const rv_margin figure = figure_of(r, index, &one, found[2 * count + i]);
-            more = take(user, &figure, one.record);
-        }
-    }
-    arena_give(&m->memory, found, size);
-    return more;
-}
-
-static bool found_at_end(void *user, const rv_margin *figure, int32_t record)
-{
-    figure_found(user, figure, record);
-    return true;
-}
-
-/* Tell all figures that are left, when time has come to the end. */
-void margins_close(home *h, int64_t end, int64_t reached)
-{
-    run *r;
-    int32_t i;
-    for (r = h->root; (h->monitor->shapes != NULL) && (r != NULL); r = following(h, r)) {
-        for (i = 0; i < h->part->plan->judges.count; i++) {
-            (void)each_at_end(r, i, end, reached, found_at_end, h->monitor);
-        }
-        margins_clear(r);
-    }
-}
-
-/* Figures as an embedding program takes them. */
-typedef struct {
-    rv_monitor *monitor;
-    rv_take_margin take;
-    void *user;
-} telling;
-
-static bool tell_open(void *user, const rv_margin *figure, int32_t record)
-{
-    const telling *to = user;
-    rv_margin told;
-    if ((record == 0) || to->monitor->margins.records[record - 1].vanished) {
-        return true;
-    }
-    told = as_told(to->monitor, figure, record);
-    return to->take(to->user, &told);
-}
-
-void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user)
-{
-    telling to = {m, take, user};
-    const margin_results *s = &m->margins;
-    const int64_t end = (m->last == m->reached) ? m->reached : m->reached - 1;
-    int32_t i;
-    int32_t k;
-    if ((m->shapes == NULL) || (m->last == RV_NO_TIME) || m->finished) {
-        return;
-    }
-    for (i = s->ready; i < s->found_count; i++) {
-        if ((s->owners[i] != 0) && !tell_open(&to, &s->found[i], s->owners[i])) {
-            return;
-        }
-    }
-    for (i = 0; i < m->plan.part_count; i++) {
-        home *h = &m->homes[i];
-        run *r;
-        for (r = h->root; r != NULL; r = following(h, r)) {
-            for (k = 0; k < h->part->plan->judges.count; k++) {
-                if (!each_at_end(r, k, end, m->reached, tell_open, &to)) {
-                    return;
-                }
-            }
-        }
-    }
 }

@@ -68,6 +68,11 @@ static inline bool is_thin(const gauging *w, int32_t place)
     return w->thin && w->shape->places[place].alone;
 }
 
+static inline const margin_shape *shape_of(const run *r, int32_t index)
+{
+    return &r->home->monitor->shapes[r->part->plan->judges.first + index];
+}
+
 /* Up to where an operand is known. */
 static inline int64_t operand_known(const gauging *w, int32_t place)
 {
@@ -110,8 +115,12 @@ bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s);
 margin_range measured_leaf(const run *r, const measure_plan *m);
 bool passes_on(const run *r, const measure_plan *m, margin_range *then);
 
+/* ---- margins.c, of a run */
+void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached);
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept);
+
 /* ---- margin_results.c */
-void figure_found(rv_monitor *m, const rv_margin *figure, int32_t record);
+rv_margin *figure_found(rv_monitor *m, int32_t record);
 rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record);
 
 #endif

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.construct import Budget, construct
 from rvmon.dataflow.network_plan import plan_of as network_of
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.formula.alphabet import alphabet_of
-from rvmon.formula.core import Literal
+from rvmon.formula.alphabet import Alphabet, alphabet_of
+from rvmon.formula.core import Core, Literal
 from rvmon.formula.factory import Factory
 from rvmon.formula.state import State
 from rvmon.monitor.compiled.refusal import of_tables
@@ -50,17 +53,16 @@ def _rule(
     measured: bool = False,
     stepped: bool = False,
 ) -> PlannedRule:
+    owed, alphabet = one.obligation.owed, one.alphabet
     if explained:
         # In this process what judges attempts in doubt is made when one comes up.
         is_judged = hidden or (one.follows_windows and not stepped)
         automaton = None if is_judged or of_tables(one) is not None else one.automaton
+    elif measured and one.counts_alone:
+        owed, alphabet, automaton = _nothing_owed()
     else:
-        automaton = None if measured and one.counts_alone else one.slim
+        automaton = one.slim
     obligation = one.obligation
-    owed, alphabet = obligation.owed, one.alphabet
-    if measured and one.counts_alone:
-        owed = Factory().constant(True)
-        alphabet = alphabet_of(owed)
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
 
@@ -90,6 +92,15 @@ def _rule(
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
         measured=figured,
     )
+
+
+@cache
+def _nothing_owed() -> tuple[Core, Alphabet, Automaton]:
+    """What attempts owe that only have to be counted, and what judges them."""
+    factory = Factory()
+    owed = factory.constant(True)
+    alphabet = alphabet_of(owed)
+    return owed, alphabet, construct(factory.next(owed), alphabet, Budget())
 
 
 def _blurs(one: CompiledRequirement) -> State | None:
