@@ -136,7 +136,7 @@ void flush_turns(home *h)
     for (at = in_order(h, h->doubtful[0], false); at >= 0; at = h->turns[at].next_doubt) {
         h->doubts++;
         h->turns[at].doubt_number = h->doubts;
-        margin_numbered(h->monitor, attempt_at(h, at)->record, attempt_at(h, at)->sure, h->doubts);
+        margin_numbered(h->monitor, attempt_at(h, at)->record, false, h->doubts);
     }
     at = h->done[0];
     h->sure[0] = h->sure[1] = -1;

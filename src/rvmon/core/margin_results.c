@@ -36,12 +36,12 @@ int32_t measured_attempt(run *r, int64_t triggered, uint32_t number)
     return at;
 }
 
-/* Take it that an attempt has its number, or one among those in doubt. */
+/* Take it that an attempt has its number, or one among those in doubt; it may have both. */
 void margin_numbered(rv_monitor *m, int32_t record, bool sure, uint32_t number)
 {
     if (record != 0) {
         margin_record *own = &m->margins.records[record - 1];
-        own->sure = sure;
+        own->sure = own->sure || sure;
         if (sure) {
             own->number = number;
         } else {

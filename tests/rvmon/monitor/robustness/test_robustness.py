@@ -341,3 +341,28 @@ def test_a_conjunction_of_which_a_part_had_no_value_is_at_no_known_distance(boun
     found = margins(f"upon start then once (x <= {bound} and p)", [(0, {"x": 1})])
     attempt = found.attempts["R1", 1]
     assert (attempt.low, attempt.high) == (-INFINITE, high)
+
+
+def test_what_began_in_doubt_and_became_sure_in_one_call_has_its_own_number():
+    """Not that which it had among those in doubt."""
+    spec = rvmon.loads(
+        "spec s\nsignal q : bool stale after 1 ns\nevent g(k : int)\nrequirement R1\n"
+        "  whenever q or g.k == each\n  then true\n  for each each in g.k\n"
+    )
+    monitor = spec.robustness_monitor()
+    found = [*monitor.step_ns(0, {"q": False, "g": {"k": 0}})]
+    found += [*monitor.step_ns(3, {"g": {"k": 0}}), *monitor.finish()]
+    assert [(one.number, one.t, one.in_doubt) for one in found] == [(1, 0, False), (2, 2, False)]
+
+
+def test_the_end_of_a_clock_is_measured_at_its_last_tick():
+    """What came behind that is seen by no tick."""
+    spec = rvmon.loads(
+        "spec s\ntime sampled every 4 ns\nsignal x : real\nrequirement R1\n"
+        "  upon end\n  then x <= 2\n"
+    )
+    monitor = spec.robustness_monitor()
+    monitor.step_ns(0, {"x": 1.0})
+    monitor.step_ns(5, {"x": 3.0})
+    [found] = monitor.finish()
+    assert (found.t, found.robustness.low, found.robustness.high) == (5, 1.0, 1.0)
