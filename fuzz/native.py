@@ -70,7 +70,9 @@ def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[byte
         next_law = made % 2 == 1  # names can be lost
         try:
             compiled_spec = compile_spec(random_spec(rng, profile), next_law=next_law)
-            data = pack(plan_alone(compiled_spec), next_law=next_law).data
+            measured = made % 4 > 1
+            plan = plan_alone(compiled_spec, measured=measured)
+            data = pack(plan, next_law=next_law).data
         except RvmonError:
             continue
         if limit is None or len(data) <= limit:

@@ -123,6 +123,9 @@ class Monitor:
     def margins(self) -> bytes:
         """The figures that were settled since the last call as `rv_margin`."""
 
+    def memory_used(self) -> int:
+        """The bytes that it has taken for what it keeps; those given back serve again."""
+
     def hold(self, held: bool, /) -> bool:
         """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly.
 

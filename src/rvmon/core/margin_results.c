@@ -76,9 +76,10 @@ rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record)
 rv_margin *figure_found(rv_monitor *m, int32_t record)
 {
     margin_results *s = &m->margins;
-    if (s->found_count == s->found_room) {
+    if ((s->found_count == s->found_room) || (s->found_count == s->owners_room)) {
         rv_margin *made = grown(m, s->found, &s->found_room, (int64_t)s->found_count + 1, sizeof *made);
-        int32_t *owners = grown(m, s->owners, &s->owners_room, s->found_room, sizeof *owners);
+        int32_t *owners =
+            grown(m, s->owners, &s->owners_room, (int64_t)s->found_count + 1, sizeof *owners);
         s->found = (made != NULL) ? made : s->found;
         s->owners = (owners != NULL) ? owners : s->owners;
         if ((made == NULL) || (owners == NULL)) {

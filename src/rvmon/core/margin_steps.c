@@ -235,13 +235,15 @@ void parts_leave(margin_parts *s)
 /* Whether the first of them has its value, whatever follows. */
 bool parts_settled(const margin_parts *s, double *value)
 {
-    const margin_part *front = &s->at[s->begin];
-    const margin_part *back = &s->at[s->end - 1];
+    const margin_part *front;
+    const margin_part *back;
     double low;
     double high;
     if (s->begin == s->end) {
         return false;
     }
+    front = &s->at[s->begin];
+    back = &s->at[s->end - 1];
     low = (s->end > s->middle) ? back->low : front->low;
     high = (s->end > s->middle) ? back->high : front->high;
     if ((s->begin < s->middle) && (s->end > s->middle)) {

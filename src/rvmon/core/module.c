@@ -230,6 +230,7 @@ METHOD(measure)
 METHOD(figures)
 METHOD(open_figures)
 METHOD(margins)
+METHOD(memory_used)
 METHOD(rows)
 
 /* Begin or end a call of which Python does a part; false amid another one. */
@@ -310,6 +311,7 @@ static PyMethodDef monitor_methods[] = {
     {"figures", monitor_figures, METH_NOARGS, NULL},
     {"open_figures", monitor_open_figures, METH_NOARGS, NULL},
     {"margins", monitor_margins, METH_NOARGS, NULL},
+    {"memory_used", monitor_memory_used, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},
     {NULL, NULL, 0, NULL},

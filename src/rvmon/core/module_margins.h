@@ -248,6 +248,13 @@ static PyObject *margins_of(monitor *c, PyObject *unused)
     return made;
 }
 
+/* The bytes that a run has taken for what it keeps; those given back serve again. */
+static PyObject *memory_used_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return PyLong_FromLongLong((long long)rv_memory_used(c->m));
+}
+
 static void free_figures(monitor *c)
 {
     if (c->figures != NULL) {
