@@ -232,7 +232,8 @@ static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags,
 {
     const operator_plan *n = &s->nodes[place];
     const margin_place *own = &s->places[place];
-    const int64_t ahead = (n->high > LIMIT / step) ? LIMIT : n->high * step;
+    const int64_t steps = (n->high > 0) ? n->high : 0;
+    const int64_t ahead = (steps > LIMIT / step) ? LIMIT : steps * step;
     int64_t found = 0;
     int32_t k;
     for (k = 0; k < own->edge_count; k++) {
@@ -242,7 +243,7 @@ static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags,
         }
     }
     if ((n->kind == OP_WINDOW) || (n->kind == OP_SHIFT)) {
-        found = (ahead > 0) ? least(found + ahead, LIMIT) : 0;
+        found = (ahead > 0) ? moved(found, ahead) : 0;
     }
     return ((n->kind == OP_WINDOW) && (n->over > found)) ? n->over : found;
 }
