@@ -65,6 +65,19 @@ typedef struct {
     uint8_t in_doubt;          /* 1: a trigger that may not have been; counted apart */
 } rv_record;
 
+/* By how much the formula of an attempt holds, or of a position what its requirement owes there: within
+ * these bounds, whatever is not known and whatever had come behind the end. Above 0 it holds. */
+typedef struct {
+    int64_t t;                 /* of the trigger, or the position */
+    double low;
+    double high;
+    double kept;               /* the least, if all is well behind the end that has to be kept up */
+    int32_t requirement;
+    uint32_t number;
+    uint8_t in_doubt;          /* as in `rv_record` */
+    uint8_t of_position;       /* 1: it is of no attempt */
+} rv_margin;
+
 typedef struct rv_plan rv_plan;
 typedef struct rv_monitor rv_monitor;
 
@@ -209,6 +222,20 @@ bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note);
  * no more. */
 int64_t rv_notes(const rv_monitor *m, const int64_t **words);
 bool rv_span(const rv_monitor *m, int32_t number, rv_note *note);
+
+/* Have each position of a sample be measured, and not those of attempts alone; what captures values is
+ * not. Before the first sample, of a plan that says what is measured. */
+void rv_measure_positions(rv_monitor *m);
+
+/* Figures that nothing can change any more, since the last `rv_forget_margins`: of each call by instant,
+ * then requirement. Valid until the next call. */
+int64_t rv_margins(rv_monitor *m, const rv_margin **margins);
+void rv_forget_margins(rv_monitor *m);
+
+/* What is known of the attempts whose figures are to come; bounds that only draw closer. `take` returns
+ * false to end. */
+typedef bool (*rv_take_margin)(void *user, const rv_margin *margin);
+void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user);
 
 /* How many attempts of a requirement failed, passed, stayed open, and whether its trigger was ever
  * true or false. */

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from enum import IntEnum, auto
 from typing import assert_never
 
-from rvmon.core.sections import Section, Sections
-from rvmon.dataflow.chain import Chain, reach_of
+from rvmon.core.sections import Listed, Section, Sections
+from rvmon.dataflow.chain import Chain
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
@@ -45,19 +45,22 @@ def add_form(
         chain: that it is; `None`: it is none.
         index: the places of propositions.
     """
+    operators = add_operators(sections, plan, index)
+    own: tuple[int, ...] = (*sections.listed(()), -1, -1, -1)
+    if chain is not None:
+        ends = (-1 if place is None else place for place in (chain.left, chain.excused))
+        own = (*sections.listed(chain.places), chain.base, *ends)
+    return sections.add(Section.FORMS, *operators, len(plan.leaves), plan.looks_back, *own)
+
+
+def add_operators(sections: Sections, plan: NetworkPlan, index: Mapping[State, int]) -> Listed:
+    """Add the nodes of a formula; see `add_form`."""
     first = sections.count(Section.OPERATORS)
     leaves = 0
     for node in plan.nodes:
         _add(sections, plan, node, leaves, index)
         leaves += isinstance(node, Leaf)
-    own: tuple[int, ...] = (*sections.listed(()), -1, -1, -1)
-    if chain is not None:
-        ends = (-1 if place is None else place for place in (chain.left, chain.excused))
-        own = (*sections.listed(chain.places), chain.base, *ends)
-    reach = reach_of(plan)
-    ticks = _NEVER if reach is None else min(reach, _FARTHEST)
-    size = first, len(plan.nodes), leaves, plan.looks_back
-    return sections.add(Section.FORMS, ticks, *size, *own, 0)
+    return first, len(plan.nodes)
 
 
 def _add(

@@ -27,6 +27,7 @@ typedef struct {
     PyObject *decisions;
     PyObject *details;         /* gives an attempt its other fields */
     note_cache notes;
+    struct figures *figures;   /* what figures are made of; NULL: steps give attempts */
 } monitor;
 
 /* Raises what it comes to that the core did not do something. */
