@@ -7,7 +7,7 @@ from enum import IntEnum, auto
 from typing import assert_never
 
 from rvmon.core.sections import Listed, Section, Sections
-from rvmon.dataflow.chain import Chain
+from rvmon.dataflow.chain import Chain, reach_of
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
@@ -50,7 +50,11 @@ def add_form(
     if chain is not None:
         ends = (-1 if place is None else place for place in (chain.left, chain.excused))
         own = (*sections.listed(chain.places), chain.base, *ends)
-    return sections.add(Section.FORMS, *operators, len(plan.leaves), plan.looks_back, *own)
+    reach = reach_of(plan)
+    ticks = _NEVER if reach is None else min(reach, _FARTHEST)
+    return sections.add(
+        Section.FORMS, ticks, *operators, len(plan.leaves), plan.looks_back, *own, 0
+    )
 
 
 def add_operators(sections: Sections, plan: NetworkPlan, index: Mapping[State, int]) -> Listed:

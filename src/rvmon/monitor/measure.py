@@ -71,7 +71,7 @@ def margins_of(
 def measuring(judge: Judge) -> Judge:
     """What judges a recording as `judge` does, and gives each attempt its robustness.
 
-    The recording is read once: each piece is measured when it was judged.
+    The recording is read once: each piece is measured, then judged.
     """
 
     def measured(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
@@ -79,8 +79,8 @@ def measuring(judge: Judge) -> Judge:
 
         def shown(pieces: Iterator[Any]) -> Iterator[Any]:
             for piece in source.shown(pieces):
+                _take_to_end(run, source, piece)  # nobody may come back behind the last one
                 yield piece
-                _take_to_end(run, source, piece)
 
         report = judge(compiled, replace(source, shown=shown), asked)
         margins = run.margins()

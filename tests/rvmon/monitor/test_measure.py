@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.monitor.core import recording
 from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
@@ -100,17 +99,8 @@ def figures_of(margins):
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
-def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
+def test_columns_are_measured_as_their_samples_are(time):
     """Arrays give each attempt and each row the figures that a monitor gives."""
-    by_columns = 0
-
-    def taken(*given):
-        nonlocal by_columns
-        by_columns += 1
-        return take_columns(*given)
-
-    take_columns = recording.take_columns
-    monkeypatch.setattr(recording, "take_columns", taken)
     for number in range(PAIRS):
         rng = random.Random(f"whole {time} {number}")
         spec, times, columns = random_case(rng, time)
@@ -119,7 +109,6 @@ def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
         expected = Spec(spec).robustness(rows_of(times, columns), until=until)
         case = f"{format_formula(spec.requirements['R'].consequent)}\n{times}\n{columns}\n{until}"
         assert figures_of(found) == figures_of(expected), case
-    assert by_columns == PAIRS
 
 
 def test_each_engine_is_measured_beside():
@@ -194,7 +183,7 @@ def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, u
         source = Source(spec.recording(path), end, is_cut=True, **how)
         return spec.judge(source, robustness=True)
 
-    found, expected = judged(), judged(row_by_row="as the samples come")
+    found, expected = judged(), judged(read=lambda recording: iter(recording))
     assert found == expected
     assert found.to_json() == expected.to_json()
     assert all(one.robustness is not None for one in found.attempts if one.decided is not None)

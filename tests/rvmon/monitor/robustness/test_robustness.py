@@ -119,7 +119,7 @@ def test_a_figure_is_given_as_soon_as_its_window_is_over():
     [found] = monitor.step(4, {"x": 50})
     assert (found.requirement, found.number, found.t) == ("R1", 1, 0)
     assert found.robustness.low == found.robustness.high == pytest.approx(0.02)
-    assert monitor.open == []
+    assert not monitor.open
     assert not monitor.finish()
 
 
