@@ -34,11 +34,12 @@ _ATTEMPTS = tuple(
     )
 )
 _AUTOMATA = tuple(
-    f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce", "table")
+    f"automaton/{name}.py" for name in ("construct", "end", "layout", "location", "reduce")
 )
 _PLANS = ("plan/planning.py",)
 _DRIVEN = tuple(
-    f"runtime/{name}.py" for name in ("past", "rule", "schedule", "starts", "table", "values")
+    f"runtime/{name}.py"
+    for name in ("past", "rule", "schedule", "starts", "table", "table_machine", "values")
 )
 _RUNTIME = tuple(
     f"runtime/{name}.py"
@@ -51,6 +52,7 @@ _RUNTIME = tuple(
         "solo",
         "starts",
         "table",
+        "table_machine",
         "unit",
         "values",
     )

@@ -17,9 +17,6 @@ EQUIVALENT = {
     "key=_in_order)` => `sorted(residual, key=_in_order) if limit is None else residual`": (
         "the order says only which results are met on the way"
     ),
-    "past.py dropped operand: `value is None or isinstance(value, str)` => `value is None`": (
-        "nothing is computed with labels: the checker refuses it"
-    ),
     "python_values.py dropped not: `not self.plan.uses[next(iter(names))].history` => "
     "`self.plan.uses[next(iter(names))].history`": (
         "leaves are worked out once more than needed; those with a history are marked anyway"

@@ -17,7 +17,6 @@ from benchmarks.differential import FEATURES, MODELS, profile_of
 from tests.tools.differential import cases_of
 from tests.tools.judgement import Judgement
 from tests.tools.margin_ways import WAYS, Way
-from tests.tools.margins import margins
 from tests.tools.shrink import shrink
 
 from rvmon.errors import RvmonError
@@ -25,6 +24,7 @@ from rvmon.session import Spec
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.law.margins import margins
 from rvmon.testing.show import show_case
 
 
@@ -50,7 +50,8 @@ def differences(case: Case, way: Way, specs: Specs) -> list[str] | None:
         found = way.measure(specs(case.spec), case)
     except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
-    expected = margins(Judgement(case))
+    judgement = Judgement(case)
+    expected = margins(judgement.followings, judgement.outcomes)
     return [
         f"{key}: {found.get(key)}, expected {expected.get(key)}"
         for key in sorted({*expected, *found})
@@ -83,6 +84,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
     parser.add_argument("--depth", type=int, default=4)
     parser.add_argument("--many", type=int, default=8, metavar="PERCENT")
+    parser.add_argument("--crowded", type=int, default=0, metavar="PERCENT")
+    parser.add_argument("--wide", type=int, default=0, metavar="PERCENT")
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
     parser.add_argument("--show", type=int, default=3, help="disagreements printed at most")

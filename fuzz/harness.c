@@ -154,6 +154,38 @@ static uint64_t noted_records(rv_monitor *m, uint64_t sum, bool finished)
     return sum;
 }
 
+static int64_t bits_of(double x)
+{
+    int64_t bits;
+    (void)memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static bool note_margin(void *user, const rv_margin *one)
+{
+    uint64_t *sum = user;
+    if (!(one->low <= one->high)) {
+        (void)fprintf(stderr, "a margin whose least is above its greatest\n");
+        abort();
+    }
+    *sum = mixed(mixed(mixed(*sum, one->t), one->number), one->requirement);
+    *sum = mixed(mixed(mixed(*sum, bits_of(one->low)), bits_of(one->high)), bits_of(one->kept));
+    return true;
+}
+
+static uint64_t noted_margins(rv_monitor *m, uint64_t sum)
+{
+    const rv_margin *margins;
+    const int64_t count = rv_margins(m, &margins);
+    uint64_t found = sum;
+    int64_t i;
+    for (i = 0; i < count; i++) {
+        (void)note_margin(&found, &margins[i]);
+    }
+    rv_forget_margins(m);
+    return found;
+}
+
 static int one_step(rv_monitor *m, script *s, int64_t t, bool in_rows)
 {
     const rv_sizes sizes = rv_sizes_of(m);
@@ -331,6 +363,9 @@ static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from
     uint64_t sum = 1;
     int32_t steps = 0;
     int32_t i;
+    if (byte_of(&s) >= 128) {
+        rv_measure_positions(m);
+    }
     if ((rv_times_of(m).reached == RV_NO_TIME) && (names > 0) && (byte_of(&s) >= 200)) {
         rv_set_absent(m, byte_of(&s) % ((names < 256) ? names : 256));
     }
@@ -350,8 +385,10 @@ static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from
         } else if (what < 205) {
             rv_each_open(m, note_open, &sum);
             rv_each_open(m, read_open, m);
+            rv_each_margin(m, note_margin, &sum);
         } else if (what < 215) {
             sum = noted_records(m, sum, false);
+            sum = noted_margins(m, sum);
         } else if (what < 220) {
             code = rv_step(m, t - 5, NULL, 0);
         } else if (what < 250) {
@@ -372,6 +409,7 @@ static uint64_t run_on(rv_monitor **own, script s, int64_t t, const source *from
     sum = mixed(sum, rv_finish(m, (byte_of(&s) < 128) ? RV_NO_TIME : t));
     sum = noted_records(m, sum, true);
     sum = noted_watch(m, sum);
+    sum = noted_margins(m, sum);
     for (i = 0; (i < sizes.requirements) && (i < NAMES_MOST); i++) {
         const int verdict = rv_verdict(m, i);
         sum = mixed(mixed(sum, verdict), rv_count(m, i).failed);

@@ -77,7 +77,8 @@ def _plan(rng: random.Random, profile: Profile, which: int, *, next_law: bool) -
     if which > 3:
         return truths_plan(compiled)
     traced = [name for name, one in compiled.requirements.items() if is_small(one.automaton)]
-    return plan_alone(compiled, traced=traced if which > 1 else ())
+    measured = which in (1, 2)
+    return plan_alone(compiled, traced=traced if which > 1 else (), measured=measured)
 
 
 def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[bytes]:

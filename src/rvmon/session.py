@@ -214,18 +214,15 @@ class Spec:
             engine: as for `evaluate`; so is `only`, and so are the errors.
             only: see there.
             decided: called with each attempt as it is decided, where samples are judged one by one.
-            robustness: whether each attempt is to have its robustness; not by the engine `c`.
+            robustness: whether each attempt is to have its robustness.
         """
         from rvmon.monitor.engines.registry import Asked, engine_named
 
         asked = Asked(requirements_asked(self.checked, only), decided=decided)
-        judge = engine_named(engine).judge
+        judge = engine_named("c" if robustness else engine).judge
         if robustness:
-            from rvmon.monitor.compiled.refusal import no_robustness
             from rvmon.monitor.measure import measuring
 
-            if engine == "c":
-                raise no_robustness(engine)
             judge = measuring(judge)
         return judge(self._compiled, source, asked)
 

@@ -12,8 +12,8 @@ import numpy as np
 from rvmon.monitor import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.readers.batch import NO, YES, Batch, Cells, Occurrences
-from rvmon.readers.blocks import Block, up_to
-from rvmon.readers.source import Fillable, Source
+from rvmon.readers.blocks import Block
+from rvmon.readers.source import Source
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
@@ -84,22 +84,18 @@ def judge_columns(
 class BlockRecording:
     """Blocks in memory as a recording."""
 
-    held: Sequence[Block]
+    held_blocks: Sequence[Block]
     end: int | None = None
     events: frozenset[str] = frozenset()
 
     @property
     def names(self) -> frozenset[str]:
         """The columns."""
-        return frozenset(self.held[0].columns)
-
-    def blocks(self, _: Fillable, until: int | None = None) -> Iterator[Block]:
-        """See `rvmon.readers.recording.FileRecording.blocks`."""
-        return (up_to(until, block) for block in self.held)
+        return frozenset(self.held_blocks[0].columns)
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """See `rvmon.readers.recording.FileRecording.pieces`."""
-        for block in self.held:
+        for block in self.held_blocks:
             events = {name: block.columns[name] for name in block.columns if name in self.events}
             yield Batch(
                 block.times,
@@ -112,7 +108,7 @@ class BlockRecording:
 
     def __iter__(self) -> Iterator[Sample]:
         """The rows."""
-        for block in self.held:
+        for block in self.held_blocks:
             lists = {name: column.tolist() for name, column in block.columns.items()}
             for place, t in enumerate(block.times.tolist()):
                 yield Sample(t, {name: cells[place] for name, cells in lists.items()})

@@ -38,6 +38,8 @@ SECTIONS = {
     "WATCHES": "watch_plan",
     "GROUPS": "group_plan",
     "NUMBERS": "number_plan",
+    "MARGINS": "margin_plan",
+    "MEASURES": "measure_plan",
 }
 """What type of C the records of a section have; of the others they are numbers."""
 
@@ -175,7 +177,11 @@ def walk(plan: Plan, *, is_whole: bool = True) -> None:
     ):
         _is_partition(plan, section, [part[places] for part in plan.records["PARTS"]])
     _is_partition(plan, "LINKS", [node["links"] for node in plan.records["NODES"]])
-    _is_partition(plan, "OPERATORS", [form["operators"] for form in plan.records["FORMS"]])
+    margins = plan.records["MARGINS"]
+    operators = [one["operators"] for one in (*plan.records["FORMS"], *margins)]
+    _is_partition(plan, "OPERATORS", sorted(operators))
+    _is_partition(plan, "MEASURES", [one["measures"] for one in margins])
+    assert len(margins) in (0, len(plan.records["JUDGES"]))
     for automaton in plan.records["AUTOMATA"]:
         _walk_automaton(plan, automaton)
     requirements = [_walk_part(plan, part) for part in plan.records["PARTS"]]
@@ -292,6 +298,8 @@ def _walk_part(plan: Plan, fields: dict[str, Any]) -> list[int]:
         _walk_judge(part, judge)
     for form in part.own("forms"):
         _walk_form(part, form)
+    for margin in plan.records["MARGINS"] and plan.own("MARGINS", fields["judges"]):
+        _walk_margin(part, margin)
     for kind in ("seen", "edges", "stretches", "timers", "perishable"):
         met = part.memories.get(kind, [])
         assert (len(met), met) == (fields[kind], list(range(len(met))))
@@ -575,9 +583,33 @@ def _walk_automaton(plan: Plan, a: dict[str, Any]) -> None:
     plan.run("TICKS", a["ages"], test_first[-1])
 
 
-def _walk_form(part: _Part, form: dict[str, Any]) -> None:
+def _walk_margin(part: _Part, margin: dict[str, Any]) -> None:
     e = enumerators()
-    operators = part.plan.own("OPERATORS", form["operators"])
+    measures = part.plan.own("MEASURES", margin["measures"])
+    _walk_operators(part, margin["operators"], len(measures))
+    _within([margin["looks_back"]], 2)
+    for one in measures:
+        _within([one["kind"]], e["MEASURES"])
+        _within([one["turned"]], 2)
+        if one["kind"] == e["MEASURE_CONSTANT"]:
+            assert one["node"] == -1
+        else:
+            _within([one["node"]], part.fields["nodes"][1])
+        if one["kind"] == e["MEASURE_DISTANCE"]:
+            node = part.own("nodes")[one["node"]]
+            assert node["op"] == e["NODE_LEAF"]
+            compared = ("ATOM_REAL", "ATOM_COMPARE", "ATOM_PAYLOAD")
+            assert part.own("atoms")[node["a"]]["op"] in [e[name] for name in compared]
+            assert one["factor"] > 0
+
+
+def _walk_form(part: _Part, form: dict[str, Any]) -> None:
+    _walk_operators(part, form["operators"], form["leaves"])
+
+
+def _walk_operators(part: _Part, places: tuple[int, int], count: int) -> None:
+    e = enumerators()
+    operators = part.plan.own("OPERATORS", places)
     assert operators
     leaves = 0
     for place, one in enumerate(operators):
@@ -594,4 +626,4 @@ def _walk_form(part: _Part, form: dict[str, Any]) -> None:
             _within([one["left"]], place)
             if kind in (e["OP_UNTIL"], e["OP_SINCE"]):
                 _within([one["right"]], place)
-    assert leaves == form["leaves"]
+    assert leaves == count

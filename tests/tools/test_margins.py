@@ -7,6 +7,7 @@ from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.law.margins import margins
 from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
@@ -14,7 +15,6 @@ from tests.tools.compare import key_of
 from tests.tools.differential import case_of
 from tests.tools.drive import feed
 from tests.tools.judgement import Judgement
-from tests.tools.margins import margins
 
 pytestmark = pytest.mark.law
 
@@ -73,7 +73,7 @@ def test_engine_and_oracle_agree(time):
     for number in range(PAIRS):
         case = case_of(f"margins {number}", Profile(time=time), TraceProfile())
         judgement = Judgement(case)
-        expected = margins(judgement)
+        expected = margins(judgement.followings, judgement.outcomes)
         found, settled = measured(case)
         assert found == expected, show_case(case)
         early += settled

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from itertools import combinations, product
+from itertools import combinations, islice, product
 from typing import TypeVar, assert_never
 
 from rvmon.analysis.solve import Variable, parts_of, turning_values
+from rvmon.analysis.tried import truths_tried
 from rvmon.formula.state import Leaf
-from rvmon.plan.inputs import OneSample
-from rvmon.plan.leaves import captured_names, reads, truth_of
+from rvmon.plan.leaves import captured_names, reads
 from rvmon.spec.checked.formula import (
     Compare,
     EventAtom,
@@ -74,15 +74,18 @@ def choices_of(
     names = tuple(name for name in (*spec.signals, *spec.events) if name in concerned)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered)
-    seen = _Seen(leaves, remembered)
+    seen = _Seen(spec, leaves, remembered)
     found: dict[tuple[object, ...], Valuation] = {}
-    complete = True
-    for tried, chosen in enumerate(_calm_first([options.of(name) for name in names])):
-        if len(found) >= MOST_VALUATIONS or tried >= MOST_TRIED:
-            complete = False
-            break
-        valuation = dict(zip(names, chosen, strict=True))
-        found.setdefault(seen.key(valuation), valuation)
+    waiting = _calm_first([options.of(name) for name in names])
+    for _ in range(MOST_TRIED // MOST_VALUATIONS):
+        tried = [
+            dict(zip(names, chosen, strict=True)) for chosen in islice(waiting, MOST_VALUATIONS)
+        ]
+        for key, valuation in zip(seen.keys(tried), tried, strict=True):
+            if key not in found and len(found) == MOST_VALUATIONS:
+                return Choices(names, tuple(found.values()), remembered, False)
+            found.setdefault(key, valuation)
+    complete = next(waiting, None) is None
     return Choices(names, tuple(found.values()), remembered, complete)
 
 
@@ -189,7 +192,10 @@ def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, 
 class _Seen:
     """What the formulas see of a valuation."""
 
-    def __init__(self, leaves: Iterable[Leaf], remembered: frozenset[str]) -> None:
+    def __init__(
+        self, spec: CheckedSpec, leaves: Iterable[Leaf], remembered: frozenset[str]
+    ) -> None:
+        self.spec = spec
         self.plain: list[Leaf] = []
         self.raw: set[str] = set(remembered)
         for leaf in leaves:
@@ -199,11 +205,16 @@ class _Seen:
             elif isinstance(leaf, SignalAtom | EventAtom | Compare):
                 self.plain.append(leaf)
 
-    def key(self, valuation: Valuation) -> tuple[object, ...]:
+    def keys(self, valuations: Sequence[Valuation]) -> Iterator[tuple[object, ...]]:
         """Equal for valuations between which no formula tells."""
-        seen = OneSample({n: v for n, v in valuation.items() if not isinstance(v, Silence)})
-        raw = tuple(_hashable(value) for name, value in valuation.items() if name in self.raw)
-        return (*(truth_of(leaf, seen) for leaf in self.plain), *raw)
+        spoken = [
+            {name: value for name, value in one.items() if not isinstance(value, Silence)}
+            for one in valuations
+        ]
+        truths = truths_tried(self.spec, self.plain, spoken)
+        for own, valuation in zip(truths, valuations, strict=True):
+            raw = (_hashable(value) for name, value in valuation.items() if name in self.raw)
+            yield (*own, *raw)
 
 
 def _hashable(value: Value | Silence) -> object:

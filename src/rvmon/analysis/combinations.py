@@ -16,9 +16,9 @@ from typing import Generic, TypeVar, assert_never
 
 from rvmon.analysis.choices import Silence, values_of
 from rvmon.analysis.solve import is_solved
+from rvmon.analysis.tried import truths_tried
 from rvmon.formula.state import TRUE, Lapsed, Leaf, State, StateOp
-from rvmon.plan.inputs import OneSample
-from rvmon.plan.leaves import captured_names, reads, truth_of
+from rvmon.plan.leaves import captured_names, reads
 from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
@@ -135,11 +135,11 @@ class Letters:
             return ((False,), (True,))
         if (source, leaves) not in self._seen:
             own = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
-            found: dict[Truths, None] = {}
-            for value in values_of(self.spec, own, source):
-                seen = OneSample({} if isinstance(value, Silence) else {source: value})
-                found[tuple(truth_of(leaf, seen) == TRUE for leaf in own)] = None
-            self._seen[source, leaves] = tuple(found)
+            values = values_of(self.spec, own, source)
+            tried = [{} if isinstance(one, Silence) else {source: one} for one in values]
+            found = truths_tried(self.spec, own, tried)
+            shown = dict.fromkeys(tuple(one == TRUE for one in truths) for truths in found)
+            self._seen[source, leaves] = tuple(shown)
         return self._seen[source, leaves]
 
 

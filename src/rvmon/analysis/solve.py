@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import assert_never
 
-from rvmon.plan.inputs import OneSample
-from rvmon.plan.numbers import reader
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Captured,
@@ -19,6 +17,7 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateValue,
 )
+from rvmon.trace.sample import Scalar, calculated
 
 Variable = SignalValue | FieldValue
 
@@ -109,23 +108,23 @@ def _roots(leaf: Compare, variable: Variable) -> Iterator[float]:
 
 
 def _difference(leaf: Compare, variable: Variable, value: float) -> float | None:
-    put = [_put(side, variable, value) for side in (leaf.left, leaf.right)]
-    sides = [reader(side, OneSample({}), {})({}) for side in put]
-    numbers = [float(side) for side in sides if isinstance(side, int | float)]
-    return numbers[0] - numbers[1] if len(numbers) == 2 else None
+    left, right = (_with(side, variable, value) for side in (leaf.left, leaf.right))
+    if isinstance(left, int | float) and isinstance(right, int | float):
+        return float(left) - float(right)
+    return None
 
 
-def _put(numeric: Numeric, variable: Variable, value: float) -> Numeric:
-    """The expression with the variable at a value, and all others at 0."""
+def _with(numeric: Numeric, variable: Variable, value: float) -> Scalar:
+    """An expression with the variable at a value, and all others at 0; `None`: there is none."""
     match numeric:
-        case Literal():
-            return numeric
+        case Literal(value=constant):
+            return constant
         case SignalValue() | FieldValue() | Captured():
-            return Literal(value if numeric == variable else 0.0)
+            return value if numeric == variable else 0.0
         case UpdateValue(name=name):
             same = isinstance(variable, SignalValue) and variable.name == name
-            return Literal(value if same else 0.0)
+            return value if same else 0.0
         case Arithmetic(op=op, args=args):
-            return Arithmetic(op, tuple(_put(arg, variable, value) for arg in args))
+            return calculated(op.entry.apply, *(_with(arg, variable, value) for arg in args))
         case _:
             assert_never(numeric)

@@ -6,9 +6,15 @@ from dataclasses import dataclass
 
 from rvmon.formula.core import Release, Until
 from rvmon.formula.residual import NO_CLOCK, Residual
-from rvmon.runtime.values import FAILED as FAILED
-from rvmon.runtime.values import NOW as NOW
-from rvmon.runtime.values import PASSED as PASSED
+
+FAILED, PASSED = 0, 1
+"""The locations in which an attempt is decided; they stand first in every machine."""
+
+NOW = -1
+"""As the source of a clock: it is started at the position of the step."""
+
+Token = tuple[int, tuple[int, ...]]
+"""Where an attempt is: its location, and for each clock the instant at which it was started."""
 
 
 @dataclass(frozen=True, slots=True)

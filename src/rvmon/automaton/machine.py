@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
+from rvmon.automaton.location import Token
 from rvmon.formula.residual import Residual
-
-Token = tuple[int, tuple[int, ...]]
-"""Where an attempt is: its location, and for each clock the instant at which it was started."""
 
 
 class Machine(Protocol):

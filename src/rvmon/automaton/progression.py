@@ -6,8 +6,7 @@ from bisect import bisect_right
 from functools import cached_property
 from typing import Any
 
-from rvmon.automaton.location import NOW, Location, location_of, normalise
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import NOW, Location, Token, location_of, normalise
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, holds
 from rvmon.formula.core import Literal, Temporal

@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from itertools import islice, takewhile
 from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import opened
-from rvmon.readers.blocks import NotPlainError
 from rvmon.readers.recording import can_be_read_again
 from rvmon.readers.source import Source
 from rvmon.session import Spec
+from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample, Trace
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.explain.late import Known
-    from rvmon.formula.state import Leaf
-    from rvmon.plan.graph import Graph
+    from rvmon.explain.truths import Question
+    from rvmon.readers.batch import Batch
     from rvmon.readers.recording import FileRecording
-    from rvmon.spec.checked.formula import Formula
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
@@ -64,148 +62,63 @@ def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals
     if goals and spec.checked.covers:
         report = replace(report, goals=_goals(spec, trace, end, names, samples))
 
-    late = _missed(spec, report)
-    silent = _silent(spec, report)
-    asked = [graph for graph, _ in late.values()] + list(silent.values())
-    changes = _changes(spec, recording, asked, end, samples)
+    late, silent = _missed(spec, report), _silent(report)
+    if not late and not silent:
+        return report
+    from rvmon.explain.late import late_in
+    from rvmon.explain.not_triggered import miss_in, parts_asked
+    from rvmon.explain.truths import look_through
 
-    def read(leaves: frozenset[Leaf] | None) -> Sequence[Sample]:
-        return samples() if leaves is None else changes[leaves]
-
+    questions = [question for _, waits in late.values() for question in waits.values()]
+    questions += [parts_asked(spec.requirements[name]) for name in silent]
+    if spec.checked.max_delay is None:
+        pieces = _read_again(spec, recording, questions, end)
+    else:
+        pieces = samples()
+    seen = look_through(spec.checked, questions, pieces, end, names)
+    arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
+    misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(
         report,
-        late=_late(spec, late, read, end, names),
-        misses=_misses(spec, silent, read, end, names),
+        late={name: found for name, found in arrived.items() if found},
+        misses={name: miss for name, miss in misses.items() if miss},
     )
 
 
-def _missed(spec: Spec, report: Report) -> Mapping[str, tuple[Graph | None, Sequence[Attempt]]]:
-    """By requirement what its first failures awaited, if values are all that counts, and these."""
+def _read_again(
+    spec: Spec, judged: FileRecording, questions: Sequence[Question], end: int
+) -> Iterable[Batch | Sample]:
+    """A recording up to its end, with what is asked for of it."""
+    only: set[str] | None = None
+    # Elsewhere it counts that something came, whatever that was.
+    if spec.checked.time is not TimeModel.SAMPLED and not judged.is_of_messages:
+        only = {name for one in questions for part in one.formulas for name in names_read(part)}
+        only |= {one.for_each.value.event for one in questions if one.for_each is not None}
+    return Source(opened(spec, judged.path, only=only), end, is_cut=True).pieces()
+
+
+def _missed(
+    spec: Spec, report: Report
+) -> Mapping[str, tuple[Sequence[Attempt], Mapping[int, Question]]]:
+    """By requirement its first failures, and what these awaited by number of the attempt."""
     failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
     if not failed:
         return {}
-    from rvmon.explain.late import awaited
-    from rvmon.explain.states import values_read
+    from rvmon.explain.late import waits_of
 
     most = max(1, min(MOST_LATE, MOST_LATE_IN_ALL // len(failed)))
     found = {}
     for name in failed:
-        requirement = spec.requirements[name]
-        attempts: list[Attempt] = []
-        formulas: set[Formula] = set()
-        for attempt in islice(report.of(name, Verdict.FAIL), most):
-            formula = awaited(requirement, attempt)
-            if formula is not None:
-                attempts.append(attempt)
-                formulas.add(formula)
-        if attempts:
-            found[name] = values_read(spec.checked, requirement, formulas), attempts
+        attempts = list(islice(report.of(name, Verdict.FAIL), most))
+        waits = waits_of(spec.requirements[name], attempts)
+        if waits:
+            found[name] = attempts, waits
     return found
 
 
-def _silent(spec: Spec, report: Report) -> dict[str, Graph | None]:
-    """The requirements without attempts, and their triggers, if values are all that counts."""
-    names = [name for name in report.verdicts if report.is_silent(name)]
-    if not names:
-        return {}
-    from rvmon.explain.not_triggered import read_as_values
-
-    return {name: read_as_values(spec.checked, spec.requirements[name]) for name in names}
-
-
-def _late(
-    spec: Spec,
-    missed: Mapping[str, tuple[Graph | None, Sequence[Attempt]]],
-    read: Callable[[frozenset[Leaf] | None], Sequence[Sample]],
-    end: int,
-    sources: frozenset[str] | None,
-) -> Mapping[str, Mapping[int, int]]:
-    """What came after its deadline; requirements that read the same are looked up together."""
-    if not missed:
-        return {}
-    from rvmon.explain.late import late_arrivals
-
-    alike: dict[frozenset[Leaf] | None, list[str]] = {}
-    for name, (graph, _) in missed.items():
-        alike.setdefault(_leaves(graph), []).append(name)
-    found = {}
-    for leaves, own in alike.items():
-        known: Known = {}
-        samples = read(leaves)
-        for name in own:
-            requirement, attempts = spec.requirements[name], missed[name][1]
-            late = late_arrivals(
-                spec.checked, requirement, attempts, samples, end, sources, known=known
-            )
-            if late:
-                found[name] = late
-    return found
-
-
-def _misses(
-    spec: Spec,
-    silent: Mapping[str, Graph | None],
-    read: Callable[[frozenset[Leaf] | None], Sequence[Sample]],
-    end: int,
-    sources: frozenset[str] | None,
-) -> dict[str, str]:
-    """What the triggers lacked that never came true; the same trigger is looked at once."""
-    if not silent:
-        return {}
-    from rvmon.explain.not_triggered import why_not_triggered
-    from rvmon.spec.print.printer import format_formula
-
-    known: dict[str, str] = {}
-    found = {}
-    for name, graph in silent.items():
-        requirement = spec.requirements[name]
-        trigger = format_formula(requirement.trigger)
-        if trigger not in known or requirement.for_each is not None:
-            samples = read(_leaves(graph))
-            known[trigger] = why_not_triggered(spec.checked, requirement, samples, end, sources)
-        found[name] = known[trigger]
-    return {name: miss for name, miss in found.items() if miss}
-
-
-def _leaves(graph: Graph | None) -> frozenset[Leaf] | None:
-    """What a graph reads: those that read the same can become another at the same samples."""
-    if graph is None:
-        return None
-    return frozenset(node.leaf for node in graph.nodes if node.leaf is not None)
-
-
-def _changes(
-    spec: Spec,
-    judged: FileRecording,
-    asked: Iterable[Graph | None],
-    end: int,
-    samples: Callable[[], Sequence[Sample]],
-) -> Mapping[frozenset[Leaf] | None, Sequence[Sample]]:
-    """What changes, by the leaves of graphs; read by columns if the file is plain."""
-    alike = {_leaves(graph): graph for graph in asked if graph is not None}
-    if not alike:
-        return {}
-    from rvmon.explain.changes import changes_in_blocks, changes_in_samples
-
-    graphs = tuple(alike.values())
-    if judged.only_block is not None:  # a short file, which need not be read again
-        found = changes_in_blocks([judged.only_block], graphs, spec.checked, end)
-        return dict(zip(alike, found, strict=True))
-    recorded: Iterable[Sample]
-    if spec.checked.max_delay is None:
-        looked_at = frozenset(name for graph in graphs for name in graph.by_name)
-        recording = opened(spec, judged.path, only=looked_at)
-        with suppress(NotPlainError):
-            if recording.is_short:
-                raise NotPlainError("its samples are sooner looked at")
-            blocks = recording.blocks(lambda: looked_at)
-            found = changes_in_blocks(blocks, graphs, spec.checked, end)
-            return dict(zip(alike, found, strict=True))
-        recorded = takewhile(lambda sample: sample.t <= end, recording)
-    else:
-        recorded = samples()
-    found = changes_in_samples(recorded, [graph.by_name for graph in graphs], spec.checked.events)
-    return dict(zip(alike, found, strict=True))
+def _silent(report: Report) -> list[str]:
+    """The requirements without attempts."""
+    return [name for name in report.verdicts if report.is_silent(name)]
 
 
 def _goals(

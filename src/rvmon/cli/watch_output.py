@@ -13,8 +13,7 @@ import msgspec
 
 from rvmon.cli.say import say, say_json, warn
 from rvmon.report.style import MARKS
-from rvmon.runtime.values import NEVER
-from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_ticks
 from rvmon.verdict.verdict import Verdict, fold
 
 if TYPE_CHECKING:

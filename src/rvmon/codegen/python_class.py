@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.codegen.comment import comment
 from rvmon.codegen.python_nodes import (
     NodeWriter,
     Roles,
@@ -15,6 +14,7 @@ from rvmon.codegen.python_nodes import (
 )
 from rvmon.codegen.python_values import ValueWriter
 from rvmon.codegen.python_visit import indented
+from rvmon.diagnostics.comment import comment
 from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import Compare, ProbeAtom, SignalAtom
 from rvmon.spec.print.printer import format_formula

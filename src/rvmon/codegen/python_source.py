@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.automaton.table import tables_of
-from rvmon.codegen.comment import comment
 from rvmon.codegen.grown import last_values
 from rvmon.codegen.python_class import listed, node_constants, node_functions, slots, takes
 from rvmon.codegen.python_intake import IntakeWriter
 from rvmon.codegen.python_leaf_cases import ConeWriter
 from rvmon.codegen.python_nodes import NodeWriter, is_queued, roles_of
 from rvmon.codegen.python_visit import VisitWriter, indented, is_straight
+from rvmon.diagnostics.comment import comment
 from rvmon.formula.state import State
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.runtime.solo import only_location
+from rvmon.runtime.table_machine import tables_of
 from rvmon.spec.checked.specification import Mode
 
 _TABULATED = 5

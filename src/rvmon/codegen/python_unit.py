@@ -5,16 +5,12 @@ from __future__ import annotations
 import heapq
 import math
 import operator
-from collections.abc import Callable, Sequence
 from functools import lru_cache
 from types import CodeType
 from typing import Any, TypeVar
 
 from rvmon.codegen.python_evaluator import evaluator_source
-from rvmon.codegen.python_leaf_margins import margins_source
 from rvmon.codegen.python_source import unit_source
-from rvmon.dataflow.margins import INFINITE
-from rvmon.formula.core import Constant, Literal
 from rvmon.plan.plan import Plan
 from rvmon.runtime.bulk import BulkRule
 from rvmon.runtime.nodes import BUSY, LIMIT, MISSING, Nodes
@@ -23,7 +19,7 @@ from rvmon.runtime.rule import Rule
 from rvmon.runtime.solo import SoloRule
 from rvmon.runtime.table import letter_table
 from rvmon.runtime.unit import Unit, closures
-from rvmon.runtime.values import FALSE, NEVER, TRUE
+from rvmon.runtime.values import NEVER
 
 _OPERATIONS = ("lt", "le", "eq", "ne", "ge", "gt", "add", "sub", "mul", "truediv", "neg")
 _NAMES: dict[str, Any] = {
@@ -74,18 +70,6 @@ def evaluator_class(plan: Plan, base: type[Made]) -> type[Made]:
         base: what it derives from.
     """
     return _made(evaluator_source(plan), base)
-
-
-def margins_function(
-    plan: Plan, leaves: Sequence[Literal | Constant]
-) -> Callable[[Unit], Sequence[float]]:
-    """By how much leaves hold; see `rvmon.codegen.python_leaf_margins.margins_source`."""
-    known = {FALSE: -INFINITE, TRUE: INFINITE}
-    namespace = {**_NAMES, "INF": INFINITE, "KNOWN": known}
-    # As below; the numbers that `repr` writes are finite.
-    exec(compile(margins_source(plan, leaves), "<generated margins>", "exec"), namespace)  # noqa: S102
-    found: Callable[[Unit], Sequence[float]] = namespace["margins"]
-    return found
 
 
 def _made(source: str, base: type[Made]) -> type[Made]:

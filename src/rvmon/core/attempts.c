@@ -69,6 +69,7 @@ void number_attempt(run *r, int32_t index, int32_t at, int64_t t)
         j->count += x->sure ? 1U : 0U;
         j->doubts += x->sure ? 0U : 1U;
         x->number = x->sure ? j->count : j->doubts;
+        margin_numbered(r->home->monitor, x->record, x->sure, x->number);
     }
 }
 
@@ -214,6 +215,7 @@ void lay_down(run *r, int32_t index, int32_t at)
     judge *j = &r->judges[index];
     attempt_at(r->home, at)->next = j->moot;
     j->moot = at;
+    r->home->monitor->laid_count++;
     if (r->standing != NULL) {
         note_moot(r, index, attempt_at(r->home, at)->triggered);
     }

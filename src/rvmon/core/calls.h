@@ -148,9 +148,14 @@ static inline bool means_the_same(const run *r, int32_t local, const rv_number *
     return (value->kind == r->value[local].kind) && (s->low < x) && (x < s->high);
 }
 
+void margins_stir(run *r, int32_t what);
+
 static inline void take_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
+    if (r->margins != NULL) {
+        margins_stir(r, in->event ? r->part->plan->signals.count + in->local : in->local);
+    }
     if (!in->event && (u->says == RV_SAYS_YES) && means_the_same(r, in->local, &u->value)) {
         r->value[in->local] = u->value;
     } else {
@@ -332,6 +337,7 @@ void home_take_amid(home *h, int64_t t);
 int64_t last_position(const rv_monitor *m);
 
 /* ---- core.c */
+void settle_margins(rv_monitor *m, int64_t t);
 const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
 bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 
@@ -468,6 +474,21 @@ void forget_last(run *r);
 bool is_idle(const run *r);
 void let_go(run *r);
 void adopt(run *parent, run *child);
+
+/* ---- margins.c, margin_results.c: by how much what attempts owe holds; nothing where that is not asked
+ * for */
+bool margins_prepare(rv_monitor *m);
+void margins_reset(rv_monitor *m);
+bool margins_make(run *r);
+void margins_clear(run *r);
+void margins_begin(run *r, int32_t index, int64_t t, int32_t record);
+void margins_visit(run *r, int64_t t);
+void margins_settle(home *h, int64_t reached);
+void margins_miss(run *r);
+void margins_close(home *h, int64_t end, int64_t reached);
+int32_t measured_attempt(run *r, int64_t triggered, uint32_t number);
+void margin_numbered(rv_monitor *m, int32_t record, bool sure, uint32_t number);
+void margin_vanished(rv_monitor *m, int32_t record);
 
 /* ---- keys.c: instances of a `for each` */
 bool begin_keys(home *h);

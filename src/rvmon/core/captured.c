@@ -14,7 +14,7 @@ bool starts_here(const run *r, int32_t index)
 
 bool is_idle(const run *r)
 {
-    return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running;
+    return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running && (r->asked == 0);
 }
 
 static int64_t turn_of(const home *h, int32_t at, bool sure)
@@ -131,10 +131,12 @@ void flush_turns(home *h)
     for (at = in_order(h, h->sure[0], true); at >= 0; at = h->turns[at].next_sure) {
         h->count++;
         attempt_at(h, at)->number = h->count;
+        margin_numbered(h->monitor, attempt_at(h, at)->record, true, h->count);
     }
     for (at = in_order(h, h->doubtful[0], false); at >= 0; at = h->turns[at].next_doubt) {
         h->doubts++;
         h->turns[at].doubt_number = h->doubts;
+        margin_numbered(h->monitor, attempt_at(h, at)->record, false, h->doubts);
     }
     at = h->done[0];
     h->sure[0] = h->sure[1] = -1;

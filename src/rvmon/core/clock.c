@@ -189,6 +189,9 @@ void visit(run *r, int64_t t)
     r->at.position = t;
     r->at.awaited = NEVER;
     have_judged(r, t);
+    if (r->margins != NULL) {
+        margins_visit(r, t); /* before what occurred is forgotten */
+    }
     if (r->at.phase == 0) {
         settle_phase(r);
     }
@@ -268,7 +271,8 @@ void approach(run *r, int64_t t)
 void arrive(run *r, int64_t t)
 {
     const int64_t gap = GAP(r);
-    const bool dirty = r->at.dirty || is_soiled(r) || (r->at.presence != ARE_THERE);
+    const bool dirty = r->at.dirty || is_soiled(r) || (r->at.presence != ARE_THERE)
+                       || ((r->margins != NULL) && ((gap > 1) || !r->at.started));
     if (r->at.presence == MAY_BE_THERE) {
         r->at.presence = r->at.started ? ARE_THERE_NEXT : ARE_THERE;
     }
@@ -286,6 +290,10 @@ void arrive(run *r, int64_t t)
             visit(r, t);
         }
         set_alarm(r, next_position(r));
+    } else if (r->margins != NULL) {
+        margins_visit(r, t); /* values are others, though no formula is */
+    } else {
+        /* Nothing is to be looked at. */
     }
     if (gap == 0) {
         r->at.position = t;

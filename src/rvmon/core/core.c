@@ -76,7 +76,7 @@ static bool prepare(rv_monitor *m)
         }
     }
     m->is_alone = (p->part_count == 1) && (p->parts[0].captured == 0);
-    return true;
+    return margins_prepare(m);
 }
 
 /* Begin a run: nothing has come, nothing was recorded. */
@@ -87,6 +87,7 @@ static bool begin_run(rv_monitor *m)
     int32_t i;
     m->record_count = 0;
     m->captured_count = 0;
+    m->laid_count = 0;
     forget_notes(m, 0, 0);
     m->sorted = 0;
     m->began = RV_NO_TIME;
@@ -102,6 +103,7 @@ static bool begin_run(rv_monitor *m)
     (void)memset(m->stale, 0, (size_t)(p->header->signals + 1) * sizeof *m->stale);
     m->finished = false;
     m->spoilt = false;
+    margins_reset(m);
     for (i = 0; i < p->part_count; i++) {
         if (!home_begin(&m->homes[i])) {
             m->spoilt = true;
@@ -261,7 +263,7 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
     }
     for (i = 0; i < m->plan.part_count; i++) {
         home *h = &m->homes[i];
-        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started
+        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started || (m->shapes != NULL)
             || (h->root->at.presence != ARE_THERE)
             || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
             h->previous = last_position(m);
@@ -269,6 +271,15 @@ static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32
         }
     }
     return true;
+}
+
+/* Tell by how much what is owed holds, as far as that is settled now that time has come to `t`. */
+void settle_margins(rv_monitor *m, int64_t t)
+{
+    int32_t i;
+    for (i = 0; (m->shapes != NULL) && !m->hurries && (i < m->plan.part_count); i++) {
+        margins_settle(&m->homes[i], t);
+    }
 }
 
 int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
@@ -306,6 +317,7 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     m->last = t;
     m->after = t;
     m->reached = t;
+    settle_margins(m, t);
     if (m->record_count > m->sorted) {
         sort_records(m);
     }
@@ -335,6 +347,7 @@ int rv_advance(rv_monitor *m, int64_t t)
         if (t - 1 > m->after) {
             m->after = t - 1;
         }
+        settle_margins(m, t);
         sort_records(m);
     }
     return m->spoilt ? RV_NO_MEMORY : RV_OK;

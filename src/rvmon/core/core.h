@@ -65,6 +65,19 @@ typedef struct {
     uint8_t in_doubt;          /* 1: a trigger that may not have been; counted apart */
 } rv_record;
 
+/* By how much the formula of an attempt holds, or of a position what its requirement owes there: within
+ * these bounds, whatever is not known and whatever had come behind the end. Above 0 it holds. */
+typedef struct {
+    int64_t t;                 /* of the trigger, or the position */
+    double low;
+    double high;
+    double kept;               /* the least, if all is well behind the end that has to be kept up */
+    int32_t requirement;
+    uint32_t number;
+    uint8_t in_doubt;          /* as in `rv_record` */
+    uint8_t of_position;       /* 1: it is of no attempt */
+} rv_margin;
+
 typedef struct rv_plan rv_plan;
 typedef struct rv_monitor rv_monitor;
 
@@ -167,6 +180,13 @@ const rv_number *rv_captured(const rv_monitor *m, const rv_record *record);
 int32_t rv_captured_of(const rv_monitor *m, int32_t requirement);
 void rv_forget_records(rv_monitor *m);
 
+/* For a run of weeks: have but the newest records of each requirement and verdict be kept, so many, and
+ * as many of the attempts that stay open for good. Nothing is dropped but by `rv_trim`, which looks
+ * whether it is worth it, and says whether records are others than before; at the end of a run it always
+ * is. What was dropped is counted on. */
+int rv_keep(rv_monitor *m, int64_t most);
+bool rv_trim(rv_monitor *m);
+
 /* Attempts that are open; `take` returns false to end. `captured` is NULL if they have no values. Notes
  * of them are valid until the next call. */
 typedef bool (*rv_take)(void *user, const rv_record *record, const rv_number *captured);
@@ -204,6 +224,20 @@ bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note);
  * no more. */
 int64_t rv_notes(const rv_monitor *m, const int64_t **words);
 bool rv_span(const rv_monitor *m, int32_t number, rv_note *note);
+
+/* Have each position of a sample be measured, and not those of attempts alone; what captures values is
+ * not. Before the first sample, of a plan that says what is measured. */
+void rv_measure_positions(rv_monitor *m);
+
+/* Figures that nothing can change any more, since the last `rv_forget_margins`: of each call by instant,
+ * then requirement. Valid until the next call. */
+int64_t rv_margins(rv_monitor *m, const rv_margin **margins);
+void rv_forget_margins(rv_monitor *m);
+
+/* What is known of the attempts whose figures are to come; bounds that only draw closer. `take` returns
+ * false to end. */
+typedef bool (*rv_take_margin)(void *user, const rv_margin *margin);
+void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user);
 
 /* How many attempts of a requirement failed, passed, stayed open, and whether its trigger was ever
  * true or false. */

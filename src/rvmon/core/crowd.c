@@ -194,8 +194,9 @@ int32_t call_concerned(home *h, int64_t t)
 {
     int32_t count;
     int32_t i;
-    if (h->part->plan->each == 0) {
-        return -1;
+    if ((h->part->plan->each == 0)
+        || ((h->monitor->shapes != NULL) && (h->monitor->plan.header->gap == 0))) {
+        return -1; /* each sample is a position of what is measured */
     }
     for (i = 0; i < h->inbox_count; i++) {
         if (key_of(h, &h->inbox[i]) == NULL) {

@@ -74,6 +74,7 @@ void run_begin_dense(run *r, int64_t t)
     }
     r->at.presence = ARE_THERE;
     r->opening = false;
+    margins_miss(r);
     remember_unknown(r, t);
     blank_out(r, t);
     r->at.position = t;

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from enum import IntEnum, auto
 from typing import assert_never
 
-from rvmon.core.sections import Section, Sections
+from rvmon.core.sections import Listed, Section, Sections
 from rvmon.dataflow.chain import Chain, reach_of
 from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Literal, Sense
@@ -45,19 +45,26 @@ def add_form(
         chain: that it is; `None`: it is none.
         index: the places of propositions.
     """
-    first = sections.count(Section.OPERATORS)
-    leaves = 0
-    for node in plan.nodes:
-        _add(sections, plan, node, leaves, index)
-        leaves += isinstance(node, Leaf)
+    operators = add_operators(sections, plan, index)
     own: tuple[int, ...] = (*sections.listed(()), -1, -1, -1)
     if chain is not None:
         ends = (-1 if place is None else place for place in (chain.left, chain.excused))
         own = (*sections.listed(chain.places), chain.base, *ends)
     reach = reach_of(plan)
     ticks = _NEVER if reach is None else min(reach, _FARTHEST)
-    size = first, len(plan.nodes), leaves, plan.looks_back
-    return sections.add(Section.FORMS, ticks, *size, *own, 0)
+    return sections.add(
+        Section.FORMS, ticks, *operators, len(plan.leaves), plan.looks_back, *own, 0
+    )
+
+
+def add_operators(sections: Sections, plan: NetworkPlan, index: Mapping[State, int]) -> Listed:
+    """Add the nodes of a formula; see `add_form`."""
+    first = sections.count(Section.OPERATORS)
+    leaves = 0
+    for node in plan.nodes:
+        _add(sections, plan, node, leaves, index)
+        leaves += isinstance(node, Leaf)
+    return first, len(plan.nodes)
 
 
 def _add(

@@ -109,6 +109,9 @@ static void store(run *r, int32_t place, uint8_t value, int64_t t)
     const node_plan *n = &r->part->nodes[place];
     const uint8_t was = r->truth[place];
     int32_t i;
+    if (r->margins != NULL) {
+        margins_stir(r, r->part->plan->signals.count + r->part->plan->events.count + place);
+    }
     r->truth[place] = value;
     if (r->standing != NULL) {
         note_node(r, place, was, t);

@@ -380,6 +380,7 @@ void home_close(home *h, int64_t end, int64_t reached)
     for (one = h->root; one != NULL; one = following(h, one)) {
         settle_all(one, end, reached);
     }
+    margins_close(h, end, reached);
 }
 
 int64_t home_due(home *h)

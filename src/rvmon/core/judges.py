@@ -8,6 +8,7 @@ from functools import cache
 from rvmon.automaton.automaton import Automaton
 from rvmon.core.automata import Automata
 from rvmon.core.forms import add_form
+from rvmon.core.measures import add_margin
 from rvmon.core.sections import Section, Sections
 from rvmon.dataflow.chain import Chain, chain_of
 from rvmon.dataflow.network_plan import plan_of
@@ -71,6 +72,9 @@ class Judges:
             tabled = place >= 0 and diagram < 0
             self._hear(number, rule, tabled=tabled)
             self._add(number, rule, owner, numbers[owner], (place, form, diagram))
+            if rule.measured is not None:
+                network = plan_of(rule.measured, plan.gap)
+                add_margin(sections, network, self._index, plan.spec, rule.requirement)
 
     def links(self, place: int) -> Iterator[tuple[int, ...]]:
         """What a node tells judges, as records."""

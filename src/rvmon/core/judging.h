@@ -19,6 +19,7 @@ typedef struct {
     bool clouded;              /* whether its trigger was unknown while it ran */
     bool hollow;               /* over before all that it speaks of had a value */
     int64_t doubted_at;        /* where its readings parted; RV_NO_TIME: nowhere */
+    int32_t record;            /* of its margin, 1 for the first; 0: it is not measured */
     int64_t clocks[];
 } attempt;
 

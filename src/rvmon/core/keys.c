@@ -301,7 +301,7 @@ static bool stretches_agree(const stretches *a, const stretches *b)
 static bool is_quiet(const run *r)
 {
     int32_t i;
-    if (r->opening || (r->first_child != NULL) || (r->repeating_count > 0)
+    if (r->opening || (r->asked > 0) || (r->first_child != NULL) || (r->repeating_count > 0)
         || ((GAP(r) > 1) && (r->at.awaited < NEVER))) {
         return false;
     }

@@ -212,6 +212,61 @@ int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
     return m->span_count - 1;
 }
 
+/* Have a span be kept; its new number. The old one says that it is. */
+int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number)
+{
+    span_of_letters *old = &m->spans[number];
+    if (old->last_count >= 0) {
+        to->spans[to->span_count] = *old;
+        old->last_count = -1 - to->span_count;
+        to->span_count++;
+    }
+    return -1 - old->last_count;
+}
+
+/* Let go of the letters that no note refers to any more, after notes were dropped.
+ *
+ * Of each judge, what is pinned goes up to the end of its last span: so that a piece that is ends a walk
+ * from the last span back to the first. */
+void pin_kept_letters(rv_monitor *m)
+{
+    rv_piece **link = &m->left;
+    const run *r;
+    int32_t i;
+    m->pins++;
+    for (i = m->span_count - 1; i >= 0; i--) {
+        const span_of_letters *own = &m->spans[i];
+        rv_piece *one = own->first;
+        while ((one != own->last) && (one->pinned != m->pins)) {
+            one->pinned = m->pins;
+            one = one->next;
+        }
+        one->pinned = m->pins;
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        for (r = m->homes[i].root; r != NULL; r = following(&m->homes[i], r)) {
+            int32_t k;
+            for (k = 0; k < r->part->plan->judges.count; k++) {
+                noting *n = r->judges[k].noting;
+                rv_piece *one;
+                n->pinned = NULL;
+                for (one = n->first; one != NULL; one = one->next) {
+                    n->pinned = (one->pinned == m->pins) ? one : n->pinned;
+                }
+            }
+        }
+    }
+    while (*link != NULL) {
+        rv_piece *piece = *link;
+        if (piece->pinned == m->pins) {
+            link = &piece->next_left;
+        } else {
+            *link = piece->next_left;
+            drop_piece(m, piece);
+        }
+    }
+}
+
 /* No note refers to letters any more. */
 void unpin_letters(rv_monitor *m)
 {

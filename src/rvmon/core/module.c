@@ -1,6 +1,7 @@
 /* rvmon.native._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
  * columns, and gives out attempts. The only file of the core that knows of Python. */
 #include "module_attempts.h"
+#include "module_margins.h"
 #include "module_open.h"
 #include "module_outages.h"
 #include "module_results.h"
@@ -71,7 +72,7 @@ static PyObject *step_quickly(monitor *c, int64_t t, PyObject *values)
     PyObject *made = NULL;
     Py_BEGIN_CRITICAL_SECTION(c);
     if (!c->held && !c->busy && PyDict_CheckExact(values) && (take(c, t, values, false) == TAKEN)) {
-        made = decided_since(c);
+        made = (c->figures != NULL) ? figures_since(c) : decided_since(c);
     }
     Py_END_CRITICAL_SECTION();
     return made;
@@ -217,6 +218,7 @@ METHOD(found)
 METHOD(late)
 METHOD(finish)
 METHOD(reset)
+METHOD(keep)
 METHOD(flush)
 METHOD(open)
 METHOD(records)
@@ -224,6 +226,11 @@ METHOD(counts)
 METHOD(stale)
 METHOD(times)
 METHOD(next_due)
+METHOD(measure)
+METHOD(figures)
+METHOD(open_figures)
+METHOD(margins)
+METHOD(memory_used)
 METHOD(rows)
 METHOD(save)
 METHOD(load)
@@ -252,6 +259,9 @@ static int monitor_traverse(PyObject *self, visitproc visit, void *arg)
 {
     Py_VISIT(Py_TYPE(self));
     Py_VISIT(((monitor *)self)->owner);
+    if (((monitor *)self)->figures != NULL) {
+        Py_VISIT(((monitor *)self)->figures->owner);
+    }
     return 0;
 }
 
@@ -263,6 +273,7 @@ static int monitor_clear(PyObject *self)
     c->look_closer = NULL;
     c->look_closer_ns = NULL;
     Py_CLEAR(c->owner);
+    free_figures(c);
     return 0;
 }
 
@@ -300,6 +311,7 @@ static PyMethodDef monitor_methods[] = {
     {"found", monitor_found, METH_VARARGS, NULL},
     {"late", monitor_late, METH_VARARGS, NULL},
     {"finish", monitor_finish, METH_O, NULL},
+    {"keep", monitor_keep, METH_O, NULL},
     {"flush", monitor_flush, METH_NOARGS, NULL},
     {"open", monitor_open, METH_NOARGS, NULL},
     {"records", monitor_records, METH_NOARGS, NULL},
@@ -311,6 +323,11 @@ static PyMethodDef monitor_methods[] = {
     {"passages", monitor_passages, METH_O, NULL},
     {"situation", monitor_situation, METH_O, NULL},
     {"hits", monitor_hits, METH_NOARGS, NULL},
+    {"measure", monitor_measure, METH_VARARGS, NULL},
+    {"figures", monitor_figures, METH_NOARGS, NULL},
+    {"open_figures", monitor_open_figures, METH_NOARGS, NULL},
+    {"margins", monitor_margins, METH_NOARGS, NULL},
+    {"memory_used", monitor_memory_used, METH_NOARGS, NULL},
     {"hold", monitor_hold, METH_O, NULL},
     {"reset", monitor_reset, METH_NOARGS, NULL},
     {"save", monitor_save, METH_NOARGS, NULL},

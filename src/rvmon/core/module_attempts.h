@@ -27,6 +27,8 @@ typedef struct {
     PyObject *decisions;
     PyObject *details;         /* gives an attempt its other fields */
     note_cache notes;
+    int64_t keep;              /* so many records of each kind are kept; -1: all */
+    struct figures *figures;   /* what figures are made of; NULL: steps give attempts */
 } monitor;
 
 /* Raises what it comes to that the core did not do something. */
@@ -197,20 +199,34 @@ static void gather_records(const monitor *c, int64_t first, bool open, gathering
     }
 }
 
+/* Have records be dropped that are too many, all being given out. */
+static void trim_given(monitor *c)
+{
+    if (rv_trim(c->m)) {
+        const rv_record *records;
+        c->given = rv_records(c->m, &records);
+        forget_standing(&c->notes);
+    }
+}
+
 /* The attempts that were decided since the last time. */
 static PyObject *decided_since(monitor *c)
 {
     const rv_record *records;
     const int64_t count = rv_records(c->m, &records);
     const int64_t first = c->given;
+    PyObject *made;
     gathering g;
     if (count == first) {
+        trim_given(c);
         return PyTuple_New(0); /* always the same one */
     }
     c->given = count;
     begin_gathering(&g, c);
     gather_records(c, first, false, &g);
-    return attempts_of(&g);
+    made = attempts_of(&g);
+    trim_given(c);
+    return made;
 }
 
 #endif

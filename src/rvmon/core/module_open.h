@@ -97,6 +97,7 @@ static PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unuse
                          &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
                          &c->decisions, &c->details)) {
         c->owner = Py_NewRef(args);
+        c->keep = -1;
         if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
             && is_record(c->attempt) && find_captured(c) && set_absent(c, absent)) {
             return (PyObject *)c;

@@ -4,6 +4,21 @@
 
 #include "module_attempts.h"
 
+/* keep(most): the newest records of each requirement and verdict. */
+static PyObject *keep_of(monitor *c, PyObject *most)
+{
+    const long long count = PyLong_AsLongLong(most);
+    if ((count == -1) && (PyErr_Occurred() != NULL)) {
+        return NULL;
+    }
+    if (count < 0) {
+        PyErr_SetString(PyExc_ValueError, "so many cannot be kept");
+        return NULL;
+    }
+    c->keep = (int64_t)count;
+    return is_done(rv_keep(c->m, c->keep)) ? Py_NewRef(Py_None) : NULL;
+}
+
 static PyObject *flush_of(monitor *c, PyObject *unused)
 {
     (void)unused;

@@ -32,9 +32,17 @@ static PyObject *load_of(monitor *c, PyObject *bytes)
     if (made == NULL) {
         return PyErr_NoMemory(); /* the plan was checked before */
     }
-    code = rv_load(made, PyBytes_AsString(bytes), (size_t)PyBytes_Size(bytes));
+    code = rv_keep_notes(made, note_dropped, &c->notes);
     if (code == RV_OK) {
+        code = rv_load(made, PyBytes_AsString(bytes), (size_t)PyBytes_Size(bytes));
+    }
+    if ((code == RV_OK) && (c->keep >= 0)) {
+        code = rv_keep(made, c->keep);
+    }
+    if (code == RV_OK) {
+        (void)rv_reset(c->m); /* pieces give back what hangs on them */
         rv_free(c->m);
+        forget_standing(&c->notes);
         c->m = made;
         c->given = rv_records(made, &records);
         return Py_NewRef(Py_True);

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from enum import IntEnum, auto
 
 from rvmon.core.atoms import Atoms
+from rvmon.core.measures import is_followed
 from rvmon.core.programs import Names
+from rvmon.dataflow.network_plan import plan_of
 from rvmon.formula.alphabet import literals
+from rvmon.formula.core import Literal
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import (
     FALSE,
@@ -207,7 +210,7 @@ def _needed(plan: Plan) -> frozenset[int]:
     """The nodes that matter once every signal is born and every trigger was true or false."""
     graph = plan.graph
     settled = _settled(plan)
-    states = [state for _, rule in plan.judges for state in _asked(rule)]
+    states = [state for _, rule in plan.judges for state in _asked(rule, plan)]
     states += (one.proposition for core in plan.truths for one in literals(core))
     states += (watch.state for watch in plan.watches)
     stack = [graph.index[state] for state in states if settled[graph.index[state]] is None]
@@ -220,12 +223,15 @@ def _needed(plan: Plan) -> frozenset[int]:
     return frozenset(needed)
 
 
-def _asked(rule: PlannedRule) -> Iterator[State]:
+def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
     """The state formulas of a rule that matter also when its trigger was true or false."""
     named = (rule.trigger, rule.again, rule.unborn, rule.running, rule.blurs)
     yield from (state for state in named if state is not None)
     yield from rule.alphabet.propositions
-    yield from rule.asked
+    leaves = () if rule.measured is None else plan_of(rule.measured, plan.gap).leaves
+    for _, core in leaves:
+        if isinstance(core, Literal) and is_followed(core, plan.spec, rule.requirement):
+            yield core.proposition
 
 
 def _settled(plan: Plan) -> list[int | None]:

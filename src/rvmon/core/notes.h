@@ -32,6 +32,17 @@ void forget_letters(rv_monitor *m, noting *n);
 int32_t span_from(rv_monitor *m, noting *n, int64_t begin);
 void unpin_letters(rv_monitor *m);
 
+/* Where notes go that stay when others are dropped. */
+typedef struct {
+    int64_t *words;
+    span_of_letters *spans;
+    int64_t count;
+    int32_t span_count;
+} kept_notes;
+
+int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number);
+void pin_kept_letters(rv_monitor *m);
+
 /* ---- told.c */
 enum { NOTE_DECIDED, NOTE_OPEN, NOTE_NOTHING };
 enum {
@@ -44,5 +55,9 @@ enum {
 /* Words before those of the leaves. */
 #define NOTE_HEAD 7
 void drop_told_open(rv_monitor *m);
+bool begin_keeping(rv_monitor *m, kept_notes *to);
+int64_t keep_note(rv_monitor *m, kept_notes *to, int64_t note);
+void give_up_keeping(rv_monitor *m, kept_notes *to);
+void end_keeping(rv_monitor *m, kept_notes *to);
 
 #endif

@@ -10,7 +10,8 @@ static const size_t RECORD[SECTIONS] = {
     sizeof(signal_plan),   sizeof(event_plan),     sizeof(atom_plan),    sizeof(node_plan),
     sizeof(link_plan),     sizeof(judge_plan),     sizeof(automaton_plan), sizeof(form_plan),
     sizeof(operator_plan), sizeof(watch_plan),     sizeof(group_plan),   sizeof(number_plan),
-    sizeof(int32_t),       sizeof(int32_t),        sizeof(int32_t),      sizeof(int64_t)};
+    sizeof(int32_t),       sizeof(int32_t),        sizeof(int32_t),      sizeof(int64_t),
+    sizeof(margin_plan),   sizeof(measure_plan)};
 
 /* Where no record was found wrong. */
 #define FINE (-1)
@@ -90,6 +91,8 @@ bool plan_view(plan *p, const void *bytes, size_t size)
     p->lists = section_at(h, SEC_LISTS);
     p->ints = section_at(h, SEC_INTS);
     p->ticks = section_at(h, SEC_TICKS);
+    p->margins = section_at(h, SEC_MARGINS);
+    p->measures = section_at(h, SEC_MEASURES);
     for (i = 0; i < SECTIONS; i++) {
         p->counts[i] = table_of(h)[i].count;
     }
@@ -254,7 +257,10 @@ static int32_t wrong_in_part(const plan *p, const part_plan *x)
     if (!check_watches(p, x)) {
         return SEC_WATCHES;
     }
-    return check_groups(p, x) ? FINE : SEC_GROUPS;
+    if (!check_groups(p, x)) {
+        return SEC_GROUPS;
+    }
+    return check_margins(p, x) ? FINE : SEC_MARGINS;
 }
 
 int32_t rv_plan_check(const void *bytes, size_t size)
@@ -269,6 +275,9 @@ int32_t rv_plan_check(const void *bytes, size_t size)
     }
     if (!check_parts(&p)) {
         return SEC_PARTS;
+    }
+    if ((p.counts[SEC_MARGINS] != 0) && (p.counts[SEC_MARGINS] != p.counts[SEC_JUDGES])) {
+        return SEC_MARGINS;
     }
     for (i = 0; i < (int32_t)p.counts[SEC_AUTOMATA]; i++) {
         if (!check_automaton(&p, &p.automata[i])) {

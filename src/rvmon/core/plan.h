@@ -28,6 +28,8 @@ enum {
     SEC_LISTS,                 /* int32[]: all lists of indices */
     SEC_INTS,                  /* int32[]: tables of automata and diagrams */
     SEC_TICKS,                 /* int64[]: cuts and ages of automata */
+    SEC_MARGINS,               /* margin_plan[]: of each judge what is measured; or none */
+    SEC_MEASURES,              /* measure_plan[] */
     SECTIONS
 };
 
@@ -301,6 +303,32 @@ typedef struct {
     int32_t first;             /* its first item, among those of the part's groups */
     list axes;                 /* pairs: the first watch of an axis, and how many it has */
 } group_plan;
+
+/* What is measured of the attempts of a judge: a formula as a network has it. */
+typedef struct {
+    list operators;
+    list measures;             /* records of SEC_MEASURES, one for each leaf in the order of their
+                                * numbers */
+    int32_t looks_back;        /* whether it has to see what is before its attempts */
+    int32_t spare;
+} margin_plan;
+
+enum {
+    MEASURE_CONSTANT,          /* true */
+    MEASURE_TRUTH,             /* that of a node, infinite */
+    MEASURE_DENIED,            /* whether a node is FALSE for sure */
+    MEASURE_DISTANCE,          /* by how much the comparison that a leaf shows holds */
+    MEASURES
+};
+
+/* What a leaf is measured by. */
+typedef struct {
+    double factor;             /* of a distance, that makes base units of it */
+    int32_t kind;
+    int32_t turned;            /* whether it is negated */
+    int32_t node;              /* in the part; -1: of a constant */
+    int32_t spare;
+} measure_plan;
 
 /* A constant. */
 typedef struct {

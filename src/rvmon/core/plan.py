@@ -6,7 +6,6 @@ from rvmon.core.automata import Automata
 from rvmon.core.packed import Numbering, Packed, packed
 from rvmon.core.part import Part
 from rvmon.core.sections import Section, Sections
-from rvmon.errors import RvmonError
 from rvmon.plan.plan import Plan
 
 
@@ -18,10 +17,8 @@ def pack(plan: Plan, *, next_law: bool = False) -> Packed:
         next_law: whether they are judged by the law to come.
 
     Raises:
-        RvmonError: there is no requirement, or an expression is beyond the core.
+        RvmonError: an expression is beyond the core.
     """
-    if not (plan.asked or plan.truths or plan.watches):
-        raise RvmonError("the specification has no requirements: there is nothing to compile")
     sections = Sections()
     automata = Automata(sections)
     numbering = Numbering(plan.spec)

@@ -70,8 +70,12 @@ bool check_nodes(const plan *p, const part_plan *x);
 /* ---- plan_judges.c */
 bool check_automaton(const plan *p, const automaton_plan *a);
 bool check_judge(const plan *p, const part_plan *x, int32_t number);
+bool check_operators(const plan *p, const part_plan *x, list operators, int32_t leaves);
 bool check_forms(const plan *p, const part_plan *x);
 bool check_watches(const plan *p, const part_plan *x);
 bool check_groups(const plan *p, const part_plan *x);
+
+/* ---- plan_margins.c */
+bool check_margins(const plan *p, const part_plan *x);
 
 #endif

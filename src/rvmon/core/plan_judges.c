@@ -212,16 +212,16 @@ bool check_judge(const plan *p, const part_plan *x, int32_t number)
     return (j->diagram == -1) && check_letters(p, x, number, a->letters);
 }
 
-static bool check_operator(const plan *p, const form_plan *f, const part_plan *x, int32_t place)
+static bool check_operator(const plan *p, const part_plan *x, const operator_plan *o, int32_t leaves,
+                           int32_t place)
 {
-    const operator_plan *o = &p->operators[f->operators.first + place];
     if (!is_within(o->kind, 0, OPS) || !is_within(o->turned, 0, 2) || !is_distance(o->low)
         || !is_distance(o->high) || !is_within(o->over, -1, LIMIT)) {
         return false;
     }
     switch (o->kind) {
     case OP_LEAF:
-        return is_within(o->left, 0, f->leaves) && is_node(x, o->right)
+        return is_within(o->left, 0, leaves) && is_node(x, o->right)
                && is_within(o->values[0], 0, 4) && is_within(o->values[1], 0, 4)
                && is_within(o->values[2], 0, 4);
     case OP_JUNCTION: return (o->operands.count >= 1) && lists(p, o->operands, 0, place);
@@ -260,22 +260,28 @@ static bool check_chain(const plan *p, const form_plan *f)
     return true;
 }
 
+/* The operators of a formula with so many leaves: operands before them, and none too many. */
+bool check_operators(const plan *p, const part_plan *x, list operators, int32_t leaves)
+{
+    int32_t k;
+    if (!has(p, SEC_OPERATORS, operators.first, operators.count) || (operators.count < 1)
+        || !is_within(leaves, 0, (int64_t)operators.count + 1)) {
+        return false;
+    }
+    for (k = 0; k < operators.count; k++) {
+        if (!check_operator(p, x, &p->operators[operators.first + k], leaves, k)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool check_forms(const plan *p, const part_plan *x)
 {
     int32_t i;
-    int32_t k;
     for (i = 0; i < x->forms.count; i++) {
         const form_plan *f = &p->forms[x->forms.first + i];
-        if (!has(p, SEC_OPERATORS, f->operators.first, f->operators.count)
-            || (f->reach < 0) || (f->operators.count < 1) || !is_within(f->leaves, 0, (int64_t)f->operators.count + 1)) {
-            return false;
-        }
-        for (k = 0; k < f->operators.count; k++) {
-            if (!check_operator(p, f, x, k)) {
-                return false;
-            }
-        }
-        if (!check_chain(p, f)) {
+        if ((f->reach < 0) || !check_operators(p, x, f->operators, f->leaves) || !check_chain(p, f)) {
             return false;
         }
     }

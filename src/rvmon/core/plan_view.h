@@ -2,7 +2,7 @@
 #ifndef RVMON_PLAN_VIEW_H
 #define RVMON_PLAN_VIEW_H
 
-#include "plan.h"
+#include "measuring.h"
 
 /* ---- memory.c: blocks of a few sizes, all given back at once */
 
@@ -72,6 +72,7 @@ typedef struct {
     int32_t *slots;            /* by node, its number among those that notes tell of; -1: it is none */
     int32_t stood;             /* so many these are */
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
+    margin_readers readers;
     bool restarts;             /* whether some failure may be followed by another attempt */
     bool is_traced;            /* whether it is counted where some attempts go */
     bool is_watched;           /* whether somebody asks for more than what becomes of attempts */
@@ -99,6 +100,8 @@ typedef struct {
     const int32_t *lists;
     const int32_t *ints;
     const int64_t *ticks;
+    const margin_plan *margins; /* by judge */
+    const measure_plan *measures;
     int64_t counts[SECTIONS];
     int32_t part_count;
 } plan;

@@ -45,6 +45,7 @@ typedef ptrdiff_t Py_ssize_t;
 typedef struct _longobject PyLongObject;
 typedef struct _ts PyThreadState;
 typedef PyObject *(*PyCFunction)(PyObject *, PyObject *);
+typedef int (*descrsetfunc)(PyObject *, PyObject *, PyObject *);
 typedef int (*inquiry)(PyObject *);
 typedef int (*visitproc)(PyObject *, void *);
 typedef int (*traverseproc)(PyObject *, visitproc, void *);
@@ -136,6 +137,7 @@ typedef struct bufferinfo {
 #define Py_tp_base 48
 #define Py_tp_clear 51
 #define Py_tp_dealloc 52
+#define Py_tp_descr_set 55
 #define Py_tp_methods 64
 #define Py_tp_new 65
 #define Py_tp_traverse 71

@@ -52,6 +52,7 @@ void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t ve
     const bool apart = r->part->plan->captured > 0;
     rv_record record;
     if ((verdict == RV_PASS) && !x->sure) {
+        margin_vanished(r->home->monitor, x->record);
         return; /* it was met, triggered or not */
     }
     if (apart) {

@@ -111,6 +111,10 @@ run *new_run(home *h)
         m->spoilt = true;
         return NULL;
     }
+    if (!margins_make(made)) {
+        m->spoilt = true;
+        return NULL;
+    }
     return made;
 }
 
@@ -238,6 +242,7 @@ void clear_judges(run *r)
     const part_plan *p = r->part->plan;
     int32_t i;
     int32_t k;
+    margins_clear(r);
     timers_clear(&r->rules, p->judges.count);
     r->touched_count = 0;
     r->restless_count = 0;

@@ -40,6 +40,8 @@ class Section(IntEnum):
     LISTS = auto()
     INTS = auto()
     TICKS = auto()
+    MARGINS = auto()
+    MEASURES = auto()
 
 
 RECORDS = {
@@ -63,6 +65,8 @@ RECORDS = {
     Section.LISTS: struct.Struct("=i"),
     Section.INTS: struct.Struct("=i"),
     Section.TICKS: struct.Struct("=q"),
+    Section.MARGINS: struct.Struct("=6i"),
+    Section.MEASURES: struct.Struct("=d4i"),
 }
 """The fields of a record, in the order of its type in C."""
 

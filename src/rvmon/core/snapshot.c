@@ -3,6 +3,7 @@
  * A head: what they are and of which version, the hash of the plan, how many they are, a hash of all
  * behind it. That is against accidents alone; bytes of whatever kind are either refused or a state that
  * the core can go on from. */
+#include "notes.h"
 #include "snapshot.h"
 
 #include <string.h>
@@ -37,17 +38,24 @@ static void carry_records(carrier *c, rv_monitor *m)
 {
     const int32_t requirements = m->plan.header->requirements;
     const size_t size = ((size_t)requirements + 1) * sizeof(int32_t);
+    const size_t parts_size = ((size_t)requirements + 1) * sizeof(const part *);
     int32_t *captured = arena_take(&m->memory, size);
+    const part **parts = arena_take(&m->memory, parts_size);
     int32_t count = (int32_t)m->record_count;
     int32_t i;
     int32_t k;
     carry_size(c, &count, MOST, 27);
-    if (captured == NULL) {
+    if ((captured == NULL) || (parts == NULL)) {
         m->spoilt = true;
         return;
     }
     for (i = 0; i < requirements; i++) {
         captured[i] = rv_captured_of(m, i);
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        for (k = 0; k < m->plan.parts[i].judges.count; k++) {
+            parts[m->parts[i].judges[k].requirement] = &m->parts[i];
+        }
     }
     if (c->reading && (count > 0)) {
         (void)grow_records(m, count);
@@ -65,6 +73,7 @@ static void carry_records(carrier *c, rv_monitor *m)
         carry_byte(c, &one.verdict, RV_INCONCLUSIVE);
         carry_byte(c, &one.decision, RV_OPEN);
         carry_byte(c, &one.in_doubt, 1);
+        carry_long(c, &one.note, -1, MOST);
         if (c->reading) {
             one.captured = (captured[one.requirement] > 0) ? m->captured_count : -1;
         }
@@ -76,11 +85,13 @@ static void carry_records(carrier *c, rv_monitor *m)
             }
         }
         if (c->reading && !is_lost(c)) {
+            check_note(c, parts[one.requirement], &one);
             keep_record(m, &one);
         }
     }
     m->sorted = c->reading ? m->record_count : m->sorted;
     arena_give(&m->memory, captured, size);
+    arena_give(&m->memory, parts, parts_size);
 }
 
 /* How far a run has come, and what is said of its names. */
@@ -124,19 +135,25 @@ static void carry_monitor(carrier *c, size_t size, uint64_t hash)
     int32_t i;
     carry_head(c, size, hash);
     carry_times(c, m);
+    carry_stale(c, m);
+    carry_long(c, &m->laid_count, 0, MOST);
+    carry_long(c, &m->trim_at, 0, 4 * (int64_t)MOST);
+    carry_notes(c, m);
     carry_records(c, m);
     for (i = 0; (i < m->plan.part_count) && !is_lost(c); i++) {
         carry_home(c, &m->homes[i]);
     }
+    end_notes(c, m);
 }
 
 size_t rv_save(rv_monitor *m, void *bytes, size_t size)
 {
-    carrier c = {m, NULL, NULL, 0, 0, false, false};
+    carrier c = {m, NULL, NULL, 0, 0, false, false, NULL};
     size_t wanted;
-    if (m->spoilt) {
+    if (m->spoilt || (m->shapes != NULL)) {
         return 0;
     }
+    drop_told_open(m);
     carry_monitor(&c, 0, 0);
     wanted = c.at;
     if ((bytes != NULL) && (size >= wanted) && !m->spoilt) {
@@ -166,7 +183,7 @@ static bool is_fresh(const rv_monitor *m)
 
 int rv_load(rv_monitor *m, const void *bytes, size_t size)
 {
-    carrier c = {m, bytes, NULL, 0, 0, true, false};
+    carrier c = {m, bytes, NULL, 0, 0, true, false, NULL};
     c.size = size;
     if (!is_fresh(m)) {
         return RV_NOT_FRESH;

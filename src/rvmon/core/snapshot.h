@@ -17,6 +17,7 @@ typedef struct {
     size_t size;               /* of what is read */
     bool reading;
     bool refused;              /* what was read does not fit */
+    uint8_t *begins;           /* of each word of notes, what begins there; while they are read */
 } carrier;
 
 /* Whether something went wrong: nothing more is carried. */
@@ -76,8 +77,9 @@ void carry_spans(carrier *c, rv_monitor *m);
 
 /* ---- snapshot_told.c: notes of records */
 void carry_notes(carrier *c, rv_monitor *m);
-bool is_standing(const rv_monitor *m, const judge_plan *judged, int64_t place);
-void check_notes(carrier *c, rv_monitor *m);
+bool is_standing(const carrier *c, const judge_plan *judged, int64_t place);
+void check_note(carrier *c, const part *own, const rv_record *one);
+void end_notes(carrier *c, rv_monitor *m);
 
 /* Whether words of truths have nothing in them that is none. */
 static inline bool are_truths(const int64_t *words, int32_t count)

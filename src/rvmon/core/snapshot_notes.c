@@ -65,7 +65,7 @@ static void carry_shared(carrier *c, run *r, int32_t index)
     int64_t place = ((n->epoch == m->epoch) && (n->stood_at == r->standing->moved_at)) ? n->standing : -1;
     carry_long(c, &place, -1, m->note_count);
     if (c->reading && !c->refused && (place >= 0)) {
-        demand(c, is_standing(m, &r->part->judges[index], place));
+        demand(c, is_standing(c, &r->part->judges[index], place));
         n->standing = place;
         n->stood_at = r->standing->moved_at;
         n->epoch = m->epoch;

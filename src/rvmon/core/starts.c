@@ -66,6 +66,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         note_trigger(r, index, triggered);
     }
     if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
+        margins_begin(r, index, t, measured_attempt(r, triggered, j->count + 1U));
         (void)queue_begin(r, index, t);
         return;
     }
@@ -91,10 +92,12 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         x->hollow = r->cut < NEVER;
         j->running = (judged->flags & JUDGE_EPISODIC) != 0;
     }
+    x->record = measured_attempt(r, triggered, 0);
     number_attempt(r, index, at, triggered);
     if (r->standing != NULL) {
         note_begin(r, index, x, t);
     }
+    margins_begin(r, index, t, x->record);
     if (runs_on(r, index)) {
         leave_episode(r, index);
         j->current = at;
@@ -115,7 +118,10 @@ void enter(run *r, int32_t index, int32_t at, int64_t t)
 {
     judge *j = &r->judges[index];
     attempt *x = attempt_at(r->home, at);
-    if (remains(r, index, at, t)) {
+    const bool stays = remains(r, index, at, t);
+    if (stays && is_moot(x)) {
+        lay_down(r, index, at);
+    } else if (stays) {
         set_rule_due(r, index, least(r->rules.due[index], x->due));
         if (j->last < 0) {
             j->first = at;

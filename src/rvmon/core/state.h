@@ -3,6 +3,7 @@
 #define RVMON_STATE_H
 
 #include "judging.h"
+#include "measuring.h"
 #include "plan_view.h"
 
 #define NEVER RV_NEVER
@@ -233,6 +234,12 @@ struct run {
     rv_number *kept;           /* by signal, what came at that instant */
     uint8_t *has_kept;
     uint8_t *keeps;            /* whether what comes at that instant counts behind it */
+    measuring *margins;        /* by judge; NULL: nothing is measured */
+    timers margins_due;        /* by judge, when time alone may settle something */
+    int32_t *stirred;          /* judges whose leaves may be others than was read */
+    int64_t measured_at;       /* the position up to which all are known */
+    int32_t stirred_count;
+    int32_t asked;             /* attempts whose margins are to come */
     /* What is copied with them. */
     struct progress {
         int64_t origin;
@@ -415,6 +422,10 @@ struct rv_monitor {
     void *let_go_user;
     int64_t settled_notes;     /* so many words are of records; behind them those of open attempts */
     int32_t settled_spans;
+    int64_t *kept_of;          /* room to count records by requirement and verdict; NULL: all are kept */
+    int64_t keep;              /* so many are, of each */
+    int64_t laid_count;        /* attempts that were laid down since some were dropped, and before */
+    int64_t trim_at;           /* so many of both are borne */
     uint32_t epoch;            /* of notes: what was placed in another one is forgotten */
     before_decision before;    /* the token of the attempt at hand, before it moves */
     int64_t began;
@@ -422,6 +433,8 @@ struct rv_monitor {
     int64_t after;             /* a sample has to be later */
     int64_t reached;
     rv_staleness *stale;       /* by signal */
+    margin_shape *shapes;      /* by judge, what is measured; NULL: nothing is */
+    margin_results margins;
     uint8_t *late;             /* by requirement, whether something came too late for it */
     /* Where only samples are positions. */
     uint8_t *losing;           /* by name, whether it is lost; behind them, whether nothing is */
@@ -430,6 +443,8 @@ struct rv_monitor {
                                 * may be now */
     int64_t dense_end;         /* that of the last such stretch */
     int64_t heard;             /* how far names are known to have been lost; RV_NO_TIME: none was */
+    bool measures_positions;
+    bool hurries;              /* whether rows are judged, and figures can wait for some more of them */
     bool is_alone;             /* whether there is one part, without values of its own */
     bool finished;
     bool spoilt;

@@ -256,6 +256,76 @@ void forget_notes(rv_monitor *m, int64_t words, int32_t spans)
     m->epoch++;
 }
 
+/* Begin to drop notes but for some: those go elsewhere; false: there is no room. */
+bool begin_keeping(rv_monitor *m, kept_notes *to)
+{
+    drop_told_open(m);
+    to->count = 0;
+    to->span_count = 0;
+    to->words = arena_take(&m->memory, (size_t)m->note_room * sizeof *to->words);
+    to->spans = arena_take(&m->memory, (size_t)m->span_room * sizeof *to->spans);
+    if ((to->words == NULL) || (to->spans == NULL)) {
+        give_up_keeping(m, to);
+        return false;
+    }
+    return true;
+}
+
+void give_up_keeping(rv_monitor *m, kept_notes *to)
+{
+    arena_give(&m->memory, to->words, (size_t)m->note_room * sizeof *to->words);
+    arena_give(&m->memory, to->spans, (size_t)m->span_room * sizeof *to->spans);
+}
+
+static int64_t keep_words(kept_notes *to, const int64_t *words, int64_t count)
+{
+    (void)memcpy(&to->words[to->count], words, (size_t)count * sizeof *words);
+    to->count += count;
+    return to->count - count;
+}
+
+/* Have a note be kept, with what it refers to; its new place. */
+int64_t keep_note(rv_monitor *m, kept_notes *to, int64_t note)
+{
+    const int64_t *words;
+    int64_t made;
+    if (note < 0) {
+        return note;
+    }
+    words = &m->notes[note];
+    made = keep_words(to, words, words[0] >> 40);
+    if (words[1] >= 0) {
+        int64_t *stands = &m->notes[words[1]];
+        if (stands[0] >= 0) { /* else it says where it went */
+            const int64_t place = keep_words(to, stands, stands[0]);
+            stands[0] = -1 - place;
+        }
+        to->words[made + 1] = -1 - stands[0];
+    }
+    if ((((words[0] >> 8) & NOTE_NETWORK) != 0) && (words[3] >= 0)) {
+        const int64_t others = words[3] >> 32;
+        to->words[made + 3] = keep_span(m, to, (int32_t)(words[3] & INT32_MAX)) | (others << 32);
+    }
+    return made;
+}
+
+void end_keeping(rv_monitor *m, kept_notes *to)
+{
+    int64_t *words = m->notes;
+    span_of_letters *spans = m->spans;
+    m->notes = to->words;
+    m->note_count = to->count;
+    m->spans = to->spans;
+    m->span_count = to->span_count;
+    to->words = words;
+    to->spans = spans;
+    give_up_keeping(m, to);
+    m->epoch++;
+    if (m->keeps_notes) {
+        pin_kept_letters(m);
+    }
+}
+
 /* Begin or end to tell of open attempts: their notes are behind those of records. */
 void tell_open(rv_monitor *m, bool begins)
 {

@@ -87,7 +87,8 @@ class Unit:
     @cached_property
     def _looks_back(self) -> bool:
         plan = self._plan
-        return any(plan_of(rule.owed, plan.gap).looks_back for _, rule in plan.judges)
+        asked = [one for _, rule in plan.judges for one in (rule.owed, rule.measured)]
+        return any(plan_of(one, plan.gap).looks_back for one in asked if one is not None)
 
     @cached_property
     def _reach(self) -> Reach | None:
@@ -135,6 +136,7 @@ class Unit:
 def _consequent(rule: PlannedRule) -> Iterator[State]:
     """The state formulas of an attempt."""
     yield from rule.alphabet.propositions
+    yield from rule.asked
     named = [rule.again, rule.unborn]
     if rule.requirement.mode is Mode.WHENEVER:
         named += [rule.trigger, rule.running]

@@ -100,6 +100,9 @@ static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
             && (r->standing != NULL)) {
             note_knowledge(r, t, local, value);
         }
+        if (r->margins != NULL) {
+            margins_stir(r, local);
+        }
         r->value[local] = *value;
         if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
             r->spans[local] = NO_SPAN; /* mostly the next value means something else again */

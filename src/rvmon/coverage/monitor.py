@@ -164,7 +164,7 @@ class CoverageMonitor:
     def __init__(self, watched: _Watched, settle: str, sources: frozenset[str] | None) -> None:
         self._watched = watched
         self._runs = [
-            CoverageRun(planned, compiled, settle, sources)
+            CoverageRun(planned, compiled, settle, sources, None)
             for compiled, planned in watched.planned.items()
         ]
 

@@ -15,7 +15,7 @@ from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep
 from rvmon.dataflow.piecewise import FAR
 from rvmon.dataflow.ranges import Ranges, around, next_in
 from rvmon.formula.core import Constant
-from rvmon.runtime.values import NEVER
+from rvmon.trace.time import NEVER
 
 _FEW = 4
 """So many stretches of what is not known of an operand are passed over."""

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from rvmon.explain.spans import Spans
 from rvmon.explain.truth_over_trace import subformulas
-from rvmon.explain.truths import positions_of, truths_of
+from rvmon.explain.truths import Question, Seen, look_through
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
-from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.checked.tense import has_future
 from rvmon.spec.print.printer import format_formula
-from rvmon.trace.sample import Sample, Scalar
+from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
-
-Known = dict[tuple[str, ForEach | None, tuple[tuple[str, Scalar], ...]], Spans]
-"""Where formulas were true in a recording, by their text, `for each` and captured values."""
 
 
 def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
@@ -47,11 +44,9 @@ def late_arrivals(
     spec: CheckedSpec,
     requirement: Requirement,
     attempts: Iterable[Attempt],
-    samples: Sequence[Sample],
+    samples: Iterable[Sample],
     end: int,
     names: frozenset[str] | None = None,
-    *,
-    known: Known | None = None,
 ) -> dict[int, int]:
     """By number of the attempt, when what it had awaited came true after the deadline, in ticks.
 
@@ -63,28 +58,34 @@ def late_arrivals(
         samples: the recording, in order.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
-        known: what was found for other requirements in the same recording; it grows.
 
     Cost: one pass over the samples for each choice of captured values.
     """
-    if not samples:
-        return {}
-    positions = positions_of(spec, samples, end)
-    seen: Known = {} if known is None else known
+    waits = waits_of(requirement, attempts)
+    seen = look_through(spec, waits.values(), samples, end, names)
+    return late_in(attempts, waits, seen)
+
+
+def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int, Question]:
+    """By number of the attempt, what it had awaited in vain; see `awaited`."""
+    return {
+        attempt.number: Question((formula,), requirement.for_each, attempt.captured)
+        for attempt in attempts
+        if (formula := awaited(requirement, attempt)) is not None
+    }
+
+
+def late_in(
+    attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: Seen
+) -> dict[int, int]:
+    """The same, where a recording was looked through for these waits."""
     found = {}
     for attempt in attempts:
-        formula = awaited(requirement, attempt)
-        if formula is None or attempt.blame is None:
+        if attempt.number not in waits or attempt.blame is None or seen.begin is None:
             continue
-        key = (format_formula(formula), requirement.for_each, tuple(attempt.captured.items()))
-        if key not in seen:
-            each, captured = requirement.for_each, attempt.captured
-            (truth,) = truths_of(
-                spec, [formula], samples, end, names, for_each=each, captured=captured
-            )
-            seen[key] = truth.sure
+        (truth,) = seen.truths(waits[attempt.number])
         deadline = attempt.blame.window[1] or 0
-        came = _first_after(deadline, seen[key], positions)
+        came = _first_after(deadline, truth.sure, seen.positions)
         if came is not None:
             found[attempt.number] = came
     return found

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from rvmon.explain.spans import holds
-from rvmon.explain.states import values_read
-from rvmon.explain.truths import Truth, truths_of
-from rvmon.plan.graph import Graph
+from rvmon.explain.truths import Question, Seen, Truth, look_through
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,
@@ -21,7 +20,6 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print.printer import format_formula
-from rvmon.trace.gaps import is_unknown
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import format_ticks
 
@@ -49,7 +47,7 @@ class _Miss:
 def why_not_triggered(
     spec: CheckedSpec,
     requirement: Requirement,
-    samples: Sequence[Sample],
+    samples: Iterable[Sample],
     end: int,
     names: frozenset[str] | None = None,
 ) -> str:
@@ -62,31 +60,36 @@ def why_not_triggered(
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
     """
-    trigger = requirement.trigger
-    if not samples:
+    question = parts_asked(requirement)
+    return miss_in(spec, requirement, look_through(spec, [question], samples, end, names))
+
+
+def parts_asked(requirement: Requirement) -> Question:
+    """The parts of a trigger."""
+    if requirement.for_each is not None:
+        return Question(())
+    return Question(tuple(dict.fromkeys(chain(*_options(requirement)))))
+
+
+def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
+    """As `why_not_triggered`, where a recording was looked through for its `parts_asked`."""
+    if seen.begin is None:
         return "the recording has no sample"
-    if requirement.for_each is not None or trigger == BoundAtom(Bound.END):
+    if requirement.for_each is not None or requirement.trigger == BoundAtom(Bound.END):
         return ""
-    options = [_flat(part, BinaryOp.AND) for part in _flat(trigger, BinaryOp.OR)]
-    asked = list(dict.fromkeys(part for option in options for part in option))
-    seen = dict(zip(asked, truths_of(spec, asked, samples, end, names), strict=True))
-    misses = [_miss(parts, seen) for parts in options]
+    question = parts_asked(requirement)
+    truths = dict(zip(question.formulas, seen.truths(question), strict=True))
+    misses = [_miss(parts, truths) for parts in _options(requirement)]
     best = min(misses, key=lambda miss: len(miss.missing))
     if best.missing and best.at is None:
-        unborn = _unborn(spec, best.parts, samples, names)
-        return "; ".join(_apart(best.parts, seen, unborn, samples[0].t, end))
-    return _sentence(best, seen)
+        unborn = _unborn(spec, best.parts, seen)
+        return "; ".join(_apart(best.parts, truths, unborn, seen.begin, seen.end))
+    return _sentence(best, truths)
 
 
-def read_as_values(spec: CheckedSpec, requirement: Requirement) -> Graph | None:
-    """The parts of a trigger, if the values of what they read are all that counts.
-
-    Returns:
-        `None` if updates that repeat a value, payloads or positions may make a difference.
-    """
-    options = _flat(requirement.trigger, BinaryOp.OR)
-    parts = [part for option in options for part in _flat(option, BinaryOp.AND)]
-    return values_read(spec, requirement, [part for part in parts if part != BoundAtom(Bound.END)])
+def _options(requirement: Requirement) -> list[tuple[Formula, ...]]:
+    """The ways in which a trigger comes true, and the parts of each."""
+    return [_flat(part, BinaryOp.AND) for part in _flat(requirement.trigger, BinaryOp.OR)]
 
 
 def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
@@ -151,21 +154,14 @@ def _apart(
         yield f"`{name}` {unborn[name]}"
 
 
-def _unborn(
-    spec: CheckedSpec,
-    parts: Sequence[Formula],
-    samples: Sequence[Sample],
-    sources: frozenset[str] | None,
-) -> Mapping[str, str]:
+def _unborn(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> Mapping[str, str]:
     """Of the signals that parts read, those without any value, and what is reported of them."""
-    lacking = {name for part in parts for name in names_read(part)} & spec.signals.keys()
-    absent = set() if sources is None else lacking - sources
-    lacking -= absent
-    for sample in samples:
-        if not lacking:
-            break
-        lacking -= {name for name in lacking if not is_unknown(sample.values.get(name))}
-    return dict.fromkeys(absent, "has no source") | dict.fromkeys(lacking, "never had a value")
+    read = {name for part in parts for name in names_read(part)} & spec.signals.keys()
+    lacking = read & seen.unborn
+    absent = set() if seen.names is None else lacking - seen.names
+    return dict.fromkeys(absent, "has no source") | dict.fromkeys(
+        lacking - absent, "never had a value"
+    )
 
 
 def _listed(parts: Sequence[Formula]) -> str:

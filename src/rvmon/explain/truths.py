@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import assert_never
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, assert_never
 
 from rvmon.explain.spans import FOREVER, Spans, both, outside, union
 from rvmon.formula.core import Core
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
-from rvmon.monitor.core.watching import known_truths
+from rvmon.monitor.core.watching import TruthsRun
 from rvmon.plan.instances import occurrences_with
+from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, TimeModel
+from rvmon.spec.print.printer import format_formula
+from rvmon.trace.gaps import is_unknown
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,57 +32,205 @@ class Truth:
     may: Spans
 
 
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Formulas of which somebody asks where they are true.
+
+    Attributes:
+        formulas: may speak of the future.
+        for_each: of the instance that the formulas belong to, if they do to one.
+        captured: the values of `let` and `for each`.
+    """
+
+    formulas: tuple[Formula, ...]
+    for_each: ForEach | None = None
+    captured: Mapping[str, Scalar] = field(default_factory=dict)
+
+    @property
+    def whose(self) -> tuple[object, ...]:
+        """Equal where formulas are looked at in the same way."""
+        return self.for_each, *self.captured.items()
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """Where formulas are true in a recording; behind its end they may be anything.
+
+    In held time all ticks are positions; else a truth lasts from its position to the next.
+
+    Attributes:
+        names: the signals and events that had a source; `None`: all.
+        begin: the instant of the first sample, ticks; `None`: there is none.
+        end: the last instant.
+        positions: of the recording; `None` where every tick is one.
+        unborn: the signals that never had a value.
+    """
+
+    names: frozenset[str] | None
+    begin: int | None
+    end: int
+    positions: Sequence[int] | None
+    unborn: frozenset[str]
+    _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
+
+    def truths(self, question: Question) -> list[Truth]:
+        """Of the formulas of a question that was asked."""
+        own = self._truths[question.whose]
+        return [own[format_formula(one)] for one in question.formulas]
+
+
+def look_through(
+    spec: CheckedSpec,
+    questions: Iterable[Question],
+    pieces: Iterable[Batch | Sample],
+    end: int,
+    names: frozenset[str] | None = None,
+) -> Seen:
+    """Find where formulas are true in a recording, which is read once.
+
+    Args:
+        spec: the specification.
+        questions: the formulas.
+        pieces: the recording, in order.
+        end: its last instant, ticks.
+        names: the signals and events that have a source; `None`: all.
+
+    Cost: one pass in C for each `Question.whose`. Memory grows with how often the truths change,
+    in sampled time with the number of samples.
+    """
+    groups: dict[tuple[object, ...], _Group] = {}
+    for question in questions:
+        if question.whose not in groups:
+            groups[question.whose] = _Group(spec, question)
+        groups[question.whose].add(question.formulas)
+    runs = [run for one in groups.values() if (run := one.begun(names)) is not None]
+    begin: int | None = None
+    instants = array("q")
+    unborn = set(spec.signals)
+    for piece in pieces:
+        times = (piece.t,) if isinstance(piece, Sample) else piece.times
+        if begin is None and len(times):
+            begin = int(times[0])
+        if spec.time is TimeModel.SAMPLED:
+            instants.extend(times if isinstance(times, tuple) else _unlike(times.tolist()))
+        if unborn:
+            unborn -= _born(piece, unborn)
+        for run in runs:
+            run.take(piece)
+    positions = None if begin is None else _positions(spec, begin, end, instants)
+    ticks = _Ticks(positions, begin or 0, end)
+    truths = {whose: one.truths(ticks) for whose, one in groups.items()}
+    return Seen(names, begin, end, positions, frozenset(unborn), truths)
+
+
 def truths_of(
     spec: CheckedSpec,
     formulas: Sequence[Formula],
-    samples: Sequence[Sample],
+    samples: Iterable[Sample],
     end: int,
     names: frozenset[str] | None = None,
     *,
     for_each: ForEach | None = None,
     captured: Mapping[str, Scalar] | None = None,
 ) -> list[Truth]:
-    """Where formulas are true in a recording; behind its end they may be anything.
-
-    In held time all ticks are positions; else a truth lasts from its position to the next.
+    """Where formulas are true in a recording, see `look_through`.
 
     Args:
         spec: the specification.
         formulas: may speak of the future.
-        samples: the recording, in order; at least one.
+        samples: the recording, in order.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
-        for_each: of the instance that the formulas belong to, if they do to one.
-        captured: the values of `let` and `for each`.
+        for_each: see `Question`.
+        captured: see `Question`.
     """
-    values = captured or {}
-    lowering = Lowering(Factory(), spec.period, False)
-    cores: dict[int, Core] = {
-        place: lowering.core(formula, True)
-        for place, formula in enumerate(formulas)
-        if formula != BoundAtom(Bound.END)
-    }
-    seen = samples if for_each is None else _of_instance(for_each, values, samples)
-    order = list(dict.fromkeys(cores.values()))
-    found = dict(zip(order, known_truths(spec, order, seen, end, names, values), strict=True))
-    ticks = _Ticks(spec, samples, end)
-    made = {
-        core: Truth(ticks.spans(one.true), ticks.others(one.false)) for core, one in found.items()
-    }
-    anything = Truth((), ticks.others(()))
-    return [made[cores[place]] if place in cores else anything for place in range(len(formulas))]
+    question = Question(tuple(formulas), for_each, captured or {})
+    return look_through(spec, [question], samples, end, names).truths(question)
 
 
-def positions_of(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequence[int] | None:
+class _Group:
+    """Formulas that are looked at in the same way."""
+
+    def __init__(self, spec: CheckedSpec, question: Question) -> None:
+        self._spec = spec
+        self._question = question
+        self._lowering = Lowering(Factory(), spec.period, False)
+        self._cores: dict[str, Core | None] = {}
+        self._order: list[Core] = []
+        self._run: TruthsRun | None = None
+
+    def add(self, formulas: Iterable[Formula]) -> None:
+        """Look for these, too."""
+        for formula in formulas:
+            text = format_formula(formula)
+            if text not in self._cores:
+                # Where a trace ends is not known while it lasts.
+                at_end = formula == BoundAtom(Bound.END)
+                self._cores[text] = None if at_end else self._lowering.core(formula, True)
+
+    def begun(self, names: frozenset[str] | None) -> _Group | None:
+        """This, ready to look; `None`: there is nothing to look for."""
+        self._order = list(dict.fromkeys(core for core in self._cores.values() if core is not None))
+        if not self._order:
+            return None
+        self._run = TruthsRun(self._spec, self._order, names, self._question.captured)
+        return self
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Look at what comes next."""
+        if self._run is None:
+            return
+        each = self._question.for_each
+        if each is None:
+            self._run.take(piece)
+            return
+        samples: Iterable[Sample] = (piece,) if isinstance(piece, Sample) else self._samples(piece)
+        for sample in _of_instance(each, self._question.captured, samples):
+            self._run.take(sample)
+
+    def _samples(self, batch: Batch) -> Iterator[Sample]:
+        return coalesce(batch.rows(0, len(batch.times)), self._spec.events, Conflicts())
+
+    def truths(self, ticks: _Ticks) -> dict[str, Truth]:
+        """By text of the formula; the recording is over."""
+        known = [] if self._run is None else self._run.known(ticks.end)
+        found: dict[Core | None, Truth] = {
+            core: Truth(ticks.spans(one.true), ticks.others(one.false))
+            for core, one in zip(self._order, known, strict=True)
+        }
+        found[None] = Truth((), ticks.others(()))
+        return {text: found[core] for text, core in self._cores.items()}
+
+
+def _born(piece: Batch | Sample, unborn: Set[str]) -> set[str]:
+    """The signals that have a value in a piece and had none before."""
+    if isinstance(piece, Sample):
+        values = piece.values
+        return {name for name in unborn & values.keys() if not is_unknown(values[name])}
+    return {name for name in unborn & piece.signals.keys() if piece.signals[name].holds_value}
+
+
+def _unlike(instants: Iterable[int]) -> Iterator[int]:
+    """Each instant once."""
+    last = None
+    for t in instants:
+        if t != last:
+            yield t
+        last = t
+
+
+def _positions(
+    spec: CheckedSpec, begin: int, end: int, instants: Sequence[int]
+) -> Sequence[int] | None:
     """The positions; `None` where every tick is one."""
     match spec.time:
         case TimeModel.HELD:
             return None
         case TimeModel.SAMPLED:
-            return [sample.t for sample in samples]
+            return instants
         case TimeModel.CLOCKED:
             period = spec.period or 1
-            return range(-(-samples[0].t // period) * period, end + 1, period)
+            return range(-(-begin // period) * period, end + 1, period)
         case _:
             assert_never(spec.time)
 
@@ -83,17 +238,17 @@ def positions_of(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Sequ
 class _Ticks:
     """The ticks at which something is said of positions."""
 
-    def __init__(self, spec: CheckedSpec, samples: Sequence[Sample], end: int) -> None:
-        self._positions = positions_of(spec, samples, end)
+    def __init__(self, positions: Sequence[int] | None, begin: int, end: int) -> None:
+        self._positions = positions
         self._first = 0
-        self._begin = samples[0].t
-        if isinstance(self._positions, range):
-            self._first = self._positions.start // self._positions.step
-        self._end = end
+        self._begin = begin
+        if isinstance(positions, range):
+            self._first = positions.start // positions.step
+        self.end = end
 
     def spans(self, ranges: Iterable[tuple[int, int]]) -> Spans:
         """Those of ranges of positions."""
-        whole = ((self._begin, self._end),)
+        whole = ((self._begin, self.end),)
         if self._positions is None:
             return both(union(ranges), whole)
         return both(union(self._lasting(ranges, self._positions)), whole)
@@ -109,7 +264,7 @@ class _Ticks:
         for low, high in ranges:
             first, stop = max(low - self._first, 0), min(high - self._first, last)
             if first <= stop:
-                yield positions[first], positions[stop + 1] - 1 if stop < last else self._end
+                yield positions[first], positions[stop + 1] - 1 if stop < last else self.end
 
 
 def _of_instance(

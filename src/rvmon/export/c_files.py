@@ -9,10 +9,10 @@ from pathlib import Path
 from textwrap import wrap
 
 from rvmon import __version__
-from rvmon.codegen.comment import comment
 from rvmon.core import amalgamate
 from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
+from rvmon.diagnostics.comment import comment
 from rvmon.errors import RvmonError
 from rvmon.export.c_names import identifiers, prefix_of, string
 from rvmon.native import memory_of

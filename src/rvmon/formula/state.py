@@ -5,9 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from rvmon.runtime.values import FALSE as FALSE
-from rvmon.runtime.values import TRUE as TRUE
-from rvmon.runtime.values import UNKNOWN as UNKNOWN
 from rvmon.spec.checked.formula import (
     BoundAtom,
     Compare,
@@ -16,6 +13,9 @@ from rvmon.spec.checked.formula import (
     ProbeAtom,
     SignalAtom,
 )
+
+FALSE, UNKNOWN, TRUE = 0, 1, 2
+"""Kleene's truth values: `and` is the minimum, `or` the maximum, `not` is 2 − x."""
 
 
 @dataclass(frozen=True, slots=True)

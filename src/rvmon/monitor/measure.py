@@ -1,30 +1,27 @@
-"""The robustness of whole recordings: by arrays where their columns allow it, else by a monitor."""
+"""The robustness of whole recordings, found by the core as they are read."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.engines.registry import Asked, engine_named
-from rvmon.monitor.engines.rows import columns_of
+from rvmon.monitor.core.planned import planned_core
+from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.evaluate import open_trace
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
-from rvmon.monitor.robustness.values import (
-    Key,
-    Margins,
-    Measured,
-    Robustness,
-    Stream,
-    margins_from,
-)
-from rvmon.readers.blocks import NotPlainError
+from rvmon.monitor.robustness.values import FIGURES, Margins, Measured, margins_from
 from rvmon.readers.reading import Reading
-from rvmon.readers.source import Columns, Source
+from rvmon.readers.source import Source
 from rvmon.trace.sample import Sample
-from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
+
+if TYPE_CHECKING:
+    from rvmon.readers.batch import Batch
+
+_ROWS = 4096
+"""So many are measured, and their figures taken, at once: they suit a cache of the processor."""
 
 
 class Judge(Protocol):
@@ -32,6 +29,16 @@ class Judge(Protocol):
 
     def __call__(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
         """See `rvmon.monitor.engines.registry.Engine`."""
+
+
+class _Run(Protocol):
+    """Measures a recording."""
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Take what comes next."""
+
+    def margins(self) -> Margins:
+        """End the run."""
 
 
 def margins_of(
@@ -54,123 +61,101 @@ def margins_of(
         streams: whether to measure each position, too.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
-    named = "" if reading.sources is None else "its sources are named"
-    source = Source(recording, until, row_by_row=named)
-    asked = Asked(None if only is None else tuple(only))
-    found = _by_columns(compiled, source, asked, engine_named("auto").judge, streams=streams)
-    return _by_samples(compiled, source, asked, streams=streams) if found is None else found[1]
+    source = Source(recording, until)
+    run = _run_of(compiled, source, only, streams=streams)
+    for piece in _pieces(compiled, source):
+        run.take(piece)
+    return run.margins()
 
 
 def measuring(judge: Judge) -> Judge:
-    """What judges a recording as `judge` does, and gives each attempt its robustness."""
+    """What judges a recording as `judge` does, and gives each attempt its robustness.
+
+    The recording is read once: each piece is measured, then judged.
+    """
 
     def measured(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-        found = _by_columns(compiled, source, asked, judge, streams=False)
-        report, margins = found or _beside(compiled, source, asked, judge)
+        run = _run_of(compiled, source, asked.only, streams=False)
+
+        def shown(pieces: Iterator[Any]) -> Iterator[Any]:
+            for piece in source.shown(pieces):
+                _take_to_end(run, source, piece)  # nobody may come back behind the last one
+                yield piece
+
+        report = judge(compiled, replace(source, shown=shown), asked)
+        margins = run.margins()
         return replace(report, attempts=tuple(map(margins.of, report.attempts)))
 
     return measured
 
 
-def _beside(
-    compiled: CompiledSpec, source: Source, asked: Asked, judge: Judge
-) -> tuple[Report, Margins]:
-    """A report, and the figures by a monitor that sees each sample once it was judged."""
-    monitor = RobustnessMonitor(compiled, asked.only, "now", source.names)
-    found: list[Measured] = []
-
-    def read(recording: Any) -> Iterable[Sample]:
-        for sample in source.read(recording):
-            yield sample
-            if source.until is None or sample.t <= source.until:
-                found.extend(monitor.step_ns(sample.t, sample.values))
-
-    reason = source.row_by_row or "robustness is found sample by sample"
-    report = judge(compiled, replace(source, row_by_row=reason, read=read), asked)
-    return report, margins_from([*found, *monitor.finish_ns(source.end)])
+def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:
+    """Take a piece as far as the trace goes."""
+    until = source.until if source.is_cut else None
+    if isinstance(piece, Sample):
+        if until is None or piece.t <= until:
+            run.take(piece)
+    else:
+        run.take(piece if until is None else piece.up_to(until))
 
 
-def _by_samples(compiled: CompiledSpec, source: Source, asked: Asked, *, streams: bool) -> Margins:
-    """The figures by a monitor."""
-    monitor = RobustnessMonitor(compiled, asked.only, "now", source.names, streams=streams)
-    found = [one for sample in source.recording for one in monitor.step_ns(sample.t, sample.values)]
-    return margins_from([*found, *monitor.finish_ns(source.end)])
+def _pieces(compiled: CompiledSpec, source: Source) -> Iterator[Batch | Sample]:
+    if compiled.checked.max_delay is None:
+        return source.pieces()
+    return source.samples(ordered=False)
 
 
-def _by_columns(
-    compiled: CompiledSpec, source: Source, asked: Asked, judge: Judge, *, streams: bool
-) -> tuple[Report, Margins] | None:
-    """A report and the figures by arrays; `None` if something has to be measured by samples."""
-    if source.is_short:
-        return None
-    try:
-        columns = columns_of(compiled, source, asked)
-    except NotPlainError:
-        return None
-    from rvmon.monitor.columns.leaves import NotByColumnsError
-
-    try:
-        return _measured(compiled, source, columns, asked, judge, streams=streams)
-    except (NotPlainError, NotByColumnsError):
-        return None
+def _run_of(
+    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
+) -> _Run:
+    if compiled.checked.max_delay is None:
+        return _OrderedRun(compiled, source, only, streams=streams)
+    return _DelayedRun(compiled, source, only, streams=streams)
 
 
-def _measured(
-    compiled: CompiledSpec,
-    source: Source,
-    columns: Columns,
-    asked: Asked,
-    judge: Judge,
-    *,
-    streams: bool,
-) -> tuple[Report, Margins]:
-    """As `_by_columns`, of what has columns.
+class _OrderedRun:
+    """A run of the core over a recording in order."""
 
-    Raises:
-        NotByColumnsError: something of it has to be measured sample by sample.
-        NotPlainError: the columns turn out to be none.
-    """
-    import numpy as np
+    def __init__(
+        self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
+    ) -> None:
+        from rvmon.monitor.core.recording import RecordingRun
+        from rvmon.monitor.robustness.recorded import RecordedMargins
 
-    from rvmon.monitor.columns.margins import ColumnMargins, WholeColumns
+        planned = planned_core(compiled, only, measured=True)
+        self._run = RecordingRun(compiled.checked, planned, source, finds=False)
+        self._run.core.measure(FIGURES, streams)
+        self._found = RecordedMargins(planned.packed.ids)
+        self._end = source.end
 
-    trace = WholeColumns(compiled.checked, columns, source.end)
-    measured = {
-        one.requirement.id: ColumnMargins(trace, one) for one in compiled.chosen(asked.only)
-    }
-    report = judge(compiled, source, asked)
-    started: dict[str, list[tuple[int, int]]] = {name: [] for name in measured}
-    for name, number, triggered in _starts(report.attempts):
-        started[name].append((number, triggered))
-    attempts: dict[Key, Robustness] = {}
-    found: dict[str, Stream] = {}
-    for name, margins in measured.items():
-        numbers, instants = np.array(started[name], np.int64).reshape(-1, 2).T
-        figures = map(Robustness, *(bound.tolist() for bound in margins.at(instants)))
-        keys = ((name, number) for number in numbers.tolist())
-        attempts |= zip(keys, figures, strict=True)
-        if streams:
-            times = trace.times if trace.sparse else np.union1d(trace.times, instants)
-            found[name] = Stream(times, *margins.at(times))
-    return report, Margins(attempts, {}, found)
+    def take(self, piece: Batch | Sample) -> None:
+        if isinstance(piece, Sample):
+            self._run.take(piece)
+        else:
+            for first in range(0, len(piece.times), _ROWS):
+                self._run.take(piece.cut(first, min(first + _ROWS, len(piece.times))))
+                self._found.add(self._run.core.margins())
+
+    def margins(self) -> Margins:
+        self._run.core.finish(self._end)
+        self._found.add(self._run.core.margins())
+        return self._found.margins()
 
 
-def _starts(attempts: Sequence[Attempt]) -> Iterator[tuple[str, int, int]]:
-    """Of each attempt the requirement, its number, and the instant of its trigger.
+class _DelayedRun:
+    """A monitor that puts samples in order, of which some may come late."""
 
-    Raises:
-        NotByColumnsError: one of them is in doubt.
-    """
-    from rvmon.monitor.columns.leaves import NotByColumnsError
-    from rvmon.monitor.columns.records import JudgedAttempts
+    def __init__(
+        self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
+    ) -> None:
+        self._monitor = RobustnessMonitor(compiled, only, "now", source.names, streams=streams)
+        self._found: list[Measured] = []
+        self._end = source.end
 
-    rest = attempts
-    if isinstance(attempts, JudgedAttempts):
-        for part in attempts.parts:
-            numbers, instants = part.decisions.number.tolist(), part.decisions.triggered.tolist()
-            yield from ((part.id, *one) for one in zip(numbers, instants, strict=True))
-        rest = attempts.kept
-    for attempt in rest:
-        if attempt.in_doubt:
-            raise NotByColumnsError
-        yield attempt.requirement, attempt.number, attempt.triggered
+    def take(self, piece: Batch | Sample) -> None:
+        if not isinstance(piece, Sample):
+            raise TypeError("samples that may come late are taken one by one")
+        self._found += self._monitor.step_ns(piece.t, piece.values)
+
+    def margins(self) -> Margins:
+        return margins_from([*self._found, *self._monitor.finish_ns(self._end)])

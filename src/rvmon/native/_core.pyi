@@ -1,6 +1,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.verdict.attempt import Attempt
 
 source_hash: str
@@ -100,6 +101,9 @@ class Monitor:
     def load(self, data: bytes, /) -> bool:
         """Go on as a run that was saved; false, and nothing is done, if it is none of this plan."""
 
+    def keep(self, most: int, /) -> None:
+        """See `rv_keep`; records are dropped once they were given out."""
+
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 
@@ -152,6 +156,28 @@ class Monitor:
         """The instants of the first and the last sample, and that which time has come to."""
 
     def next_due(self) -> int | None: ...
+    def measure(
+        self, figures: tuple[type[Measured], type[Robustness], tuple[Any, ...]], positions: bool, /
+    ) -> None:
+        """Have steps give figures, not attempts; of a plan that says what is measured.
+
+        Args:
+            figures: the types, and the descriptors of their fields.
+            positions: see `rv_measure_positions`.
+        """
+
+    def figures(self) -> Sequence[Measured]:
+        """The figures that were settled since the last call; no records are kept."""
+
+    def open_figures(self) -> list[Measured]:
+        """What is known of attempts whose figures are to come."""
+
+    def margins(self) -> bytes:
+        """The figures that were settled since the last call as `rv_margin`."""
+
+    def memory_used(self) -> int:
+        """The bytes that it has taken for what it keeps; those given back serve again."""
+
     def hold(self, held: bool, /) -> bool:
         """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly.
 

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 from typing import assert_never
 
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, Leaf, Lost, Unborn
-from rvmon.plan.inputs import Input
-from rvmon.plan.numbers import captured_of, events_of, inputs_of, reader
-from rvmon.runtime.past import compared
+from rvmon.formula.state import Elapsed, Lapsed, Leaf, Lost, Unborn
+from rvmon.plan.numbers import captured_of, events_of, inputs_of
 from rvmon.spec.checked.formula import (
     BoundAtom,
     Compare,
@@ -60,31 +57,3 @@ def captured_names(leaf: Leaf) -> frozenset[str]:
     if isinstance(leaf, Compare):
         return captured_of(leaf.left, leaf.right)
     return frozenset()
-
-
-def truth_of(leaf: Leaf, inputs: Input) -> int:
-    """The truth of a leaf that reads the values of signals and events, no captured ones.
-
-    Raises:
-        ValueError: the leaf reads something else.
-    """
-    match leaf:
-        case SignalAtom(name=name):
-            value = inputs.value_of(name)
-            return UNKNOWN if value is None else TRUE if value else FALSE
-        case EventAtom(name=name):
-            found = inputs.payloads_of(name)
-            return max((UNKNOWN if one is None else TRUE for one in found), default=FALSE)
-        case Compare(op=op, left=left, right=right):
-            sides = [reader(side, inputs, {}) for side in (left, right)]
-            events = events_of(left, right)
-            truths = [FALSE]
-            for chosen in product(*map(inputs.payloads_of, events)):
-                payloads = {e: p for e, p in zip(events, chosen, strict=True) if p is not None}
-                whole = len(payloads) == len(events)
-                truths.append(
-                    compared(op.holds, *(side(payloads) for side in sides)) if whole else UNKNOWN
-                )
-            return max(truths)
-        case _:
-            raise ValueError(f"{leaf} reads more than values")

@@ -43,6 +43,7 @@ class PlannedRule:
         asked: further state formulas that are asked for their values.
         stepped: whether no chain of windows is to judge it.
         traced: whether somebody asks where attempts go in its automaton; it is stepped.
+        measured: what it owes as far as that is measured; `None`: it is not.
     """
 
     requirement: Requirement
@@ -63,6 +64,7 @@ class PlannedRule:
     asked: tuple[State, ...] = ()
     stepped: bool = False
     traced: bool = False
+    measured: Core | None = None
 
     @property
     def states(self) -> Iterator[State]:

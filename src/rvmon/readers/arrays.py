@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.batch import NotPlainError
+from rvmon.readers.blocks import Block
 from rvmon.readers.csv_rows import Column, Layout
 from rvmon.readers.plain import held_values
 from rvmon.readers.ticks import ticks_of_column

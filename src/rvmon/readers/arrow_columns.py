@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.batch import NotPlainError
+from rvmon.readers.blocks import Block
+from rvmon.readers.cells import array_of
 from rvmon.readers.csv_rows import Column, Layout
 from rvmon.readers.plain import held_values
 from rvmon.trace.schema import Kind
@@ -47,18 +49,6 @@ def block_of_arrays(
         else:
             found[column.name] = _values(cells, column, held.get(column.name))
     return Block(times, found)
-
-
-def array_of(cells: Any, kinds: str) -> NDArray[Any]:
-    """An array without nulls.
-
-    Raises:
-        NotPlainError: it has another one.
-    """
-    array: NDArray[Any] = cells.to_numpy(zero_copy_only=False)
-    if array.dtype.kind not in kinds:
-        raise NotPlainError("a column holds other values than were declared")
-    return array
 
 
 def _occurrences(cells: Any) -> NDArray[Any]:

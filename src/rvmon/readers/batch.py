@@ -7,15 +7,18 @@ from dataclasses import dataclass, field, replace
 from itertools import repeat
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rvmon.trace.sample import Sample, Value
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
 NO, UNKNOWN, YES, NO_UPDATE = 0, 1, 2, 255
 """What a row may say of a name: an event does not occur, it is unknown, it is so, nothing."""
+
+
+class NotPlainError(Exception):
+    """The recording has to be read row by row; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +43,12 @@ class Cells:
             return 0
         said = self.says != NO_UPDATE
         return int(said.argmax()) if said.any() else None
+
+    @property
+    def holds_value(self) -> bool:
+        """Whether some row says what it is."""
+        known = self.values == self.values
+        return bool((known if self.says is None else known & (self.says == YES)).any())
 
     def cut(self, start: int, stop: int) -> Cells:
         """Some of the rows."""

@@ -11,10 +11,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class NotPlainError(Exception):
-    """The recording has to be read row by row; the message says why."""
-
-
 @dataclass(frozen=True, slots=True)
 class Block:
     """Some rows of a recording.

@@ -8,8 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.readers.batch import NO, NO_UPDATE, UNKNOWN, YES, Batch, Cells, Occurrences
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import (
+    NO,
+    NO_UPDATE,
+    UNKNOWN,
+    YES,
+    Batch,
+    Cells,
+    NotPlainError,
+    Occurrences,
+)
 from rvmon.readers.csv_rows import Column, Layout
 from rvmon.readers.values import as_declared, fits, plain
 from rvmon.trace.gaps import Gaps
@@ -240,6 +248,18 @@ def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
     if given is not None:
         column = column.fill_null(False if types.is_boolean(type_) else 0)
     return cells_of_array(column.to_numpy(zero_copy_only=False), given, kind, gaps)
+
+
+def array_of(cells: Any, kinds: str) -> NDArray[Any]:
+    """An array without nulls.
+
+    Raises:
+        NotPlainError: it has another one.
+    """
+    array: NDArray[Any] = cells.to_numpy(zero_copy_only=False)
+    if array.dtype.kind not in kinds:
+        raise NotPlainError("a column holds other values than were declared")
+    return array
 
 
 def cells_of_column(name: str, column: Any, kind: Kind, gaps: Gaps) -> Cells:

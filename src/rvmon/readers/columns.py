@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import TraceError
-from rvmon.readers.blocks import Block, NotPlainError, up_to
+from rvmon.readers.batch import NotPlainError
 from rvmon.readers.csv_rows import Layout, layout_of, row_values
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.naming import stamps_among
@@ -42,11 +42,6 @@ class TableRecording:
 
     end: int | None = None
 
-    @property
-    def row_count(self) -> int:
-        """How many rows it has."""
-        return len(self.columns[self.layout.stamps.column])
-
     def __init__(self, columns: Mapping[str, Any], schema: Schema, *, ordered: bool = True) -> None:
         """Look at the names of columns.
 
@@ -66,14 +61,6 @@ class TableRecording:
         self.names: frozenset[str] | None = self.layout.names
         self.ignored = self.layout.ignored
         self.rows = Rows(schema, "row", ordered=ordered)
-
-    def blocks(
-        self, fillable: Callable[[], frozenset[str]], until: int | None = None
-    ) -> Iterator[Block]:
-        """The table as blocks of columns; see `rvmon.readers.recording.FileRecording.blocks`."""
-        from rvmon.readers.arrays import block_of_table
-
-        yield up_to(until, block_of_table(self.columns, self.layout, self._schema, fillable))
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """The table in order: its rows as columns, if they hold what is declared, else samples.

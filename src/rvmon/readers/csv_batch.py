@@ -10,11 +10,9 @@ from dataclasses import replace
 from typing import BinaryIO
 
 from rvmon.readers import line_chunks
-from rvmon.readers.batch import Batch
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import Batch, NotPlainError
 from rvmon.readers.csv_rows import Layout, csv_samples, split_lines
-from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.plain import is_short_of_memory
+from rvmon.readers.line_chunks import bounded_lines, is_short_of_memory
 from rvmon.readers.rows import Row
 
 LARGE = 1 << 22

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.errors import TraceError
-from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.batch import NotPlainError
+from rvmon.readers.blocks import Block
 from rvmon.readers.csv_numbers import READERS, plain_values, text_cells
 from rvmon.readers.csv_rows import Column, Layout, read_layout
 from rvmon.readers.decimals import Cells, instants, truth_values
-from rvmon.readers.line_chunks import BLOCK, whole_lines
-from rvmon.readers.plain import Seam, expect_plain_columns, held_values, is_short_of_memory
+from rvmon.readers.line_chunks import BLOCK, is_short_of_memory, whole_lines
+from rvmon.readers.plain import Seam, expect_plain_columns, held_values
 from rvmon.trace.schema import Schema
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def _arrow_reader(path: str | Path) -> Callable[..., Block | None] | None:
     """What reads large files on all cores, if it is installed."""
     with suppress(OSError, ImportError):
         if os.path.getsize(path) >= LARGE and not is_short_of_memory():
-            from rvmon.readers.csv_arrow import arrow_block
+            from rvmon.readers.csv_arrow_blocks import arrow_block
 
             return arrow_block
     return None

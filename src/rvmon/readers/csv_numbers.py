@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.readers.batch import Batch, Cells
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import Batch, Cells, NotPlainError
 from rvmon.readers.cells import batch_of, cells_of_array
 from rvmon.readers.csv_rows import Column, Layout
 from rvmon.readers.decimals import Cells as TextCells

@@ -19,8 +19,7 @@ import numpy as np
 
 from rvmon.errors import TraceError
 from rvmon.readers import line_chunks
-from rvmon.readers.batch import NO, YES, Batch, Occurrences
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import NO, YES, Batch, NotPlainError, Occurrences
 from rvmon.readers.cells import cells_of_values
 from rvmon.readers.csv_batch import whole_pieces
 from rvmon.readers.jsonl_rows import jsonl_samples

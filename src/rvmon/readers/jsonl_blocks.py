@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import numpy as np
 
-from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.batch import NotPlainError
+from rvmon.readers.blocks import Block
 from rvmon.readers.jsonl_batch import instants_of, line_struct
 from rvmon.readers.line_chunks import BLOCK, whole_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS

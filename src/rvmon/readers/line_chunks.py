@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 from rvmon.errors import TraceError
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import NotPlainError
 from rvmon.readers.places import opened
 
 BLOCK = 1 << 20
@@ -77,3 +77,15 @@ def _plain(text: bytes) -> bytes:
     if not text.isascii() or b"\r" in text:
         raise NotPlainError("it has odd characters")
     return text
+
+
+def is_short_of_memory() -> bool:
+    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses.
+
+    A thread of it that gets none may end the process.
+    """
+    try:
+        import resource
+    except ImportError:
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY

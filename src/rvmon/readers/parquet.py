@@ -11,21 +11,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import TraceError, not_installed
-from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.batch import NotPlainError
 from rvmon.readers.columns import values_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
-from rvmon.readers.plain import Seam, expect_plain_columns, is_short_of_memory
+from rvmon.readers.line_chunks import is_short_of_memory
 from rvmon.readers.rows import Row
 from rvmon.readers.tables import arrow_cells
 from rvmon.readers.values import first_line
 from rvmon.trace.sample import Value
-from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.schema import Schema
 from rvmon.trace.stamps import ticks_of_stamp
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from rvmon.readers.batch import Batch
 
 ROWS = 1 << 16
@@ -68,7 +65,7 @@ def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
         yield dict(zip(names, map(arrow_cells, arrays), strict=True))
 
 
-def _names(layout: Layout) -> list[str]:
+def columns_read(layout: Layout) -> list[str]:
     """The column of stamps and those that the spec reads."""
     places = [layout.time, *(column.index for column in layout.columns)]
     return [layout.header[place] for place in places]
@@ -113,38 +110,6 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
     return read_layout(list(parquet_file(path).schema_arrow.names), schema)
 
 
-def parquet_blocks(
-    path: str | Path, schema: Schema, fillable: frozenset[str] = frozenset()
-) -> Iterator[Block]:
-    """Read a file of numbers and truth values.
-
-    Args:
-        path: of the file.
-        schema: the declared names.
-        fillable: the names of which "no update" may be read as what was there before: of signals
-            the value, of events that they do not occur.
-
-    Raises:
-        NotPlainError: there are gaps of other names or before the first value, payloads or labels,
-            or the instants do not increase or are out of range; or the file is damaged.
-    """
-    try:
-        yield from _plain_blocks(path, schema, fillable)
-    except TraceError:  # whoever reads rows says in which it is
-        raise NotPlainError("it cannot be read in blocks") from None
-
-
-def _plain_blocks(path: str | Path, schema: Schema, fillable: frozenset[str]) -> Iterator[Block]:
-    from rvmon.readers.arrow_columns import block_of_arrays
-
-    layout = parquet_layout(path, schema)
-    expect_plain_columns(layout)
-    seam = Seam(layout)
-    for stamps, *arrays in parquet_batches(path, _names(layout)):
-        times = _instants(stamps, layout.stamps)
-        yield seam.joined(block_of_arrays(times, arrays, layout, fillable, seam.held))
-
-
 def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a file in order: as columns, if they hold what is declared, else one by one.
 
@@ -157,7 +122,7 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
 
     layout = parquet_layout(path, schema)
     row = 0
-    for stamps, *arrays in parquet_batches(path, _names(layout)):
+    for stamps, *arrays in parquet_batches(path, columns_read(layout)):
         try:
             times = instants(stamps, layout.stamps)
             cells = {
@@ -168,15 +133,6 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
         except (NotPlainError, TraceError):
             yield _rows_of([stamps, *arrays], layout, row)
         row += len(stamps)
-
-
-def _instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
-    from rvmon.readers.arrow_columns import array_of
-    from rvmon.readers.ticks import ticks_of_column
-
-    if column.null_count or stamps.unit == "iso":
-        raise NotPlainError("its stamps are no plain numbers")
-    return ticks_of_column(array_of(column, "i" if stamps.unit == "ns" else "fi"), stamps)
 
 
 def parquet_samples(
@@ -190,7 +146,7 @@ def parquet_samples(
     """
     layout = parquet_layout(path, schema)
     row = 0
-    for batch in parquet_batches(path, _names(layout)):
+    for batch in parquet_batches(path, columns_read(layout)):
         yield from _rows_of(batch, layout, row)
         row += len(batch[0])
 

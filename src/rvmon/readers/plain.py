@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.readers.blocks import Block, NotPlainError
+from rvmon.readers.batch import NotPlainError
+from rvmon.readers.blocks import Block
 from rvmon.readers.csv_rows import Layout
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT
@@ -52,18 +53,6 @@ class Seam:
         self._last = int(times[-1])
         self.held |= {name: block.columns[name][-1] for name in self._signals}
         return block
-
-
-def is_short_of_memory() -> bool:
-    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses.
-
-    A thread of it that gets none may end the process.
-    """
-    try:
-        import resource
-    except ImportError:
-        return False
-    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
 
 
 def held_values(some: NDArray[Any], given: NDArray[np.bool_], before: Any | None) -> NDArray[Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from io import TextIOWrapper
@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
-from rvmon.readers.blocks import Block, NotPlainError, up_to
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
@@ -60,10 +59,7 @@ class FileRecording:
         ignored: the names that are not declared, counted as they are read; not of messages, which
             are recorded for more than one purpose.
         rows: what makes samples of it.
-        only_block: all of it, once it was read as columns that are one block.
     """
-
-    only_block: Block | None = None
 
     def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
         """Open the recording and read its header.
@@ -205,63 +201,6 @@ class FileRecording:
             is_text = self._format in ("csv", "jsonl") and can_be_read_again(self.path)
             return is_text and Path(self.path).stat().st_size < size
         return False
-
-    def blocks(
-        self, fillable: Callable[[], frozenset[str]], until: int | None = None
-    ) -> Iterator[Block]:
-        """The recording as blocks of columns; memory does not grow with its length.
-
-        Args:
-            fillable: gives the names of which "no update" may be read as what was there before: of
-                signals the value, of events that they do not occur.
-            until: rows behind this instant (ticks) are left out.
-
-        Raises:
-            NotPlainError: it has to be read row by row; a block before may have been given out.
-        """
-        if not can_be_read_again(self.path):
-            raise NotPlainError("it is a stream")
-        if self.is_of_messages:
-            raise NotPlainError("its messages come one by one")
-        if self._schema.gaps:
-            raise NotPlainError("values that stand for no update are looked for in rows")
-        seen = Counter[str]()
-        only = None
-        for number, block in enumerate(self._noted(self._blocks(fillable(), seen))):
-            only = None if number else block
-            own = up_to(until, block)
-            yield own
-            if len(own.times) < len(block.times):
-                if seen:
-                    raise NotPlainError("undeclared names are counted up to the end only")
-                return
-        self.only_block = only
-        for name, count in seen.items():
-            self.ignored[name] = count
-
-    def _noted(self, blocks: Iterable[Block]) -> Iterator[Block]:
-        """The same blocks; the first stamps are noted once as many have come as are looked at."""
-        first: list[int] = []
-        for block in blocks:
-            if len(first) < LOOKED_AT:
-                first += block.times[: LOOKED_AT - len(first)].tolist()
-                if len(first) == LOOKED_AT and self.names is not None:
-                    self.rows.first = first
-            yield block
-
-    def _blocks(self, fillable: frozenset[str], seen: Counter[str]) -> Iterator[Block]:
-        """The blocks of its format; where each line has names of its own, undeclared ones count."""
-        if self._format == "csv":
-            from rvmon.readers.csv_blocks import csv_blocks
-
-            return csv_blocks(self.path, self._schema, fillable)
-        if self._format == "parquet":
-            from rvmon.readers.parquet import parquet_blocks
-
-            return parquet_blocks(local_path(self.path), self._schema, fillable)
-        from rvmon.readers.jsonl_blocks import jsonl_blocks
-
-        return jsonl_blocks(self.path, self._schema, fillable, ignored=seen)
 
     def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
         yield from self.rows.samples(rows)

@@ -4,32 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain, takewhile
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
-from rvmon.readers.blocks import Block, NotPlainError
 from rvmon.trace.sample import Recording, Sample
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
-
-Fillable = Callable[[], frozenset[str]]
-"""Gives the names of which "no update" may be read as what was there before."""
-
-
-@dataclass(frozen=True, slots=True)
-class Columns:
-    """The columns of a recording.
-
-    Attributes:
-        names: declared ones.
-        rows: how many there are; `None` if nobody has counted.
-        read: gives the blocks, from the first on, at each call.
-    """
-
-    names: tuple[str, ...]
-    rows: int | None
-    read: Callable[[], Iterator[Block]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +18,13 @@ class Source:
     """A finished trace, and how it is to be taken.
 
     Attributes:
-        recording: gives samples; one that has columns has `blocks` as well, and `row_count` if it
-            knows that: see `rvmon.readers.recording.FileRecording`.
+        recording: gives samples; one that has columns has `pieces` as well: see
+            `rvmon.readers.recording.FileRecording`.
         until: the end of the trace in ticks, if it is not its last sample.
         is_cut: whether what comes after that end is left out.
         row_by_row: why columns are not to be looked at; empty if they may be.
         read: gives the samples of the recording.
-        shown: what samples, batches and blocks go through as they are read.
+        shown: what samples and batches go through as they are read.
     """
 
     recording: Recording
@@ -101,29 +82,3 @@ class Source:
                 yield own
                 if len(own.times) < len(piece.times):
                     return
-
-    def columns(self, fillable: Fillable) -> Columns:
-        """The columns; the first block is read.
-
-        Args:
-            fillable: of signals, and of events, which then do not occur.
-
-        Raises:
-            NotPlainError: there are none, or so far as one can see now; so does reading them.
-        """
-        if self.row_by_row:
-            raise NotPlainError(self.row_by_row)
-        blocks = getattr(self.recording, "blocks", None)
-        if blocks is None:
-            raise NotPlainError("its samples come one by one")
-
-        def read() -> Iterator[Block]:
-            return self.shown(blocks(fillable, self.until if self.is_cut else None))
-
-        begun = read()
-        first = next(begun, None)
-        if first is None:
-            raise NotPlainError("it has no rows")
-        ready = [chain([first], begun)]
-        rows = getattr(self.recording, "row_count", None)
-        return Columns(tuple(first.columns), rows, lambda: ready.pop() if ready else read())

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.errors import TraceError
-from rvmon.readers.batch import Batch
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import Batch, NotPlainError
 from rvmon.readers.cells import batch_of, cells_of_column
 from rvmon.readers.csv_rows import Layout
 from rvmon.readers.ticks import ticks_of_column

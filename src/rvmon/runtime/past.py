@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from rvmon.runtime.values import FALSE, NEVER, TRUE, UNKNOWN
+from rvmon.trace.sample import calculated
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -258,21 +258,12 @@ def _ratio(left: float, right: float) -> float:
     return left / right
 
 
+finite = calculated
+
+
 def number(value: Any) -> Any:
     """A payload's field; NaN is unknown."""
     return None if value != value else value
-
-
-def finite(operation: Callable[..., float], *values: Any) -> float | None:
-    """The result of an operation; unknown if an operand is, or if it is no finite number."""
-    for value in values:
-        if value is None or isinstance(value, str):
-            return None
-    try:
-        result = operation(*values)
-        return result if math.isfinite(result) else None
-    except (ValueError, OverflowError, ZeroDivisionError):
-        return None
 
 
 def compared(operation: Callable[[Any, Any], bool], left: Any, right: Any) -> int:

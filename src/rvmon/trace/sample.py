@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -14,6 +15,18 @@ Payload = Mapping[str, Scalar]
 
 Value = Scalar | Payload | tuple[Payload, ...]
 """What a sample says of a name: a signal's value; of an event `True`, its payload or payloads."""
+
+
+def calculated(operation: Callable[..., float], *values: Scalar) -> float | None:
+    """What an operation on numbers gives; unknown if one is, or if it is no finite number."""
+    for value in values:
+        if value is None or isinstance(value, str):
+            return None
+    try:
+        result = operation(*values)
+        return result if math.isfinite(result) else None
+    except (ValueError, OverflowError, ZeroDivisionError):
+        return None
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,9 @@ TICKS_PER_SECOND = 1_000_000_000
 TIME_LIMIT = 1 << 62
 """Times and durations lie strictly between −TIME_LIMIT and TIME_LIMIT; sums saturate there."""
 
+NEVER = 1 << 63
+"""Later than any instant."""
+
 TICKS_PER_UNIT = {
     "ns": 1,
     "us": 1_000,

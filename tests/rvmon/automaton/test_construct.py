@@ -10,13 +10,13 @@ from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
-from rvmon.automaton.table import TableMachine
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.runtime.table import run
-from rvmon.runtime.values import NEVER
+from rvmon.runtime.table_machine import TableMachine
 from rvmon.spec.checked.formula import SignalAtom
+from rvmon.trace.time import NEVER
 
 SECOND = 10**9
 

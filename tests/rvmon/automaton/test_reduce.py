@@ -9,12 +9,12 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.reduce import reduce
-from rvmon.automaton.table import TableMachine
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.reasons.obligation_words import Words
+from rvmon.runtime.table_machine import TableMachine
 from rvmon.testing.generate.formula import Shape
 from rvmon.testing.strategies import formulas
 

@@ -6,15 +6,11 @@ import random
 import pytest
 
 import rvmon
+from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
 from rvmon.cli.post_analysis import in_order
-from rvmon.explain.changes import changes_in_blocks, changes_in_samples
-from rvmon.explain.not_triggered import read_as_values, why_not_triggered
-from rvmon.plan.graph import graph_of
+from rvmon.explain.not_triggered import why_not_triggered
 from rvmon.readers import recording
-from rvmon.readers.blocks import Block, NotPlainError
-from rvmon.readers.recording import FileRecording
-from rvmon.trace.sample import Sample
 
 HEAD = """
 spec cell
@@ -93,23 +89,6 @@ def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
             assert report.misses[name] == wanted
 
 
-def test_updates_that_count_are_seen():
-    """Where more than values matters, all samples are looked at."""
-    spec = rvmon.loads(
-        HEAD.format(time="held")
-        + "".join(
-            f"requirement R{number}\n  upon {trigger}\n  then q\n"
-            for number, trigger in enumerate(SILENT.values())
-        )
-    )
-    found = {
-        name: read_as_values(spec.checked, requirement)
-        for name, requirement in zip(SILENT, spec.requirements.values(), strict=True)
-    }
-    assert {name for name, read in found.items() if read is None} == {"updates", "changes", "age"}
-    assert found["two ways"].by_name.keys() == {"p", "q", "x", "go"}
-
-
 @pytest.mark.law
 @pytest.mark.parametrize("until", [None, 60.0])
 def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
@@ -123,45 +102,15 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     spec = rvmon.loads(text)
     by_columns = [judge(spec, trace, Options(until=until)).report for trace in traces]
 
-    def refuse(*_):
-        raise NotPlainError
-
-    monkeypatch.setattr(FileRecording, "blocks", refuse)
+    for size in ("SHORT", "TINY"):
+        monkeypatch.setattr(recording, size, 1 << 30)
     by_samples = [judge(spec, trace, Options(until=until)).report for trace in traces]
     assert by_columns == by_samples
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
 
 
-def parts_of(trigger: str):
-    """A specification, and the parts of the trigger of its requirement."""
-    text = HEAD.format(time="held") + f"requirement R\n  upon {trigger}\n  then q\n"
-    checked = rvmon.loads(text).checked
-    return checked, read_as_values(checked, checked.requirements["R"])
-
-
-def test_rows_that_change_no_truth_are_left_out():
-    """Across blocks but for the first row of each; an event counts wherever it occurs."""
-    import numpy as np
-
-    nan = float("nan")
-    blocks = [
-        Block(np.array([1, 2]), {"x": np.array([1.0, 1.5]), "go": np.array([False, True])}),
-        Block(np.array([3, 4, 5]), {"x": np.array([1.0, nan, nan]), "go": np.array([False] * 3)}),
-        Block(np.array([6, 7, 9]), {"x": np.array([2.0, 9.0, 1.0]), "go": np.array([False] * 3)}),
-    ]
-    checked, both = parts_of("go and x > 5")
-    event = graph_of(node for node in both.nodes if "go" in str(node.leaf))
-    found, occurred = changes_in_blocks(blocks, [both, event], checked, 8)
-    assert [sample.t for sample in found] == [1, 2, 3, 4, 6, 7]
-    assert found[0].values == {"x": 1.0, "go": False}
-    assert found[-1].values == {"x": 9.0, "go": False}
-    assert [sample.t for sample in occurred] == [1, 2, 3, 6]
-
-
-@pytest.mark.parametrize(("block", "readings"), [(1 << 20, 1), (500, 2)])
-def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, block, readings):
-    """However many failed or were silent, a file of several blocks is read once more."""
-    monkeypatch.setattr("rvmon.readers.csv_blocks.BLOCK", block)
+def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
+    """However many failed or were silent, a file is read once more."""
     pairs = range(6)
     text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
     for n in range(30):
@@ -175,12 +124,14 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, b
     path = tmp_path / "a.csv"
     path.write_text("\n".join(rows) + "\n")
     opened = []
-    blocks = FileRecording.blocks
+    begin = post_analysis.opened
     monkeypatch.setattr(
-        FileRecording, "blocks", lambda *given: opened.append(given) or blocks(*given)
+        post_analysis,
+        "opened",
+        lambda *given, **more: opened.append(given) or begin(*given, **more),
     )
     report = judge(rvmon.loads(text), str(path), Options()).report
-    assert len(opened) == readings
+    assert len(opened) == 1
     assert {name: dict(found) for name, found in report.late.items()} == {
         f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
     }
@@ -204,22 +155,14 @@ def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, m
     }
 
 
-def test_of_samples_those_that_tell_something_new_are_looked_at():
-    """Of a recording that is not plain: another value, an event, or that nothing is known."""
-    times, values, occurred = [1, 2, 4, 7, 9], [1.5, 1.5, 2.0, 2.0, 1.5], [1, 0, 0, 1, 0]
-    samples = [
-        Sample(t, {"x": x, "go": bool(go), "else": t})
-        for t, x, go in zip(times, values, occurred, strict=True)
-    ]
-
-    def told(names: set[str]) -> list[tuple[int, dict]]:
-        found, none = changes_in_samples(iter(samples), [names, set()], {"go"})
-        assert [(one.t, one.values) for one in none] == [(1, {})]
-        return [(one.t, one.values) for one in found]
-
-    assert told({"x"}) == [(1, {"x": 1.5}), (4, {"x": 2.0}), (9, {"x": 1.5})]
-    assert told({"go"}) == [(1, {"go": True}), (7, {"go": True})]
-    assert [t for t, _ in told({"x", "go"})] == [1, 4, 7, 9]
-    gone = [Sample(1, {"x": 1.0}), Sample(3, {}), Sample(5, {"x": None}), Sample(8, {"x": None})]
-    assert [one.t for one in changes_in_samples(gone, [{"x"}], ())[0]] == [1, 5]
-    assert changes_in_samples([], [{"x"}], ()) == [[]]
+def test_a_trigger_of_instances_hides_no_miss(tmp_path):
+    """Of two requirements with one trigger, one `for each`, the other has its sentence."""
+    text = (
+        "spec s\nevent go(k: int)\nsignal p, q : bool\n"
+        "requirement R1\n  upon p and q then within 1 s go.k == k\n  for each k in go.k\n"
+        "requirement R2\n  upon p and q then within 1 s go\n"
+    )
+    path = tmp_path / "a.jsonl"
+    path.write_text('{"t": 0, "p": false, "q": false}\n{"t": 1, "p": true}\n{"t": 2, "p": false}\n')
+    report = judge(rvmon.loads(text), str(path), Options()).report
+    assert report.misses == {"R2": "`q` was never true while `p` was (first at 1 s)"}

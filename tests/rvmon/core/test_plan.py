@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from enum import IntEnum
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,7 @@ from rvmon.automaton.automaton import Automaton
 from rvmon.core import sections
 from rvmon.core.atoms import MOST_EVENTS, AtomOp
 from rvmon.core.forms import Operator
+from rvmon.core.measures import Measure
 from rvmon.core.nodes import NodeOp
 from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
@@ -96,20 +98,21 @@ DIAGRAM = (
 """A requirement with more letters than stand in a table."""
 
 
-def planned(text: str) -> Planned:
+def planned(text: str, *, measured: bool = False) -> Planned:
     """The plan of a specification, as it is to be packed."""
-    return plan_alone(rvmon.loads(text)._compiled)
+    return plan_alone(rvmon.loads(text)._compiled, measured=measured)
 
 
-def packed(text: str) -> Packed:
+def packed(text: str, *, measured: bool = False) -> Packed:
     """The bytes of a specification."""
-    return pack(planned(text))
+    return pack(planned(text, measured=measured))
 
 
 def drawn(seed: int) -> Planned | None:
-    """The plan of a random specification; `None` if it is refused."""
+    """The plan of a random specification, measured or not; `None` if it is refused."""
     try:
-        return plan_alone(CompiledSpec(random_spec(random.Random(seed), MANY)))
+        compiled = CompiledSpec(random_spec(random.Random(seed), MANY))
+        return plan_alone(compiled, measured=seed % 2 == 1)
     except RvmonError:
         return None
 
@@ -139,7 +142,7 @@ def test_the_walk_finds_an_index_out_of_its_bounds(section):
     if section in ("WATCHES", "GROUPS"):
         data = pack(Bins(rvmon.loads(COUNTED).checked).plan).data
     else:
-        data = packed(EVERYTHING).data
+        data = packed(EVERYTHING, measured=True).data
     plan = Plan(data)
     begin, end = plan.places[plan.names.index(section)]
     size = size_of(SECTIONS[section])
@@ -258,7 +261,14 @@ def test_packing_is_deterministic():
 
 @pytest.mark.parametrize(
     ("prefix", "numbers"),
-    [("SEC_", Section), ("ATOM_", AtomOp), ("NODE_", NodeOp), ("OP_", Operator), ("CODE_", Code)],
+    [
+        ("SEC_", Section),
+        ("ATOM_", AtomOp),
+        ("NODE_", NodeOp),
+        ("OP_", Operator),
+        ("CODE_", Code),
+        ("MEASURE_", Measure),
+    ],
 )
 def test_what_c_enumerates_has_the_same_numbers(prefix: str, numbers: type[IntEnum]):
     """Each name of plan.h is one of ours, with its number."""
@@ -355,9 +365,29 @@ def check(tmp_path_factory):
 def test_the_core_takes_what_is_packed(check):
     """Its own check finds nothing wrong with any plan."""
     longest = f"spec s\nsignal p : bool\nrequirement R\n  always within {2**62 - 1} ns p\n"
-    assert [check(packed(text).data) for text in (EVERYTHING, DIAGRAM, longest)] == [-1] * 3
+    texts = (EVERYTHING, DIAGRAM, longest)
+    assert [check(packed(text).data) for text in texts] == [-1] * 3
+    assert [check(packed(text, measured=True).data) for text in texts] == [-1] * 3
     plans = [plan for seed in range(100, 160) if (plan := drawn(seed)) is not None]
     assert [check(pack(plan).data) for plan in plans] == [-1] * len(plans)
+
+
+@pytest.mark.compiler
+def test_the_core_refuses_what_measures_lead_out_of_their_bounds(check):
+    """Each number of what is measured is checked, be it too large or too small."""
+    data = packed(EVERYTHING, measured=True).data
+    plan = Plan(data)
+    for name, skipped in (("MARGINS", {"spare"}), ("MEASURES", {"factor", "turned", "spare"})):
+        offset = plan.places[plan.names.index(name)][0]
+        for own, form in layouts()[SECTIONS[name]]:
+            end = offset + size_of_form(form)
+            places = () if own in skipped else range(offset, end, 4)
+            for at, value in product(places, (1 << 30, -7)):
+                changed = bytearray(data)
+                struct.pack_into("=i", changed, at, value)
+                struct.pack_into("=Q", changed, 24, hash_of(bytes(changed[sections.HEADER.size :])))
+                assert check(bytes(changed)) == Section.MARGINS, (name, own, value)
+            offset = end
 
 
 @pytest.mark.compiler

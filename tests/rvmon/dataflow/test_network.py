@@ -17,11 +17,11 @@ from rvmon.dataflow.network import MOST_NOTED, Network
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
-from rvmon.runtime.values import NEVER
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
+from rvmon.trace.time import NEVER
 
 SECOND = 10**9
 RESPAWNED = "whenever a then F[2 s, 5 s] b"

@@ -27,7 +27,7 @@ FURTHER = 1_000_000
 FORMS = ("auto", "automaton", "network", "c")
 """Progression may have to step at every tick; of the core, no steps are counted."""
 
-ENGINE = ("automaton/table.py", "/dataflow/", "/runtime/", "<generated")
+ENGINE = ("runtime/table_machine.py", "/dataflow/", "/runtime/", "<generated")
 """The code whose calls are the steps of an engine."""
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.monitor.columns.margins import ColumnMargins
 from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import (
@@ -100,17 +99,8 @@ def figures_of(margins):
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
-def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
+def test_columns_are_measured_as_their_samples_are(time):
     """Arrays give each attempt and each row the figures that a monitor gives."""
-    by_arrays = 0
-
-    def at(self, instants):
-        nonlocal by_arrays
-        by_arrays += 1
-        return margins_at(self, instants)
-
-    margins_at = ColumnMargins.at
-    monkeypatch.setattr(ColumnMargins, "at", at)
     for number in range(PAIRS):
         rng = random.Random(f"whole {time} {number}")
         spec, times, columns = random_case(rng, time)
@@ -119,15 +109,28 @@ def test_columns_are_measured_as_their_samples_are(time, monkeypatch):
         expected = Spec(spec).robustness(rows_of(times, columns), until=until)
         case = f"{format_formula(spec.requirements['R'].consequent)}\n{times}\n{columns}\n{until}"
         assert figures_of(found) == figures_of(expected), case
-    assert by_arrays > PAIRS
 
 
-def test_the_engine_c_measures_nothing():
-    """It says so before anything is compiled."""
+def test_each_engine_is_measured_beside():
+    """The figures are those of the attempts, whoever judged them."""
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x > 1\n")
-    source = Source(spec.recording(arrays_of([0, 1], {"x": [3.0, 2.0]})))
-    with pytest.raises(rvmon.RvmonError, match="the engine `c` measures no robustness"):
-        spec.judge(source, engine="c", robustness=True)
+
+    def judged(engine):
+        source = Source(spec.recording(arrays_of([0, 1, 2], {"x": [3.0, 0.5, 2.0]})))
+        found = spec.judge(source, engine=engine, robustness=True)
+        return [(one.name, one.robustness) for one in found.attempts]
+
+    assert judged("c") == judged("auto") == [("R#1", -0.5), ("R#2", 1.0)]
+
+
+def test_without_requirements_there_is_nothing_to_measure():
+    """A specification may only have goals of coverage."""
+    spec = rvmon.loads("spec s\nsignal x : real\n")
+    found = spec.robustness(arrays_of([0, 1], {"x": [3.0, 2.0]}))
+    assert (found.attempts, found.streams) == ({}, {})
+    monitor = spec.robustness_monitor()
+    assert not monitor.step(0, {"x": 1.0})
+    assert not monitor.finish(1)
 
 
 TEXT = "spec s\ntime {}\nsignal x : real{}\nrequirement R\n  upon start then immediately x > 1\n"
@@ -180,7 +183,7 @@ def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, u
         source = Source(spec.recording(path), end, is_cut=True, **how)
         return spec.judge(source, robustness=True)
 
-    found, expected = judged(), judged(row_by_row="as the samples come")
+    found, expected = judged(), judged(read=lambda recording: iter(recording))
     assert found == expected
     assert found.to_json() == expected.to_json()
     assert all(one.robustness is not None for one in found.attempts if one.decided is not None)

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 import rvmon
+from rvmon.readers import as_blocks, recording
 from rvmon.readers import csv_blocks as module
 from rvmon.readers import parquet as parquet_module
-from rvmon.readers import recording
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import NotPlainError
 from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.decimals import Cells, decimals, instants, whole_numbers
-from rvmon.readers.recording import FileRecording
 from rvmon.readers.source import Source
 from rvmon.trace.time import ticks_of_text
 
@@ -256,7 +255,7 @@ def test_a_large_file_is_read_as_a_small_one(text, tmp_path, monkeypatch):
     path.write_text(text)
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     with monkeypatch.context() as patched:
-        patched.setattr(FileRecording, "blocks", none_plain)
+        patched.setattr(as_blocks, "file_blocks", none_plain)
         by_rows = told(spec, path)
     monkeypatch.setattr(module, "LARGE", len(text))
     assert told(spec, path) == by_rows
@@ -298,7 +297,9 @@ def test_where_memory_is_limited_arrow_is_not_asked(tmp_path, monkeypatch):
     (tmp_path / "a.csv").write_text(csv_text(1))
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     monkeypatch.setattr(module, "LARGE", 999)
-    monkeypatch.setattr("rvmon.readers.csv_arrow.arrow_block", lambda *_: pytest.fail("it is"))
+    monkeypatch.setattr(
+        "rvmon.readers.csv_arrow_blocks.arrow_block", lambda *_: pytest.fail("it is")
+    )
     monkeypatch.setattr(resource, "getrlimit", lambda _: (1 << 30, 1 << 30))
     assert by_columns(spec, tmp_path / "a.csv").verdicts
 

@@ -9,7 +9,7 @@ import pytest
 import rvmon
 from rvmon.cli.judging import Options, judge
 from rvmon.readers import jsonl_blocks as module
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import NotPlainError
 from rvmon.readers.jsonl_blocks import jsonl_blocks
 from rvmon.readers.source import Source
 from rvmon.trace.schema import Kind, Schema

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, Protocol
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.formula.state import TRUE, UNKNOWN, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.reasons.doubt import Doubt

@@ -8,7 +8,8 @@ from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open, doubt_in, leaves_in
 from rvmon.monitor.attempts.evaluator import Evaluator
 from rvmon.monitor.compiled.requirement import CompiledRequirement
-from rvmon.plan.numbers import events_of, reader
+from rvmon.plan.numbers import events_of
+from rvmon.runtime.expressions import reader
 from rvmon.spec.checked.formula import Numeric
 from rvmon.trace.sample import Payload, Scalar
 

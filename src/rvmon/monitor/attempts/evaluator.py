@@ -147,7 +147,7 @@ class Evaluator(Nodes, Schedule):
         """See `Standing`."""
         return t if self.v[place] == value else self.until[3 * place + value]
 
-    # What expressions read; see `rvmon.plan.numbers.Input`.
+    # What expressions read; see `rvmon.runtime.expressions.Input`.
 
     def value_of(self, signal: str) -> Scalar:
         """The value of a signal as seen now; `None` if unknown."""

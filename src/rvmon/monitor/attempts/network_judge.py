@@ -6,8 +6,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from rvmon.automaton.location import FAILED, PASSED
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import FAILED, PASSED, Token
 from rvmon.dataflow.at_end import held_at_end
 from rvmon.dataflow.journal import Journal
 from rvmon.dataflow.network import FOREVER, Network

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.formula.state import UNKNOWN
 from rvmon.monitor.columns.tables import Table
 from rvmon.monitor.columns.track import UNSEEN

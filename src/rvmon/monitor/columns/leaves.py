@@ -91,20 +91,6 @@ def compared(leaf: Compare, columns: Columns, rows: int) -> Truth:
     return Truth(must & ~unknown, must | unknown)
 
 
-def distance(leaf: Compare, columns: Columns, rows: int) -> NDArray[np.float64]:
-    """By how much the left side of a comparison is above the right one, per row.
-
-    Args:
-        leaf: as for `compared`; so are the others, and the error.
-        columns: the signals that have a source; NaN is unknown.
-        rows: their length.
-    """
-    with np.errstate(all="ignore"):
-        left, right = _number(leaf.left, columns), _number(leaf.right, columns)
-        made = np.where(left == right, 0.0, left - right)
-    return np.broadcast_to(made, rows)
-
-
 def _unknown(values: Any) -> Any:
     """Where numbers are NaN; mostly one sum shows that none is."""
     if not isinstance(values, np.ndarray) or values.dtype.kind != "f":

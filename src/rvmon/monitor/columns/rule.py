@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.automaton.moves import Moves, moves_of
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.monitor.attempts.attempt_judge import Open

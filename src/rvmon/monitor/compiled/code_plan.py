@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
+from functools import cache
 
-from rvmon.errors import UnknownNameError
-from rvmon.formula.core import Literal
+from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.construct import Budget, construct
+from rvmon.dataflow.network_plan import plan_of as network_of
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.formula.alphabet import Alphabet, alphabet_of
+from rvmon.formula.core import Core, Literal
+from rvmon.formula.factory import Factory
 from rvmon.formula.state import State
 from rvmon.monitor.compiled.refusal import of_tables
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -19,8 +25,6 @@ from rvmon.spec.checked.selection import requirements_asked
 def plan_requirements(
     compiled: CompiledSpec,
     requirements: Sequence[CompiledRequirement],
-    *,
-    measured: bool = False,
 ) -> Plan:
     """The plan of some requirements of a specification, of which somebody will ask what is owed.
 
@@ -29,13 +33,11 @@ def plan_requirements(
     Args:
         compiled: the specification.
         requirements: chosen from it.
-        measured: whether somebody will ask for the values of all that robustness is made of.
     """
-    key = "plan", tuple(one.requirement.id for one in requirements), measured
+    key = "plan", tuple(one.requirement.id for one in requirements)
     made = compiled.forms.get(key)
     if not isinstance(made, Plan):
-        how = {"explained": True, "measured": measured}
-        rules = [_rule(one, **how) for one in requirements]
+        rules = [_rule(one, explained=True) for one in requirements]
         made = plan_of(compiled.checked, rules)
         compiled.forms[key] = made
     return made
@@ -48,10 +50,13 @@ def _rule(
     hidden: bool = False,
     measured: bool = False,
 ) -> PlannedRule:
+    owed, alphabet = one.obligation.owed, one.alphabet
     if explained:
         # In this process what judges attempts in doubt is made when one comes up.
-        is_judged = hidden or (one.follows_windows and not measured)
+        is_judged = hidden or one.follows_windows
         automaton = None if is_judged or of_tables(one) is not None else one.automaton
+    elif measured and one.counts_alone:
+        owed, alphabet, automaton = _nothing_owed()
     else:
         automaton = one.shaped
     obligation = one.obligation
@@ -63,12 +68,13 @@ def _rule(
             return None
         return _rule(other, explained=explained, hidden=True, measured=measured)
 
-    read = [core for _, core in one.measured_plan.leaves] if measured else []
+    figured = one.measured_owed if measured else None
+    read = [] if figured is None else [core for _, core in network_of(figured, one.gap).leaves]
     return PlannedRule(
         one.requirement,
         obligation.trigger,
-        obligation.owed,
-        one.alphabet,
+        owed,
+        alphabet,
         automaton,
         one.in_runs(automaton),
         again=obligation.again,
@@ -81,6 +87,7 @@ def _rule(
         blurs=_blurs(one) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
+        measured=figured,
     )
 
 
@@ -98,6 +105,15 @@ def _stepped(rule: PlannedRule) -> PlannedRule:
     return replace(rule, hidden=hidden, doubted=doubted, stepped=True)
 
 
+@cache
+def _nothing_owed() -> tuple[Core, Alphabet, Automaton]:
+    """What attempts owe that only have to be counted, and what judges them."""
+    factory = Factory()
+    owed = factory.constant(True)
+    alphabet = alphabet_of(owed)
+    return owed, alphabet, construct(factory.next(owed), alphabet, Budget())
+
+
 def _blurs(one: CompiledRequirement) -> State | None:
     """What is UNKNOWN where an attempt may have begun with other values than it captured."""
     obligation = one.obligation
@@ -111,6 +127,7 @@ def plan_alone(
     *,
     traced: Collection[str] = (),
     stepped: bool = False,
+    measured: bool = False,
 ) -> Plan:
     """The plan of what the core judges.
 
@@ -119,17 +136,22 @@ def plan_alone(
         only: ids of its requirements; default all.
         traced: ids of those of which somebody asks where attempts go in their automata.
         stepped: whether no chain of windows is to judge any.
+        measured: whether it is to measure them as well; there may be none then.
 
     Raises:
         UnknownNameError: there is no such requirement, or none is asked for.
         RvmonError: one of them is beyond all engines; which one and why is in the message.
     """
     ids = requirements_asked(compiled.checked, only)
-    if ids is not None and not ids:
+    if not (measured or compiled.chosen(ids)):
+        if not compiled.requirements:
+            raise RvmonError("the specification has no requirements: there is nothing to compile")
         known = ", ".join(compiled.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     rules = [
-        _traced(one) if one.requirement.id in traced else _rule(one, explained=False)
+        _traced(one)
+        if one.requirement.id in traced
+        else _rule(one, explained=False, measured=measured)
         for one in compiled.chosen(ids)
     ]
     if stepped:

@@ -86,16 +86,6 @@ def no_columns(why: Exception) -> RvmonError:
     return RvmonError(f"the recording is not evaluated by columns: {why}: {_AUTO}")
 
 
-def no_dropping(engine: str) -> RvmonError:
-    """Records to be dropped, for an engine that keeps all."""
-    return RvmonError(f"the engine `{engine}` keeps all records: leave out `keep`, or use `auto`")
-
-
-def no_robustness(engine: str) -> RvmonError:
-    """Robustness, of an engine that finds none."""
-    return RvmonError(f"the engine `{engine}` measures no robustness: {_AUTO}")
-
-
 def of_automaton(one: CompiledRequirement) -> Refusal | None:
     """What has no automaton."""
     if one.automaton is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from rvmon.automaton.automaton import Automaton
@@ -14,16 +14,13 @@ from rvmon.automaton.machine import Machine
 from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.shapes import Shapes
-from rvmon.automaton.table import TableMachine
-from rvmon.codegen.python_windows import windows_class
 from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
-from rvmon.dataflow.robust import Gauge
 from rvmon.dataflow.soonest_news import delay_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
-from rvmon.formula.core import Literal
+from rvmon.formula.core import Core
 from rvmon.formula.expand import expanded
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
@@ -33,6 +30,7 @@ from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.plan.graph import Graph, graph_of, leaf_count, leaf_texts
 from rvmon.plan.numbers import events_of, inputs_of
+from rvmon.runtime.table_machine import TableMachine
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 
@@ -55,7 +53,6 @@ class CompiledRequirement:
         gap: ticks between two positions; `None` if only samples are positions.
         is_beside: whether this judges the attempts in doubt of a requirement.
         measured: its formulas as they are measured: their truth is that of `obligation`.
-        measures: whether evaluators work out what is measured, too.
     """
 
     def __init__(
@@ -68,14 +65,12 @@ class CompiledRequirement:
         shapes: Shapes,
         *,
         is_beside: bool = False,
-        measured: Callable[[], Obligation] | None = None,
-        measures: bool = False,
+        measured: Callable[[], Obligation],
     ) -> None:
         self._factory = factory
         self._shapes = shapes
         self.is_beside = is_beside
         self._measured = measured
-        self.measures = measures
         self.rank = rank
         self.spec = spec
         self.gap = spec.gap
@@ -176,7 +171,6 @@ class CompiledRequirement:
             self._shapes,
             is_beside=True,
             measured=lambda: measured() or obligation,
-            measures=self.measures,
         )
 
     @cached_property
@@ -199,6 +193,8 @@ class CompiledRequirement:
     @cached_property
     def windows(self) -> type[Windows] | None:
         """What follows its network's windows; `None` if they are no chain."""
+        from rvmon.codegen.python_windows import windows_class
+
         chain = self._chain
         return None if chain is None else windows_class(self.network_plan, chain, self.gap)
 
@@ -208,42 +204,14 @@ class CompiledRequirement:
         return reach_of(self.network_plan)
 
     @cached_property
-    def measured_plan(self) -> NetworkPlan:
-        """The same of what it owes as far as that is measured, past operators included."""
-        return plan_of(expanded(self.measured.owed), self.gap)
-
-    @cached_property
-    def gauge(self) -> type[Gauge]:
-        """What measures it, generated once for all of its attempts."""
-        from rvmon.codegen.python_margins import gauge_class
-
-        return gauge_class(self.measured_plan, self.gap)
+    def measured_owed(self) -> Core:
+        """What it owes as far as that is measured, propositions that look back taken apart."""
+        return expanded(self.measured.owed)
 
     @cached_property
     def measured(self) -> Obligation:
         """See `CompiledRequirement`."""
-        if self._measured is not None:
-            return self._measured()
-        return lower(self.requirement, self._factory, self.spec.period, measured=True)
-
-    @property
-    def measures_payloads(self) -> bool:
-        """Whether payloads are compared in what is measured of it."""
-        leaves = [
-            core.proposition.leaf
-            for one in self.judges.values()
-            for _, core in one.measured_plan.leaves
-            if isinstance(core, Literal)
-        ]
-        return any(
-            isinstance(leaf, Compare) and events_of(leaf.left, leaf.right) for leaf in leaves
-        )
-
-    @cached_property
-    def measuring(self) -> CompiledRequirement:
-        """The same for runs in which evaluators work out what is measured."""
-        given = (self.rank, self.spec, self.requirement, self.obligation)
-        return CompiledRequirement(*given, self._factory, self._shapes, measures=True)
+        return self._measured()
 
     def network_delay(self, letter: Sequence[bool]) -> int:
         """Ticks that pass in its delay network until an attempt that begins can be decided."""
@@ -261,6 +229,15 @@ class CompiledRequirement:
     def is_fed(self) -> bool:
         """Whether generated code in this process can work out what it reads."""
         return self.requirement.for_each is None and not self.requirement.captures
+
+    @property
+    def counts_alone(self) -> bool:
+        """Whether which attempts it has does not hang on what becomes of them.
+
+        Episodes go on after a failure; what is in doubt leaves no record if it is met.
+        """
+        upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
+        return upon and self.is_fed and not self.is_beside
 
     def engine(self, name: str) -> str:
         """Which of `automaton`, `network` and `progression` judges it where no code is generated.
@@ -314,9 +291,6 @@ class CompiledRequirement:
         if self.requirement.mode is Mode.WHENEVER:
             states = (obligation.trigger, obligation.running)
             yield from (one for one in states if one is not None)
-        if self.measures:
-            read = (core for _, core in self.measured_plan.leaves)
-            yield from (core.proposition for core in read if isinstance(core, Literal))
 
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:
@@ -396,5 +370,15 @@ def compiled_requirements(
             raise RvmonError(
                 f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
             ) from None
-        made[name] = CompiledRequirement(rank, checked, requirement, obligation, factory, shapes)
+        measured = partial(
+            lower,
+            requirement,
+            factory,
+            checked.period,
+            measured=True,
+            next_law=next_law,
+            sampled=checked.gap is None,
+        )
+        given = (rank, checked, requirement, obligation, factory, shapes)
+        made[name] = CompiledRequirement(*given, measured=measured)
     return made

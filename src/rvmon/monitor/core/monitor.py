@@ -33,6 +33,7 @@ class CoreMonitor(Monitor):
         compiled: the specification.
         settle: see `build_monitor`.
         sources: the names that can arrive; `None`: all.
+        keep: so many records of each verdict are kept per requirement; `None`: all.
     """
 
     STATE = ("_intake", "_torn")
@@ -43,12 +44,15 @@ class CoreMonitor(Monitor):
         compiled: CompiledSpec,
         settle: str,
         sources: frozenset[str] | None,
+        keep: int | None,
     ) -> None:
         names = frozenset((*compiled.checked.signals, *compiled.checked.events))
         self._planned = planned
         self._core = planned.monitor(
             names - (names if sources is None else sources), self._take_at, self._look_closer
         )
+        if keep is not None:
+            self._core.keep(keep)
         super().__init__(compiled, (), "c", settle, sources, None)
         self._validator = Validator(compiled.checked, sources, planned.single_payloads)
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from struct import Struct, unpack_from
 from typing import Any
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.formula.residual import Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.compiled.requirement import CompiledRequirement

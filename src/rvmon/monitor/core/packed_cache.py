@@ -41,14 +41,18 @@ class Place:
         spec: the specification.
         ids: of the requirements.
         next_law: see `rvmon.monitor.compiled.specification.CompiledSpec`.
+        measured: whether attempts are measured as well.
     """
 
-    def __init__(self, spec: CheckedSpec, ids: tuple[str, ...], *, next_law: bool) -> None:
+    def __init__(
+        self, spec: CheckedSpec, ids: tuple[str, ...], *, next_law: bool, measured: bool
+    ) -> None:
         folder = cache_folder()
         if folder is None:
             self._path = None
             return
-        content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), ids, next_law])
+        how = (ids, next_law, measured)
+        content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), *how])
         self._key = hashlib.sha256(content.encode()).hexdigest()
         self._path = folder / f"plan-{self._key}.bin"
 

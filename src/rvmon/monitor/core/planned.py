@@ -76,8 +76,8 @@ class PlannedCore:
     def monitor(
         self,
         absent: frozenset[str],
-        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Attempt]] | None = None,
-        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Attempt]] | None = None,
+        look_closer: Callable[[float, Mapping[str, Any]], Sequence[Any]] | None = None,
+        look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Any]] | None = None,
     ) -> native.Monitor:
         """Begin a run.
 
@@ -168,38 +168,43 @@ class PlannedCore:
         }
 
 
-def planned_core(compiled: CompiledSpec, only: Collection[str] | None = None) -> PlannedCore:
+def planned_core(
+    compiled: CompiledSpec, only: Collection[str] | None = None, *, measured: bool = False
+) -> PlannedCore:
     """The packed plan of some requirements; made once for a specification.
 
     Args:
         compiled: the specification.
         only: ids of its requirements; default all.
+        measured: whether attempts are to be measured as well.
 
     Raises:
         RvmonError: a requirement is beyond the core.
     """
     spec = compiled.checked
     ids = tuple(one for one in spec.requirements if only is None or one in only)
-    found = compiled.forms.get(("core", ids))
+    key = "core", ids, measured
+    found = compiled.forms.get(key)
     if not isinstance(found, PlannedCore):
-        place = Place(spec, ids, next_law=compiled.next_law) if compiled.is_kept else None
+        how = {"next_law": compiled.next_law, "measured": measured}
+        place = Place(spec, ids, **how) if compiled.is_kept else None
         found = None if place is None else _checked(compiled, ids, place.read())
         if found is None:
-            made = _made(compiled, ids)
+            made = _made(compiled, ids, measured=measured)
             found = planned_as(spec, ids, made, compiled)
             if place is not None:
                 place.write(made)
-        compiled.forms["core", ids] = found
+        compiled.forms[key] = found
     return found
 
 
-def _made(compiled: CompiledSpec, ids: tuple[str, ...]) -> Kept:
+def _made(compiled: CompiledSpec, ids: tuple[str, ...], *, measured: bool) -> Kept:
     # What makes it is imported now: it is seldom made where it is kept.
     from rvmon.core.plan import pack
     from rvmon.monitor.compiled.code_plan import plan_alone
     from rvmon.monitor.inputs.health import readers_of
 
-    plan = plan_alone(compiled, ids)
+    plan = plan_alone(compiled, ids, measured=measured)
     chosen = compiled.chosen(ids)
     single = frozenset().union(*(one.single_payloads for one in chosen))
     return Kept(pack(plan, next_law=compiled.next_law).data, single, readers_of(chosen))

@@ -136,8 +136,10 @@ def report_of_run(
 
     Source: SEMANTICS, section 3.
     """
-    complete, counts = {}, {}
-    for name, own in zip(planned.packed.ids, run.counts(), strict=True):
+    ids = planned.packed.ids
+    complete: dict[str, bool] = {}
+    counts: dict[str, dict[Verdict, int]] = {}
+    for name, own in zip(ids, run.counts(), strict=True):
         *_, is_complete = own
         complete[name] = bool(is_complete)
         counts[name] = {verdict: own[VERDICTS.index(verdict)] for verdict in _COUNTED}
@@ -154,9 +156,31 @@ def report_of_run(
         if order is None
         else RecordedAttempts(planned, made[order], captured[order], (words, letters)),
         counts=counts,
+        dropped=_dropped(ids, counts, made),
         origin=origin,
         end=end,
     )
+
+
+def _dropped(
+    ids: Sequence[str], counts: Mapping[str, Mapping[Verdict, int]], records: NDArray[Any]
+) -> Mapping[str, Mapping[Verdict, int]]:
+    """How many attempts were counted of which there is no record."""
+    if sum(sum(own.values()) for own in counts.values()) == len(records):
+        return {}
+    there = np.bincount(
+        records["requirement"] * len(VERDICTS) + records["verdict"],
+        minlength=len(ids) * len(VERDICTS),
+    ).reshape(-1, len(VERDICTS))
+    dropped = {
+        name: {one: count - there[row, VERDICTS.index(one)].item() for one, count in own.items()}
+        for row, (name, own) in enumerate(counts.items())
+    }
+    return {
+        name: {one: count for one, count in own.items() if count}
+        for name, own in dropped.items()
+        if any(own.values())
+    }
 
 
 _COUNTED = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from struct import iter_unpack
+from typing import TYPE_CHECKING
 
 from rvmon.core.plan import pack
 from rvmon.dataflow.network_plan import plan_of_all
@@ -13,8 +15,13 @@ from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import planned_as
 from rvmon.monitor.inputs.validate import Validator
 from rvmon.plan.planning import plan_of_truths
+from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.trace.sample import Sample, Scalar
+from rvmon.trace.sample import Sample, Scalar, Trace
+
+if TYPE_CHECKING:
+    from rvmon.monitor.core.recording import RecordingRun
+    from rvmon.readers.batch import Batch
 
 Positions = tuple[tuple[int, int], ...]
 """Ranges of positions, first and last, ascending: ticks, in clocked time ticks divided by the
@@ -34,6 +41,67 @@ class Known:
     false: Positions
 
 
+class TruthsRun:
+    """Follows where formulas are known while a recording is read.
+
+    Args:
+        spec: the specification.
+        formulas: may speak of the future; what the recording ends too early for is not known.
+        names: the signals and events that have a source; `None`: all.
+        captured: the values that the formulas read as captured.
+    """
+
+    def __init__(
+        self,
+        spec: CheckedSpec,
+        formulas: Sequence[Core],
+        names: frozenset[str] | None,
+        captured: Mapping[str, Scalar],
+    ) -> None:
+        plan = plan_of_truths(spec, formulas, captured)
+        self._spec = spec
+        self._formulas = formulas
+        self._names = names
+        self._read = plan.graph.by_name
+        self._gap = plan.gap
+        self._planned = planned_as(spec, (), Kept(pack(plan).data, frozenset(), {}))
+        declared = frozenset(self._planned.numbers)
+        self._run = self._planned.monitor(frozenset() if names is None else declared - names)
+        self._validator = Validator(spec, None if names is None else names & declared, frozenset())
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Take what comes next; what the specification does not declare is passed over."""
+        if not isinstance(piece, Sample):
+            self._rows.take(piece)
+            return
+        t, values = piece.t, piece.values
+        if self._run.judge(t, values, False):
+            return
+        read = {name: values[name] for name in self._read if name in values}
+        if self._run.judge(t, read, False):
+            return
+        if not self._run.judge(t, self._planned.plain(t, self._validator.check(t, read)), True):
+            raise ValueError("the core does not take a sample that was checked")
+
+    @cached_property
+    def _rows(self) -> RecordingRun:
+        from rvmon.monitor.core.recording import RecordingRun  # which imports NumPy
+
+        source = Source(Trace((), self._names))
+        made = RecordingRun(self._spec, self._planned, source, finds=False)
+        made.core = self._run
+        return made
+
+    def known(self, end: int) -> list[Known]:
+        """Where each formula is known, at all positions; the recording ends (ticks)."""
+        self._run.finish(end)
+        places = plan_of_all(self._formulas, self._gap).places
+        return [
+            Known(*(tuple(_ranges(one)) for one in self._run.truths(places[core])))
+            for core in self._formulas
+        ]
+
+
 def known_truths(
     spec: CheckedSpec,
     formulas: Sequence[Core],
@@ -42,35 +110,22 @@ def known_truths(
     names: frozenset[str] | None,
     captured: Mapping[str, Scalar],
 ) -> list[Known]:
-    """Where formulas are known, at all positions of a recording.
+    """Where formulas are known, at all positions of a recording; see `TruthsRun`.
 
     Args:
         spec: the specification.
-        formulas: may speak of the future; what the recording ends too early for is not known.
-        samples: the recording, in order; what the specification does not declare is passed over.
+        formulas: may speak of the future.
+        samples: the recording, in order.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
         captured: the values that the formulas read as captured.
 
     Cost: one pass over the samples in C.
     """
-    plan = plan_of_truths(spec, formulas, captured)
-    planned = planned_as(spec, (), Kept(pack(plan).data, frozenset(), {}))
-    declared = frozenset(planned.numbers)
-    run = planned.monitor(frozenset() if names is None else declared - names)
-    validator = Validator(spec, None if names is None else names & declared, frozenset())
+    run = TruthsRun(spec, formulas, names, captured)
     for sample in samples:
-        t, values = sample.t, sample.values
-        if run.judge(t, values, False):
-            continue
-        read = {name: values[name] for name in plan.graph.by_name if name in values}
-        if run.judge(t, read, False):
-            continue
-        if not run.judge(t, planned.plain(t, validator.check(t, read)), True):
-            raise ValueError("the core does not take a sample that was checked")
-    run.finish(end)
-    places = plan_of_all(formulas, plan.gap).places
-    return [Known(*(tuple(_ranges(one)) for one in run.truths(places[core]))) for core in formulas]
+        run.take(sample)
+    return run.known(end)
 
 
 def _ranges(data: bytes) -> Iterator[tuple[int, int]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.engines.rows import columns_of, judge_columns_by_rows, judge_samples
-from rvmon.readers.blocks import NotPlainError
+from rvmon.readers.batch import NotPlainError
 from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
 

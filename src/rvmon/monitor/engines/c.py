@@ -28,14 +28,11 @@ class C:
         """See `rvmon.monitor.engines.registry.Engine`; so for `judge`."""
         if _is_nothing(compiled, asked):
             return engine_named("auto").online(compiled, asked)
-        from rvmon.monitor.compiled.refusal import no_dropping
         from rvmon.monitor.core.monitor import CoreMonitor
         from rvmon.monitor.core.planned import planned_core
 
-        if asked.keep is not None:
-            raise no_dropping(self.name)
         planned = planned_core(compiled, asked.only)
-        monitor = CoreMonitor(planned, compiled, asked.settle, asked.sources)
+        monitor = CoreMonitor(planned, compiled, asked.settle, asked.sources, asked.keep)
         monitor.judged_by = self.name
         return monitor
 

@@ -12,8 +12,9 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, Engine
 from rvmon.monitor.engines.rows import columns_of
 from rvmon.monitor.online.monitor import Monitor
-from rvmon.readers.blocks import NotPlainError
-from rvmon.readers.source import Columns, Source
+from rvmon.readers.as_blocks import Columns
+from rvmon.readers.batch import NotPlainError
+from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
 
 

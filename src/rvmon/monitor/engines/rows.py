@@ -6,8 +6,10 @@ from dataclasses import replace
 
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.engines.registry import Asked, Engine
-from rvmon.readers.blocks import NotPlainError
-from rvmon.readers.source import Columns, Source
+from rvmon.readers import as_blocks
+from rvmon.readers.as_blocks import Columns
+from rvmon.readers.batch import NotPlainError
+from rvmon.readers.source import Source
 from rvmon.verdict.report import Report
 
 
@@ -19,7 +21,7 @@ def columns_of(compiled: CompiledSpec, source: Source, asked: Asked) -> Columns:
     """
     if compiled.checked.max_delay is not None:
         raise NotPlainError("its samples may come late (`max delay`)")
-    return source.columns(lambda: fillable(compiled, asked.only))
+    return as_blocks.columns_of(source, lambda: fillable(compiled, asked.only))
 
 
 def fillable(compiled: CompiledSpec, only: tuple[str, ...] | None) -> frozenset[str]:

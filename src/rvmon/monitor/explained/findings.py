@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from rvmon.automaton.location import location_of
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token, location_of
 from rvmon.formula.progress import after, value
 from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import UNKNOWN

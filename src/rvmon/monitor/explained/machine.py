@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rvmon.automaton.location import FAILED, PASSED
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import FAILED, PASSED, Token
 from rvmon.formula.progress import after
 from rvmon.monitor.explained.explanation import (
     Explanation,

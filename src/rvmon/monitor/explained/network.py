@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rvmon.automaton.location import FAILED, PASSED
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import FAILED, PASSED, Token
 from rvmon.dataflow.network import Network
 from rvmon.dataflow.remaining import Remaining
 from rvmon.dataflow.time_decisions import Moment, known_alone, settled

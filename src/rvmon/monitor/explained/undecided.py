@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from rvmon.automaton.location import FAILED
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import FAILED, Token
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.explained.explanation import Explanation
 from rvmon.monitor.reasons.doubt import Doubt

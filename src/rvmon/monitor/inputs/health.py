@@ -10,7 +10,6 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.intake import MOST_HELD, Intake
 from rvmon.plan.inputs import payloads_of
 from rvmon.readers.alternation import Alternations
-from rvmon.runtime.nodes import Nodes
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
@@ -32,13 +31,6 @@ class Arrivals:
     absent: frozenset[str]
     first: Mapping[str, int | None]
     expired: Mapping[str, tuple[int, int]]
-
-
-def arrivals_of(nodes: Nodes) -> Arrivals:
-    """What was seen by generated code."""
-    names = nodes.SIGNALS
-    expired = {names[signal]: found for signal, found in nodes.expired.items()}
-    return Arrivals(nodes.absent, dict(zip(names, nodes.first, strict=True)), expired)
 
 
 class HealthLog:

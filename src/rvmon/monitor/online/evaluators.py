@@ -12,7 +12,8 @@ from rvmon.monitor.attempts.instance import Instance, Shape, seen_by, values_in
 from rvmon.monitor.attempts.instances import Instances
 from rvmon.monitor.attempts.keyed import Keyed
 from rvmon.monitor.compiled.requirement import CompiledRequirement
-from rvmon.monitor.inputs.health import Arrivals, arrivals_of
+from rvmon.monitor.inputs.health import Arrivals
+from rvmon.monitor.online.arrivals import arrivals_of
 from rvmon.monitor.online.evaluator_maker import Captured, EvaluatorMaker
 from rvmon.monitor.records.ledger import Ledger
 from rvmon.plan.outages import Outages

@@ -37,8 +37,6 @@ def forms_of(
     compiled: CompiledSpec,
     requirements: Sequence[CompiledRequirement],
     sources: frozenset[str] | None,
-    *,
-    measured: bool = False,
 ) -> Forms:
     """Generate what monitors of some requirements run.
 
@@ -46,10 +44,9 @@ def forms_of(
         compiled: the specification.
         requirements: chosen from it.
         sources: the names that can arrive; `None`: all.
-        measured: see `rvmon.monitor.compiled.code_plan.plan_requirements`.
     """
     fed = [one for one in requirements if one.is_fed]
-    plan = plan_requirements(compiled, fed, measured=measured)
+    plan = plan_requirements(compiled, fed)
     machines = [
         None if rule.automaton is None else one.machine("automaton")
         for one, rule in zip(fed, plan.rules, strict=True)

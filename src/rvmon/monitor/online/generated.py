@@ -10,7 +10,8 @@ from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.judges import judge_of
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.inputs.health import Arrivals, arrivals_of
+from rvmon.monitor.inputs.health import Arrivals
+from rvmon.monitor.online.arrivals import arrivals_of
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.forms import Forms
 from rvmon.monitor.online.monitor import Monitor, Step

@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NoReturn
 
-from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
+from rvmon.errors import RvmonError, SnapshotError, TraceError
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.inputs.health import HealthLog
 from rvmon.monitor.inputs.intake import Intake
+from rvmon.monitor.inputs.order import refuse_earlier
 from rvmon.monitor.inputs.validate import Validator
 from rvmon.monitor.online.evaluators import Evaluators
 from rvmon.monitor.online.listeners import Callback, Listeners
@@ -24,7 +25,7 @@ from rvmon.monitor.records.ledger import Ledger
 from rvmon.runtime.values import NEVER
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.trace.sample import Sample, Value
-from rvmon.trace.time import format_ticks, ticks_of_seconds, whole_ticks
+from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
@@ -132,17 +133,7 @@ class Monitor:
             checked = self.one_call.spare(self._validator.check, t_ns, values)
             ready = self._intake.take(t_ns, checked)
             return self._settled(ready, self._intake.floor)
-        if self._last is not None and t_ns <= self._last:
-            raise TimeOrderError(
-                f"sample at {format_ticks(t_ns)} is not after the one at "
-                f"{format_ticks(self._last)}: merge what has equal stamps (settle='next' does), "
-                "sort what is out of order"
-            )
-        if self._reached is not None and t_ns < self._reached:
-            raise TimeOrderError(
-                f"sample at {format_ticks(t_ns)}, but advance({format_ticks(self._reached)}) "
-                "promised that none before would come: advance later, or drop the sample"
-            )
+        refuse_earlier(t_ns, self._last, self._reached)
         self._judge(t_ns, self.one_call.spare(self._validator.check, t_ns, values))
         return self._flush()
 

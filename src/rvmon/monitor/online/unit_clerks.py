@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from operator import itemgetter
 from typing import Any
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.compiled.requirement import CompiledRequirement

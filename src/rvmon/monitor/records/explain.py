@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import Token
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.attempts.network_judge import NetworkJudge

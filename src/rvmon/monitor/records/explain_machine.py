@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rvmon.automaton.location import PASSED
-from rvmon.automaton.machine import Machine, Token
+from rvmon.automaton.location import PASSED, Token
+from rvmon.automaton.machine import Machine
 from rvmon.monitor.attempts.attempt_judge import Open
 from rvmon.monitor.attempts.machine_judge import MachineJudge
 from rvmon.monitor.explained.explanation import Explanation

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rvmon.automaton.location import FAILED, PASSED
-from rvmon.automaton.machine import Token
+from rvmon.automaton.location import FAILED, PASSED, Token
 from rvmon.monitor.attempts.attempt_judge import AttemptJudge, Open
 from rvmon.monitor.attempts.network_judge import NetworkJudge
 from rvmon.monitor.explained.explanation import Explanation, truths_shown

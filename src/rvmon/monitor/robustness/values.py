@@ -60,6 +60,16 @@ class Measured:
     in_doubt: bool = False
 
 
+_FIELDS = (
+    *((Measured, name) for name in ("requirement", "number", "t", "robustness", "in_doubt")),
+    *((Robustness, name) for name in ("low", "high", "kept")),
+)
+"""In the order of `module_margins.h`."""
+
+FIGURES = Measured, Robustness, tuple(getattr(type_, name) for type_, name in _FIELDS)
+"""What the core makes figures of: types, and what sets their fields."""
+
+
 class Stream(Sequence[tuple[int, Robustness]]):
     """Figures at instants, as arrays; each is made when it is asked for.
 

@@ -14,8 +14,8 @@ from rvmon.diagnostics.nearest import nearest
 from rvmon.errors import TraceError
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
-from rvmon.runtime.past import finite
 from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
+from rvmon.trace.sample import calculated
 from rvmon.trace.schema import Kind
 
 _STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]")
@@ -146,7 +146,7 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
         with suppress(ValueError):
             result = operation(*known)
             return None if result != result else result
-    return finite(operation, *known)
+    return calculated(operation, *known)
 
 
 def _stepping(path: tuple[str | int, ...], *, mappings: bool) -> Get:

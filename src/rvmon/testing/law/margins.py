@@ -1,4 +1,4 @@
-"""The robustness of attempts, straight from its definition: the oracle of the quantitative engine.
+"""The robustness of attempts, straight from its definition.
 
 Every position is explicit and every operator a minimum of maxima over positions. Unknown input and
 what lies behind the end may be anything: each figure is an interval.
@@ -6,28 +6,33 @@ what lies behind the end may be anything: each figure is an interval.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from typing import assert_never
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
 from rvmon.spec.checked.specification import Mode
 from rvmon.testing.law.attempts import Start, counts_in_favour, is_upon_end
+from rvmon.testing.law.follow import Followings
 from rvmon.testing.law.kleene import Truth, truth_of
 from rvmon.testing.law.past import is_within
+from rvmon.testing.law.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
 from rvmon.testing.law.truths import EVER
 from rvmon.testing.law.walk import is_proposition
 from rvmon.testing.law.word import Word
 from rvmon.trace.sample import Scalar
-from tests.tools.compare import Key
-from tests.tools.judgement import Judgement
-from tests.tools.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
+
+Key = tuple[str, bool, int]
+"""Requirement, whether in doubt, and number."""
 
 
-def margins(judgement: Judgement) -> dict[Key, tuple[float, float, float]]:
-    """The robustness of each attempt that has a record.
+def margins(
+    followings: Mapping[str, Followings], recorded: Container[Key]
+) -> dict[Key, tuple[float, float, float]]:
+    """The robustness of attempts.
 
     Args:
-        judgement: of the case.
+        followings: by requirement, its attempts.
+        recorded: those that have a record, by which the others are left out.
 
     Returns:
         The least it can be, the greatest, and the least if all is well behind the end that has
@@ -37,11 +42,11 @@ def margins(judgement: Judgement) -> dict[Key, tuple[float, float, float]]:
     Source: SEMANTICS, sections 1 (Birth), 2, 3 and 5.
     """
     found = {}
-    for name, followings in judgement.followings.items():
-        for one in followings.attempts:
+    for name, own in followings.items():
+        for one in own.attempts:
             in_doubt = one.start.sure is None
             key = (name, in_doubt, one.doubtful_number if in_doubt else one.number)
-            if key in judgement.outcomes:
+            if key in recorded:
                 low, high = _owed(one.start, kept=False)
                 kept, _ = _owed(one.start, kept=True)
                 found[key] = (low, TOP[1] if in_doubt else high, kept)

@@ -1,0 +1,53 @@
+"""Runs of weeks: the newest records of each verdict are kept, and tell the same as if all were."""
+
+import random
+from collections import Counter
+from dataclasses import fields
+
+import pytest
+from tests.tools.drive import feed
+
+from rvmon.monitor import CompiledSpec, build_monitor
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.verdict.attempt import Attempt
+
+
+def told(attempt):
+    """All that is said of an attempt."""
+    return tuple(str(getattr(attempt, one.name)) for one in fields(Attempt))
+
+
+@pytest.mark.parametrize("time", TimeModel)
+def test_what_is_kept_is_told_as_if_all_was(time):
+    """Verdicts, counts, next instants and what calls return do not change; few records are left."""
+    dropped = 0
+    for seed in range(25):
+        rng = random.Random(f"keep/{time.name}/{seed}")
+        spec = random_spec(rng, Profile(time=time, requirements=3))
+        case = random_trace(rng, spec, TraceProfile(samples=300, fewest=200, span=900))
+        compiled, keep = CompiledSpec(spec), rng.randint(0, 4)
+        whole = build_monitor(compiled, engine="c", sources=case.names)
+        kept = build_monitor(compiled, engine="c", sources=case.names, keep=keep)
+        for action in case.actions:
+            want, got = feed(whole, action), feed(kept, action)
+            assert list(map(told, got)) == list(map(told, want))
+            assert kept.next_due == whole.next_due
+        everything = {told(one) for one in whole.open}
+        assert {told(one) for one in kept.open} <= everything
+        want, got = whole.finish_ns(case.end), kept.finish_ns(case.end)
+        assert (got.verdicts, got.counts) == (want.verdicts, want.counts)
+        expected = Counter()
+        for one in want.attempts:
+            expected[one.requirement, one.verdict] += 1
+        there = Counter((one.requirement, one.verdict) for one in got.attempts)
+        assert there == +Counter({kind: min(keep, count) for kind, count in expected.items()})
+        assert {told(one) for one in got.attempts} <= {told(one) for one in want.attempts}
+        for name in spec.requirements:
+            for verdict in "PF":
+                own = [one for one in want.of(name, verdict) if one.decided is not None]
+                left = [one for one in got.of(name, verdict) if one.decided is not None]
+                assert list(map(told, left)) == list(map(told, own))[len(own) - len(left) :]
+        dropped += sum(sum(own.values()) for own in got.dropped.values())
+    assert dropped > 1000
