@@ -3,17 +3,19 @@
 #include "notes.h"
 #include "snapshot.h"
 
-/* The letters of a piece, from an instant on; `whole`: there is no room for more. Returns the last one's
+/* So many words of letters of a piece, from an instant on; `whole`: there is no room for more. Returns the last one's
  * instant. */
-static int64_t carry_piece(carrier *c, rv_piece *piece, int64_t from, bool whole)
+static int64_t carry_piece(carrier *c, rv_piece *piece, int32_t count, int64_t from, bool whole)
 {
     const int32_t most = LETTERS_IN_PIECE * piece->stride;
     int64_t before = from;
+    int32_t own = count;
     int32_t i;
     int32_t k;
-    carry_int(c, &piece->count, whole ? most : 0, (int64_t)most + 1);
-    demand(c, piece->count % piece->stride == 0);
-    for (i = 0; (i < piece->count) && !is_lost(c); i += piece->stride) {
+    carry_int(c, &own, whole ? most : 0, (int64_t)most + 1);
+    demand(c, own % piece->stride == 0);
+    piece->count = c->reading ? own : piece->count;
+    for (i = 0; (i < own) && !is_lost(c); i += piece->stride) {
         int64_t *one = &piece->words[i];
         carry_instant(c, &one[0]);
         demand(c, one[0] >= before);
@@ -73,7 +75,7 @@ void carry_letters(carrier *c, noting *n, int32_t stride)
         if (one == NULL) {
             break;
         }
-        before = carry_piece(c, one, before, i < count - 1);
+        before = carry_piece(c, one, one->count, before, i < count - 1);
     }
     if ((count > 0) && !is_lost(c)) {
         carry_before(c, n->last, second);
@@ -83,6 +85,7 @@ void carry_letters(carrier *c, noting *n, int32_t stride)
 /* The pieces that notes refer to, by number; and of each where it stands, when they are read. */
 typedef struct {
     rv_piece *piece;
+    int32_t count;             /* of its words, those that notes refer to */
     int32_t next;              /* the number of the piece behind it; -1: notes refer to none */
     int32_t chain;             /* the number of the first of those that hang together; -1: not known yet */
     int32_t index;             /* among these */
@@ -124,6 +127,7 @@ static int32_t number_pieces(rv_monitor *m, told_piece *places)
             one->number = count;
             if (places != NULL) {
                 places[count].piece = one;
+                places[count].count = (one == own->last) ? own->last_count : one->count;
             }
             count++;
             one = (one == own->last) ? NULL : one->next;
@@ -225,7 +229,7 @@ void carry_spans(carrier *c, rv_monitor *m)
             own->next = ((next != NULL) && (next->number >= 0)) ? next->number : -1;
         }
         carry_int(c, &own->next, -1, count);
-        (void)carry_piece(c, own->piece, -LIMIT, false);
+        (void)carry_piece(c, own->piece, own->count, -LIMIT, false);
     }
     if (c->reading && !is_lost(c)) {
         chain_pieces(c, places, count);

@@ -62,28 +62,94 @@ bool is_standing(const carrier *c, const judge_plan *judged, int64_t place)
            && are_truths(&m->notes[place + 2], leaves + letters);
 }
 
-/* Whether what a note of an automaton says of the run that decided is one, and all of the note. */
-static bool is_token(const part *own, int32_t index, const int64_t *words, int32_t leaves)
+/* What is checked of a note, and how far. */
+typedef struct {
+    const part *own;
+    const int64_t *words;
+    int64_t length;
+    int64_t at;
+    int32_t index;             /* of the judge in the part */
+    bool fits;
+} checking;
+
+static bool has_more(checking *k, int64_t count)
 {
-    const machine *a = &own->machines[index];
-    int64_t location;
-    if ((words[0] >> 40) <= NOTE_HEAD + leaves) {
-        return false;
+    k->fits = k->fits && (count >= 0) && (count <= k->length - k->at);
+    return k->fits;
+}
+
+static void check_truths(checking *k, int32_t words)
+{
+    if (has_more(k, words)) {
+        k->fits = are_truths(&k->words[k->at], words);
+        k->at += words;
     }
-    location = words[NOTE_HEAD + leaves];
-    return (location >= 0) && (location < a->locations) && (words[3] == a->widths[location])
-           && ((words[0] >> 40) == NOTE_HEAD + leaves + 1 + words[3]);
+}
+
+/* A location of an automaton, and as many clocks as it has. */
+static void check_token(checking *k, int64_t width)
+{
+    const machine *a = &k->own->machines[k->index];
+    if (has_more(k, 1) && (width >= 0) && has_more(k, 1 + width)) {
+        const int64_t location = k->words[k->at];
+        k->fits = (location >= 0) && (location < a->locations) && (width == a->widths[location]);
+        k->at += 1 + width;
+    } else {
+        k->fits = false;
+    }
+}
+
+/* What was not known when an open attempt was told of. */
+static void check_unknowns(const carrier *c, checking *k)
+{
+    const int32_t names = c->m->plan.header->signals + c->m->plan.header->events;
+    int64_t count;
+    int64_t i;
+    if (!has_more(k, 1)) {
+        return;
+    }
+    count = k->words[k->at];
+    k->at++;
+    k->fits = (count >= 0) && (count <= k->length) && (3 * count <= k->length - k->at);
+    for (i = 0; k->fits && (i < count); i++) {
+        const int64_t word = k->words[k->at];
+        k->fits = (word >= 0) && ((word & INT32_MAX) < names) && ((word >> 32) <= HAS_NO_SOURCE);
+        k->at += 3;
+    }
+}
+
+static void check_open(const carrier *c, checking *k, bool networked, int32_t leaves)
+{
+    if (k->words[4] != RV_NO_TIME) {
+        check_truths(k, leaves);
+    }
+    if (networked) {
+        k->fits = has_more(k, 2) && (k->words[k->at] >= FAILED) && (k->words[k->at] <= WAITING)
+                  && (k->words[k->at + 1] >= FAILED) && (k->words[k->at + 1] <= WAITING);
+        k->at += 2;
+    } else {
+        check_token(k, k->words[3] & INT32_MAX);
+        check_token(k, k->words[3] >> 32);
+    }
+    check_unknowns(c, k);
+}
+
+/* Whether the letters that a note of a network refers to are there, and of its judge. */
+static bool has_letters(const carrier *c, const judge_plan *judged, int64_t word)
+{
+    const int64_t number = word & INT32_MAX;
+    return (word == -1)
+           || ((word >= 0) && (number < c->m->span_count)
+               && (c->m->spans[number].last->stride == words_for(judged->propositions.count) + 1));
 }
 
 /* Check the note of a record, of which a judge of a part may have told. */
 void check_note(carrier *c, const part *own, const rv_record *one)
 {
-    rv_monitor *m = c->m;
-    const int64_t *words;
+    const rv_monitor *m = c->m;
     const judge_plan *judged;
-    int64_t index;
+    checking k;
     bool networked;
-    int32_t leaves;
     if (one->note < 0) {
         return;
     }
@@ -92,30 +158,31 @@ void check_note(carrier *c, const part *own, const rv_record *one)
         return;
     }
     c->begins[one->note] = A_TAKEN_NOTE;
-    words = &m->notes[one->note];
-    index = (words[0] >> 24) & 0xffff;
-    demand(c, (index < own->plan->judges.count) && (own->judges[index].requirement == one->requirement));
+    k.own = own;
+    k.words = &m->notes[one->note];
+    k.length = k.words[0] >> 40;
+    k.at = NOTE_HEAD;
+    k.index = (int32_t)((k.words[0] >> 24) & 0xffff);
+    k.fits = true;
+    demand(c, (k.index < own->plan->judges.count)
+                  && (own->judges[k.index].requirement == one->requirement));
     if (c->refused) {
         return;
     }
-    judged = &own->judges[index];
-    leaves = words_for(judged->leaves.count);
-    networked = ((words[0] >> 8) & NOTE_NETWORK) != 0;
-    demand(c, networked == (judged->automaton < 0));
-    demand(c, (words[1] == -1) || is_standing(c, judged, words[1]));
-    if (c->refused) {
-        return;
+    judged = &own->judges[k.index];
+    networked = judged->automaton < 0;
+    demand(c, networked == (((k.words[0] >> 8) & NOTE_NETWORK) != 0));
+    demand(c, (k.words[1] == -1) || is_standing(c, judged, k.words[1]));
+    demand(c, !networked || has_letters(c, judged, k.words[3]));
+    check_truths(&k, words_for(judged->leaves.count));
+    switch (k.words[0] & 0xff) {
+    case NOTE_DECIDED:
+        if (!networked) {
+            check_token(&k, k.words[3]);
+        }
+        break;
+    case NOTE_OPEN: check_open(c, &k, networked, words_for(judged->leaves.count)); break;
+    default: k.fits = k.fits && ((k.words[0] & 0xff) == NOTE_NOTHING); break;
     }
-    if (((words[0] & 0xff) == NOTE_DECIDED) && !networked) {
-        demand(c, is_token(own, (int32_t)index, words, leaves));
-    } else {
-        demand(c, ((words[0] & 0xff) == NOTE_DECIDED) || ((words[0] & 0xff) == NOTE_NOTHING));
-        demand(c, (words[0] >> 40) == NOTE_HEAD + leaves);
-    }
-    if (networked && !c->refused) {
-        demand(c, (words[3] >= -1) && (words[3] < m->span_count));
-        demand(c, (words[3] < 0)
-                      || (m->spans[words[3]].last->stride == words_for(judged->propositions.count) + 1));
-    }
-    demand(c, are_truths(&words[NOTE_HEAD], leaves));
+    demand(c, k.fits && ((k.at == k.length) || ((k.words[0] & 0xff) == NOTE_OPEN))); /* that has room to spare */
 }
