@@ -29,6 +29,9 @@ static int take(monitor *c, int64_t t, PyObject *values, bool looked)
     if (laid) {
         code = rv_step(c->m, t, c->in.updates, (int32_t)c->in.count);
     }
+    if (code == RV_OK) {
+        note_arrivals(&c->in, t);
+    }
     if (code == RV_NO_MEMORY) {
         (void)PyErr_NoMemory();
         return FAILED;
@@ -191,6 +194,7 @@ static PyObject *reset_of(monitor *c, PyObject *unused)
 {
     (void)unused;
     c->given = 0;
+    forget_arrivals(&c->in);
     forget_standing(&c->notes);
     rv_forget_records(c->m);
     return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
@@ -219,6 +223,8 @@ METHOD(late)
 METHOD(finish)
 METHOD(reset)
 METHOD(keep)
+METHOD(arrivals)
+METHOD(take_arrivals)
 METHOD(flush)
 METHOD(open)
 METHOD(records)
@@ -312,6 +318,8 @@ static PyMethodDef monitor_methods[] = {
     {"late", monitor_late, METH_VARARGS, NULL},
     {"finish", monitor_finish, METH_O, NULL},
     {"keep", monitor_keep, METH_O, NULL},
+    {"arrivals", monitor_arrivals, METH_NOARGS, NULL},
+    {"take_arrivals", monitor_take_arrivals, METH_O, NULL},
     {"flush", monitor_flush, METH_NOARGS, NULL},
     {"open", monitor_open, METH_NOARGS, NULL},
     {"records", monitor_records, METH_NOARGS, NULL},

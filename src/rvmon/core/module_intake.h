@@ -9,6 +9,9 @@
 #include "core.h"
 #include "python_abi.h"
 
+/* Why a field is unknown that its payload lacks. */
+#define IS_NOT_SAID (-1)
+
 /* What the values of a signal or field are. */
 enum { IS_BOOLEAN, IS_WHOLE, IS_REAL, IS_LABEL };
 
@@ -20,12 +23,23 @@ typedef struct {
     int32_t single;            /* and whether only one occurrence of it can be judged at an instant */
 } reading;
 
+/* What came of a name or a field: how often it said that it is unknown, and when first. */
+typedef struct {
+    int64_t came;              /* the first instant at which a signal was told; RV_NO_TIME: none yet */
+    int64_t none_count;
+    int64_t none_first;
+    int64_t nan_count;
+    int64_t nan_first;
+} arrival;
+
 /* The names of a monitor, and the sample that is laid out. */
 typedef struct {
     PyObject *numbers;         /* borrowed: of the names that can come */
     int32_t signals;
     int32_t names;             /* signals, then events */
-    reading *readings;         /* of names, then of fields */
+    int32_t all;               /* names, then fields */
+    reading *readings;         /* of all */
+    arrival *arrivals;         /* of all */
     int32_t *first_fields;     /* of events, among those */
     int32_t *order;            /* the numbers of the names, as they came last */
     PyObject **came;           /* the names themselves, as they came last */
@@ -152,6 +166,9 @@ static bool lay_fields(const intake *in, int32_t name, PyObject *payload, rv_num
             || ((value != Py_None) && !number_of(value, &readings[field], &fields[field]))) {
             return false;
         }
+        if (value == Py_None) {
+            fields[field].as.whole = RV_IS_NONE;
+        }
     }
     return true;
 }
@@ -168,6 +185,7 @@ static bool lay_payload(intake *in, int32_t name, PyObject *payload)
     in->fields_count += count;
     for (i = 0; i < count; i++) {
         fields[i].kind = RV_UNKNOWN;
+        fields[i].as.whole = IS_NOT_SAID;
     }
     further_update(in, name)->fields = fields;
     Py_BEGIN_CRITICAL_SECTION(payload);
@@ -271,6 +289,54 @@ static bool lay(intake *in, PyObject *values, bool looked)
     return done;
 }
 
+static void note_unknown(arrival *a, const rv_number *value, int64_t t)
+{
+    const bool is_nan = value->as.whole == RV_IS_NAN;
+    int64_t *count = is_nan ? &a->nan_count : &a->none_count;
+    int64_t *first = is_nan ? &a->nan_first : &a->none_first;
+    *first = (*count == 0) ? t : *first;
+    (*count)++;
+}
+
+/* Note what the sample brought that was taken at `t`. */
+static void note_arrivals(const intake *in, int64_t t)
+{
+    static const rv_number none = {RV_UNKNOWN, {RV_IS_NONE}};
+    int64_t i;
+    for (i = 0; i < in->count; i++) {
+        const rv_update *u = &in->updates[i];
+        arrival *a = &in->arrivals[u->name];
+        if (u->name < in->signals) {
+            a->came = (a->came == RV_NO_TIME) ? t : a->came;
+            if (u->value.kind == RV_UNKNOWN) {
+                note_unknown(a, &u->value, t);
+            }
+        } else if (u->says == RV_SAYS_UNKNOWN) {
+            note_unknown(a, &none, t);
+        } else if (u->fields != NULL) {
+            arrival *fields = &in->arrivals[in->names + in->first_fields[u->name - in->signals]];
+            int32_t k;
+            for (k = 0; k < in->readings[u->name].fields; k++) {
+                if ((u->fields[k].kind == RV_UNKNOWN) && (u->fields[k].as.whole != IS_NOT_SAID)) {
+                    note_unknown(&fields[k], &u->fields[k], t);
+                }
+            }
+        } else {
+            /* It has no values. */
+        }
+    }
+}
+
+/* Forget what came. */
+static void forget_arrivals(const intake *in)
+{
+    int32_t i;
+    for (i = 0; i < in->all; i++) {
+        (void)memset(&in->arrivals[i], 0, sizeof in->arrivals[i]);
+        in->arrivals[i].came = RV_NO_TIME;
+    }
+}
+
 static void free_intake(intake *in)
 {
     int32_t i;
@@ -278,6 +344,7 @@ static void free_intake(intake *in)
         Py_XDECREF(in->came[i]);
     }
     PyMem_Free(in->readings);
+    PyMem_Free(in->arrivals);
     PyMem_Free(in->first_fields);
     PyMem_Free(in->order);
     PyMem_Free(in->came);
@@ -306,17 +373,20 @@ static bool make_intake(intake *in, const rv_monitor *m, PyObject *numbers, PyOb
     in->fields_most = sizes.fields;
     in->room = names + 1;
     in->fields_room = sizes.fields + 1;
+    in->all = all;
     in->readings = PyMem_Calloc((size_t)all + 1, sizeof *in->readings);
+    in->arrivals = PyMem_Calloc((size_t)all + 1, sizeof *in->arrivals);
     in->first_fields = PyMem_Calloc((size_t)sizes.events + 1, sizeof *in->first_fields);
     in->order = PyMem_Calloc((size_t)names + 1, sizeof *in->order);
     in->came = PyMem_Calloc((size_t)names + 1, sizeof *in->came);
     in->updates = PyMem_Calloc((size_t)in->room, sizeof *in->updates);
     in->fields = PyMem_Calloc((size_t)in->fields_room, sizeof *in->fields);
-    if ((in->readings == NULL) || (in->first_fields == NULL) || (in->order == NULL)
+    if ((in->readings == NULL) || (in->arrivals == NULL) || (in->first_fields == NULL) || (in->order == NULL)
         || (in->came == NULL) || (in->updates == NULL) || (in->fields == NULL)) {
         (void)PyErr_NoMemory();
         return false;
     }
+    forget_arrivals(in);
     for (i = 0; i < all; i++) {
         reading *own = &in->readings[i];
         const bool is_event = (i >= sizes.signals) && (i < names);

@@ -4,6 +4,28 @@
 
 #include "module_attempts.h"
 
+/* arrivals(): what came of each name and field, as bytes of `arrival`. */
+static PyObject *arrivals_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return PyBytes_FromStringAndSize((const char *)c->in.arrivals,
+                                     (Py_ssize_t)c->in.all * (Py_ssize_t)sizeof(arrival));
+}
+
+/* take_arrivals(bytes): go on from those; false, and nothing is done, if they are none of this plan. */
+static PyObject *take_arrivals_of(monitor *c, PyObject *bytes)
+{
+    const Py_ssize_t size = PyBytes_Size(bytes);
+    if (size < 0) {
+        return NULL;
+    }
+    if (size != (Py_ssize_t)c->in.all * (Py_ssize_t)sizeof(arrival)) {
+        return Py_NewRef(Py_False);
+    }
+    (void)memcpy(c->in.arrivals, PyBytes_AsString(bytes), (size_t)size);
+    return Py_NewRef(Py_True);
+}
+
 /* keep(most): the newest records of each requirement and verdict. */
 static PyObject *keep_of(monitor *c, PyObject *most)
 {

@@ -101,6 +101,16 @@ class Monitor:
     def load(self, data: bytes, /) -> bool:
         """Go on as a run that was saved; false, and nothing is done, if it is none of this plan."""
 
+    def arrivals(self) -> bytes:
+        """What came of each name, then of each field of events: five int64.
+
+        The first instant at which a signal was told, or the least number; how often the value was
+        `None`, and when first; the same of NaN.
+        """
+
+    def take_arrivals(self, data: bytes, /) -> bool:
+        """Go on from what `arrivals` gave; false, and nothing is done, if it is none of this plan."""
+
     def keep(self, most: int, /) -> None:
         """See `rv_keep`; records are dropped once they were given out."""
 

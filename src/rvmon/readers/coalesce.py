@@ -11,8 +11,6 @@ from rvmon.trace.sample import Payload, Sample, Value
 class Conflicts:
     """Signals that got two values at one stamp; the later one in source order was kept."""
 
-    STATE = ("_seen",)
-
     def __init__(self) -> None:
         self._seen: dict[str, tuple[int, int]] = {}
 
@@ -20,6 +18,11 @@ class Conflicts:
         """Count conflicts of signal `name`, the first of them at instant `t`."""
         before, first = self._seen.get(name, (0, t))
         self._seen[name] = (before + count, first)
+
+    @property
+    def seen(self) -> Mapping[str, tuple[int, int]]:
+        """By signal how many there were, and the first's instant."""
+        return self._seen
 
     def health(self) -> list[Health]:
         """One entry per signal."""

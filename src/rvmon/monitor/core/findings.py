@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from struct import iter_unpack
 from typing import TYPE_CHECKING
 
 from rvmon import native
 from rvmon.monitor.inputs.health import Arrivals, HealthLog
+from rvmon.monitor.inputs.intake import Intake
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
+from rvmon.trace.time import TIME_LIMIT
 
 if TYPE_CHECKING:
     from rvmon.monitor.core.planned import PlannedCore
@@ -67,7 +70,36 @@ class Findings:
 
     def found(self, run: native.Monitor) -> tuple[Health, ...]:
         """All findings, once the run is finished."""
-        names = list(self._planned.numbers)
-        expired = {names[number]: (count, first) for number, count, first in run.stale()}
-        arrivals = Arrivals(self._absent, self._first, expired)
+        arrivals = Arrivals(self._absent, self._first, _expired(self._planned, run))
         return tuple(self._log.told(self._planned.readers, arrivals, None))
+
+
+def _expired(planned: PlannedCore, run: native.Monitor) -> dict[str, tuple[int, int]]:
+    names = list(planned.numbers)
+    return {names[number]: (count, first) for number, count, first in run.stale()}
+
+
+def health_of_run(
+    planned: PlannedCore, run: native.Monitor, absent: frozenset[str], intake: Intake | None
+) -> tuple[Health, ...]:
+    """The input health of a run that took samples.
+
+    Args:
+        planned: the plan of its requirements.
+        run: is finished.
+        absent: the names without a source.
+        intake: held samples back; `None`: nothing did.
+    """
+    log = HealthLog()
+    log.began, _, _ = run.times()
+    names = [(name, name) for name in planned.numbers]
+    names += [(f"{event}.{field}", event) for event, field in planned.packed.fields]
+    first: dict[str, int | None] = {}
+    for (shown, name), found in zip(names, iter_unpack("=5q", run.arrivals()), strict=True):
+        came, none_count, none_first, nan_count, nan_first = found
+        if shown in planned.packed.signals:
+            first[name] = None if came < -TIME_LIMIT else came
+        log.add_count(HealthKind.NONE, shown, name, none_count, none_first)
+        log.add_count(HealthKind.NAN, shown, name, nan_count, nan_first)
+    arrivals = Arrivals(absent, first, _expired(planned, run))
+    return tuple(log.told(planned.readers, arrivals, intake))

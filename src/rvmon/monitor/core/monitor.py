@@ -1,75 +1,81 @@
-"""Online monitors that the core runs."""
+"""The online monitor of a specification: a run of the core, and what Python adds to it."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from heapq import nsmallest
-from typing import Any
+from typing import Any, NoReturn
 
+from rvmon import native
+from rvmon.errors import RvmonError, SnapshotError, TraceError
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.core.findings import health_of_run
+from rvmon.monitor.core.listeners import Callback, Listeners
+from rvmon.monitor.core.one_call import OneCall, overlap
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
-from rvmon.monitor.core.snapshot import put_back, written
-from rvmon.monitor.inputs.health import by_name, of_intake
+from rvmon.monitor.core.snapshot import Options, put_back, written
+from rvmon.monitor.core.torn import capped, not_passed
+from rvmon.monitor.inputs.intake import Intake
+from rvmon.monitor.inputs.order import refuse_earlier
 from rvmon.monitor.inputs.validate import Validator
-from rvmon.monitor.online.evaluators import Evaluators
-from rvmon.monitor.online.monitor import Monitor
-from rvmon.monitor.online.one_call import overlap
-from rvmon.trace.sample import Value
+from rvmon.trace.sample import Sample, Value
+from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
+Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
 
-class CoreMonitor(Monitor):
-    """A monitor whose `step_ns` is a function of the core.
 
-    Samples that need a closer look (other than plain values in a `dict`, what is wrong) take the
-    way of every monitor up to the judging.
+class Monitor:
+    """Judges a stream of samples; made by `rvmon.monitor.build`.
+
+    Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
+    methods that end in `_ns`.
 
     Args:
         planned: the plan of the requirements.
         compiled: the specification.
-        settle: see `build_monitor`.
-        sources: the names that can arrive; `None`: all.
-        keep: so many records of each verdict are kept per requirement; `None`: all.
+        options: what was asked for.
+
+    Attributes:
+        options: the same.
+        step: a function that takes one sample: its time in seconds, and values by name; otherwise
+            as `step_ns`.
+        step_ns: the same at ticks, later than all samples before; it returns the attempts that the
+            sample decided. The values are what was updated or occurred: signals by value, `None` or
+            NaN if it became unknown; events `True`, or their payload. It raises `TimeOrderError` if
+            the time is not later, or an `advance` ruled it out; `TraceError` for a
+            name or a value that the specification does not know, or a time that is no whole number;
+            `OverlapError` if another call is under way. In all cases the monitor is as it was.
+            It is a function of the core: samples other than plain values in a `dict`, and those that
+            are refused, are given back to Python for a closer look.
     """
 
-    STATE = ("_intake", "_torn")
+    step: Callable[[float, Mapping[str, Any]], Sequence[Attempt]]
+    step_ns: Step
 
-    def __init__(
-        self,
-        planned: PlannedCore,
-        compiled: CompiledSpec,
-        settle: str,
-        sources: frozenset[str] | None,
-        keep: int | None,
-    ) -> None:
-        names = frozenset((*compiled.checked.signals, *compiled.checked.events))
+    def __init__(self, planned: PlannedCore, compiled: CompiledSpec, options: Options) -> None:
+        checked, sources = compiled.checked, options.sources
+        self.options = options
+        self._compiled = compiled
         self._planned = planned
-        self._core = planned.monitor(
-            names - (names if sources is None else sources), self._take_at, self._look_closer
-        )
-        if keep is not None:
-            self._core.keep(keep)
-        super().__init__(compiled, (), "c", settle, sources, None)
-        self._validator = Validator(compiled.checked, sources, planned.single_payloads)
+        declared = frozenset((*checked.signals, *checked.events))
+        self._absent = frozenset() if sources is None else declared - sources
+        self._core = planned.monitor(self._absent, self._take_at, self._look_closer)
+        if options.keep is not None:
+            self._core.keep(options.keep)
+        self._validator = Validator(checked, sources, planned.single_payloads)
+        self._listeners = Listeners()
+        self._one_call = OneCall(self)
+        self._begin()
 
-    def _attend(self) -> None:
-        if self._intake is None and not self._listeners:
-            self.step, self.step_ns = self._core.step, self._core.step_ns
-        else:
-            self.step, self.step_ns = self._take_at, self._take
-
-    def _make_evaluators(self) -> Evaluators:
-        return Evaluators(
-            self.options.compiled.checked, (), "auto", self.options.sources, self._ledger
-        )
-
-    def _begin(self) -> None:
-        super()._begin()
-        self._core.reset()
+    @property
+    def core(self) -> native.Monitor:
+        """The run of the core."""
+        return self._core
 
     def _enter(self) -> None:
         """Have the core take no samples quickly, and note how far the run has come."""
@@ -81,58 +87,257 @@ class CoreMonitor(Monitor):
         self._core.hold(False)
 
     def _note_times(self) -> None:
-        self._health.began, self._last, self._reached = self._core.times()
+        self._began, self._last, self._reached = self._core.times()
+
+    def reset(self) -> None:
+        """Forget the run; the next sample starts another. Callbacks stay."""
+        self._one_call(self._begin)
+
+    def _begin(self) -> None:
+        delay = self._compiled.checked.max_delay or 0
+        holds_back = delay or self.options.settle == "next"
+        self._intake = Intake(delay, self._compiled.checked.events) if holds_back else None
+        self._report: Report | None = None
+        self._torn: int | None = None
+        self._core.reset()
+        self._note_times()
+        self._attend()
+
+    def _attend(self) -> None:
+        """Let the core take samples itself, unless somebody listens or they are put in order."""
+        if self._intake is None and not self._listeners:
+            self.step, self.step_ns = self._core.step, self._core.step_ns
+        else:
+            self.step, self.step_ns = self._take_at, self._take
+
+    def _take_at(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        """Take a sample at seconds."""
+        if type(values) is not dict and not isinstance(values, Mapping):
+            raise TraceError(f"sample at {t} s: expected values by name, found {values!r}")
+        return self.step_ns(ticks_of_seconds(t), values)
 
     def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """See `Monitor`."""
-        if self._intake is not None:
-            return super()._take(t_ns, values)
-        decided = self._core.step_ns(t_ns, values)
+        """Take a sample, and call who listens."""
+        if self._intake is None:
+            decided = self._core.step_ns(t_ns, values)
+        else:
+            decided = self._one_call(self._step, t_ns, values)
         self._listeners.call(decided)
         return decided
 
     def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample by the way of every monitor; who asked for that reports what it decides."""
-        return self.one_call(self._step, t_ns, values)
+        """Take a sample that the core has left; who called it reports what that decides."""
+        return self._one_call(self._step, t_ns, values)
+
+    def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
+        t_ns = self._taken_time(t_ns)
+        if self._intake is not None:
+            checked = self._one_call.spare(self._validator.check, t_ns, values)
+            ready = self._intake.take(t_ns, checked)
+            return self._settled(ready, self._intake.floor)
+        refuse_earlier(t_ns, self._last, self._reached)
+        self._judge(t_ns, self._one_call.spare(self._validator.check, t_ns, values))
+        return self._core.flush()
+
+    def on_decided(self, callback: Callback) -> Callable[[], None]:
+        r"""Have a function called with each attempt that passes or fails, as it is decided.
+
+        `step`, `advance` and `finish` call it when all their records are made, in the order in
+        which they return them, in the thread that called them; it may look at the monitor. An
+        attempt that ends undecided is only in the report. What a callback raises comes out of
+        that call when all callbacks were called for all attempts (several errors as an
+        `ExceptionGroup`); the sample was taken nevertheless. Callbacks stay over `reset`, and are
+        no part of snapshots: register them again after `Spec.restore`.
+
+        Args:
+            callback: takes an attempt.
+
+        Returns:
+            A function without arguments that ends this; to call it again does nothing.
+
+        Raises:
+            RvmonError: it cannot be called.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> stop = monitor.on_decided(lambda attempt: print(attempt.name, attempt.verdict.name))
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        R1#1 FAIL
+        >>> _ = monitor.finish(5)
+        R1#2 PASS
+        >>> stop()
+        """
+        return self._listeners.add(callback, self._attend, failures_only=False)
+
+    def on_failure(self, callback: Callback) -> Callable[[], None]:
+        """Have a function called with each attempt that fails; otherwise as `on_decided`."""
+        return self._listeners.add(callback, self._attend, failures_only=True)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         if not self._core.judge(t, self._planned.plain(t, values), True):
             raise ValueError("the core does not take a sample that was checked")
 
-    def _flush(self) -> Sequence[Attempt]:
+    def _settled(self, samples: Sequence[Sample], floor: int) -> Sequence[Attempt]:
+        """Judge samples that were held back, then let time come to `floor`."""
+        for sample in samples:
+            self._judge(sample.t, sample.values)
+        self._core.advance(floor)
         return self._core.flush()
 
-    def _pass_to(self, t: int) -> None:
-        self._core.advance(t)
+    def advance(self, t: float) -> Sequence[Attempt]:
+        """Say that no sample before `t` (seconds) will come; see `advance_ns`."""
+        return self.advance_ns(ticks_of_seconds(t))
 
-    def _verdicts_so_far(self) -> Mapping[str, Verdict]:
-        so_far = (Verdict.FAIL, Verdict.PASS)
-        return {
-            name: fold(verdict for verdict in so_far if own[VERDICTS.index(verdict)])
-            for name, own in zip(self._planned.packed.ids, self._core.counts(), strict=True)
-        }
+    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
+        """Say that no sample before `t_ns` will come, and return the attempts that this decided.
 
-    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
-        from rvmon.monitor.core.recorded import report_of_run
+        A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
+        """
+        decided = self._one_call(self._advance, t_ns)
+        self._listeners.call(decided)
+        return decided
 
+    def _advance(self, t_ns: int) -> Sequence[Attempt]:
+        t_ns = self._taken_time(t_ns)
+        held_back = () if self._intake is None else self._intake.settle(t_ns)
+        return self._settled(held_back, t_ns)
+
+    def _taken_time(self, t: int) -> int:
+        """A time that was given, as a plain integer."""
+        if self._report is not None:
+            raise TraceError("the run is finished: call reset() before the next")
+        return whole_ticks(t)
+
+    def finish(self, t: float | None = None) -> Report:
+        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        return self.finish_ns(None if t is None else ticks_of_seconds(t))
+
+    def finish_ns(self, t_ns: int | None = None) -> Report:
+        """End the run and judge it.
+
+        Args:
+            t_ns: the end of the trace in ticks, if it is later than all so far.
+
+        Returns:
+            The report; the same again if the run was finished before.
+        """
+        report, decided = self._one_call(self._finish, t_ns)
+        self._listeners.call(decided)
+        return report
+
+    def _finish(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
+        if self._report is not None:
+            return self._report, ()
+        if t_ns is not None:
+            t_ns = self._taken_time(t_ns)
+        for sample in () if self._intake is None else self._intake.close():
+            self._judge(sample.t, sample.values)
         end = self._core.finish(t_ns)
         decided = self._core.flush()
         self._note_times()
-        report = report_of_run(self._planned, self._core, self._health.began or 0, end)
-        health = [] if self._intake is None else of_intake(self._intake)
-        return replace(report, health=tuple(sorted(health, key=by_name))), decided
+        report = self._reported(end)
+        self._report = report if self._torn is None else capped(report, self._torn)
+        return self._report, decided
 
-    def _written(self) -> bytes:
-        return written(self.options, self._planned, self._core, self)
+    def _reported(self, end: int | None) -> Report:
+        """What is said of the run, which is over."""
+        from rvmon.monitor.core.recorded import report_of_run  # NumPy is needed at the end alone
+
+        report = report_of_run(self._planned, self._core, self._began or 0, end)
+        health = health_of_run(self._planned, self._core, self._absent, self._intake)
+        return replace(report, health=health)
+
+    @property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        r"""The verdict of each requirement so far: the fold of the attempts decided by now.
+
+        `F` if an attempt has failed, else `P` if one has passed, else `NT`. What is undecided does
+        not count, so that this is not what `finish` would say: it may call a run `I` or `F` that
+        is `P` or `NT` so far. An `F` stays. Once the run is finished these are the report's. After
+        a call that an interrupt tore, what has not failed is `I`.
+        A call costs what was decided since the last one.
+
+        >>> from rvmon import loads
+        >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x <= 3\n")
+        >>> monitor = spec.monitor()
+        >>> for t, x in enumerate([1, 4, 2]):
+        ...     _ = monitor.step(t, {"x": x})
+        ...     print(monitor.verdicts["R1"])
+        NT
+        F
+        F
+        """
+        return self._one_call(self._verdicts)
+
+    def _verdicts(self) -> Mapping[str, Verdict]:
+        if self._report is not None:
+            return self._report.verdicts
+        so_far = (Verdict.FAIL, Verdict.PASS)
+        found = {
+            name: fold(verdict for verdict in so_far if own[VERDICTS.index(verdict)])
+            for name, own in zip(self._planned.packed.ids, self._core.counts(), strict=True)
+        }
+        return found if self._torn is None else not_passed(found)
+
+    def snapshot(self) -> bytes:
+        """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
+
+        It holds the open attempts, held values, samples held back and all records so far, and no
+        code; another specification or version refuses it.
+
+        Raises:
+            SnapshotError: the run is finished.
+        """
+        return self._one_call(self._put_away)
+
+    def __reduce__(self) -> NoReturn:
+        """Refused: pickles and copies would share or lack what is under way.
+
+        Raises:
+            RvmonError: always; it says what to do.
+        """
+        raise RvmonError(
+            "a monitor is neither pickled nor copied: monitor.snapshot() gives the run as bytes, "
+            "and spec.restore(data) makes a monitor of them, in this process or another"
+        )
+
+    def _put_away(self) -> bytes:
+        if self._report is not None:
+            raise SnapshotError("the run is finished: keep its report, or call reset()")
+        state = {"torn": self._torn, "intake": None if self._intake is None else self._intake.state()}
+        return written(self._compiled, self.options, self._planned, self._core, state)
 
     def take_up(self, document: Mapping[str, Any]) -> None:
-        """See `Monitor.take_up`."""
-        put_back(document, self._planned, self._core, self)
+        """Go on as the run of a snapshot; this monitor was just made as that was.
+
+        Args:
+            document: from `rvmon.monitor.core.snapshot.document_of`.
+
+        Raises:
+            SnapshotError: it fits no such monitor.
+        """
+        state = put_back(document, self._planned, self._core)
+        torn, intake = state["torn"], state["intake"]
+        if (intake is None) != (self._intake is None):
+            raise SnapshotError("the snapshot is damaged: it holds samples back that nobody awaits")
+        self._torn = None if torn is None else whole_ticks(torn)
+        if self._intake is not None:
+            self._intake.take_up(intake, self._validator)
         self._note_times()
 
+    @property
+    def open(self) -> Sequence[Attempt]:
+        """The attempts that are undecided now."""
+        return self.owed()[1]
+
+    def owed(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
+        """How many attempts of each requirement are open, and `open` or the oldest of it."""
+        return self._one_call(self._owed, most)
+
     def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
-        """See `Monitor.owed`."""
-        found = [] if self._report is not None else self._core.open()
+        found = () if self._report is not None else self._core.open()
         if most is None:
             return Counter(one.requirement for one in found), found
         oldest: dict[object, Attempt] = {}
@@ -142,6 +347,11 @@ class CoreMonitor(Monitor):
                 oldest[each] = one
         chosen = nsmallest(most, oldest.values(), key=lambda one: one.triggered)
         return Counter(one.requirement for one in found), chosen
+
+    @property
+    def next_due(self) -> int | None:
+        """The next instant (ticks) at which time alone can decide something."""
+        return self._one_call(self._next_due)
 
     def _next_due(self) -> int | None:
         if self._reached is None or self._report is not None:

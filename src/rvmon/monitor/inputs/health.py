@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.intake import MOST_HELD, Intake
 from rvmon.plan.inputs import payloads_of
-from rvmon.readers.alternation import Alternations
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import format_ticks
@@ -38,14 +37,10 @@ class HealthLog:
 
     Attributes:
         began: the instant of the first sample; `None` before it.
-        alternations: how known and unknown values of columns follow each other.
     """
-
-    STATE = ("began", "_seen")
 
     def __init__(self) -> None:
         self.began: int | None = None
-        self.alternations = Alternations()
         self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
 
     def note(self, t: int, values: Mapping[str, Value]) -> None:
@@ -61,50 +56,26 @@ class HealthLog:
                         if scalar is None or scalar != scalar:
                             self._add(f"{name}.{field}", name, scalar, t)
 
-    def count_columns(self, times: NDArray[Any], columns: Mapping[str, NDArray[Any]]) -> None:
-        """Look through columns for NaN.
-
-        Args:
-            times: int64[n] ticks, later than all before.
-            columns: of signals and events by name, of the same length.
-        """
-        import numpy as np
-
-        for name, column in columns.items():
-            if holds_nan(column):
-                unknown = np.isnan(column)
-                self.alternations.note_column(name, unknown)
-                rows = np.flatnonzero(unknown)
-                key = (HealthKind.NAN, name, name)
-                count, first = self._seen.get(key, (0, int(times[rows[0]])))
-                self._seen[key] = (count + len(rows), first)
-            elif column.dtype.kind == "f":
-                self.alternations.note_known(name, len(column))
-
     def add(self, kind: HealthKind, shown: str, name: str, times: NDArray[Any]) -> None:
         """Count unknown values at instants, in order, of a name that is shown so."""
         if len(times):
             count, first = self._seen.get((kind, shown, name), (0, int(times[0])))
             self._seen[kind, shown, name] = (count + len(times), first)
 
+    def add_count(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
+        """Take so many unknown values that were counted, none being known before."""
+        if count:
+            self._seen[kind, shown, name] = (count, first)
+
     def _add(self, shown: str, name: str, value: object, t: int) -> None:
         key = (HealthKind.NONE if value is None else HealthKind.NAN, shown, name)
         count, first = self._seen.get(key, (0, t))
         self._seen[key] = (count + 1, first)
 
-    def report(
-        self,
-        requirements: Sequence[CompiledRequirement],
-        arrivals: Arrivals,
-        intake: Intake | None,
-    ) -> list[Health]:
-        """All findings of the run."""
-        return self.told(readers_of(requirements), arrivals, intake)
-
     def told(
         self, readers: Mapping[str, tuple[str, ...]], arrivals: Arrivals, intake: Intake | None
     ) -> list[Health]:
-        """The same by name with the requirements that read it."""
+        """All findings of the run, by name with the requirements that read it."""
         found = self._seen_by(readers)
         found += self._unfed(readers, arrivals)
         found += [
@@ -116,10 +87,6 @@ class HealthLog:
                 replace(one, requirements=readers.get(one.name, ())) for one in of_intake(intake)
             ]
         return sorted(found, key=by_name)
-
-    def seen(self, requirements: Sequence[CompiledRequirement]) -> list[Health]:
-        """The unknown values that were counted."""
-        return self._seen_by(readers_of(requirements))
 
     def _seen_by(self, readers: Mapping[str, tuple[str, ...]]) -> list[Health]:
         return [
@@ -151,18 +118,6 @@ def of_intake(intake: Intake) -> list[Health]:
         early = f"evaluated before the delay was over: {MOST_HELD:,} samples were waiting"
         found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
     return found
-
-
-def holds_nan(column: NDArray[Any]) -> bool:
-    """Whether a column of signals or events holds NaN."""
-    import numpy as np
-
-    if column.dtype.kind != "f":
-        return False
-    # Mostly one sum shows that there is none; that of infinities may be NaN, too.
-    with np.errstate(invalid="ignore", over="ignore"):
-        total = np.add.reduce(column)
-    return bool(np.isnan(total) and np.isnan(column).any())
 
 
 def by_name(entry: Health) -> tuple[str, HealthKind]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping
 from heapq import heappop, heappush
+from typing import Any
 
 from rvmon.errors import TimeOrderError
+from rvmon.monitor.inputs.validate import Validator
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.trace.sample import Sample, Value
-from rvmon.trace.time import TIME_LIMIT, format_ticks
+from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
 
 WAYS_TO_SETTLE = ("now", "next")
 """When a sample is taken for complete: at once, or when another stamp follows."""
@@ -30,8 +32,6 @@ class Intake:
         late: samples that came after their instant was settled: how many, and the first's instant.
         crowded: samples judged early because too many waited: the same.
     """
-
-    STATE = ("floor", "conflicts", "late", "crowded", "_held", "_taken")
 
     def __init__(self, delay: int, events: Container[str]) -> None:
         self.delay = delay
@@ -77,6 +77,38 @@ class Intake:
             ready.append(Sample(instant, values))
         return list(coalesce(ready, self.events, self.conflicts))
 
+    def state(self) -> Mapping[str, Any]:
+        """What is held, as JSON has it."""
+        held = [[t, place, dict(values)] for t, place, values in self._held]
+        return {
+            **{"floor": self.floor, "late": self.late, "crowded": self.crowded},
+            **{"conflicts": self.conflicts.seen, "held": held},
+        }
+
+    def take_up(self, state: Mapping[str, Any], validator: Validator) -> None:
+        """Hold what `state` gave.
+
+        Raises:
+            TraceError: a sample is none of the specification.
+        """
+        self.floor = whole_ticks(state["floor"])
+        self.late, self.crowded = map(_counted, (state["late"], state["crowded"]))
+        for name, found in state["conflicts"].items():
+            count, first = _counted(found) or (0, 0)
+            self.conflicts.add(str(name), first, count)
+        for t, place, values in state["held"]:
+            checked = validator.check(whole_ticks(t), values)
+            heappush(self._held, (whole_ticks(t), whole_ticks(place), checked))
+            self._taken = max(self._taken, place)
+
     def close(self) -> list[Sample]:
         """Learn that no sample will come; returns all that are held, in order."""
         return self.settle(TIME_LIMIT)
+
+
+def _counted(found: Any) -> tuple[int, int] | None:
+    """How many there were and the first's instant, as JSON has it."""
+    if found is None:
+        return None
+    count, first = map(whole_ticks, found)
+    return count, first

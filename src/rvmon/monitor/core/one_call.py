@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import ParamSpec, Protocol, TypeVar
 
-from rvmon.errors import OverlapError, RvmonError, SnapshotError
-from rvmon.monitor.online.torn import BEFORE_ALL
+from rvmon.errors import OverlapError, RvmonError
+from rvmon.monitor.core.torn import BEFORE_ALL
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -31,14 +31,9 @@ class Guarded(Protocol):
 
 
 class OneCall:
-    """Refuses a call that comes while another is under way, from whatever thread.
-
-    Attributes:
-        restored: whether its state came from outside, and so may fit no monitor after all.
-    """
+    """Refuses a call that comes while another is under way, from whatever thread."""
 
     def __init__(self, guarded: Guarded) -> None:
-        self.restored = False
         self._guarded = guarded
         self._turn: dict[None, object] = {}
         self._spared: BaseException | None = None
@@ -68,12 +63,7 @@ class OneCall:
             if self._guarded._torn is None and error is not self._spared:
                 reached = self._guarded._reached
                 self._guarded._torn = BEFORE_ALL if reached is None else reached
-            if not (self.restored and isinstance(error, Exception)):
-                raise
-            raise SnapshotError(
-                "the snapshot that this monitor was made of was damaged: what it held fits no "
-                "monitor; begin a new run"
-            ) from error
+            raise
         finally:
             self._spared = None
             # Threads that run at once may give it back between a look whether it is there and

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from rvmon.runtime.nodes import LIMIT
 from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.time import TIME_LIMIT
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
-BEFORE_ALL = 1 - LIMIT
+BEFORE_ALL = 1 - TIME_LIMIT
 """The instant of a call that was torn before any sample was taken."""
 
 

@@ -1,1 +1,0 @@
-"""Monitors as source: generated Python and C99."""

@@ -1,1 +1,0 @@
-"""Open attempts: what judges them, in evaluators that are driven through time."""

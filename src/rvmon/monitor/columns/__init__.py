@@ -1,1 +1,0 @@
-"""Requirements judged on columns by arrays: Python works per piece of a trace, not per row."""

@@ -1,1 +1,0 @@
-"""The engines: one file for each, `registry` for all of them, `choice` for what `auto` takes."""

@@ -1,1 +1,0 @@
-"""The records of attempts: numbers, order, and what is reported of each."""
