@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
-    from rvmon.monitor.engines.choice import EngineChoice
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
     from rvmon.readers.reading import Reading, ReadingArguments, SchemaArguments
@@ -32,7 +31,7 @@ class Spec:
     It is compiled when the first monitor is asked for, once.
 
     Attributes:
-        checked: names, types, units and formulas, as all engines read them.
+        checked: names, types, units and formulas, as monitors read them.
         warnings: what the compiler thinks worth a look; errors would have been raised.
         schema: the declared names with the kinds of their values, and what recordings call them.
     """
@@ -93,28 +92,10 @@ class Spec:
 
         return CompiledSpec(self.checked, is_kept=True)
 
-    def engines(self, *, only: Iterable[str] | None = None) -> Mapping[str, EngineChoice]:
-        r"""Which engine `auto` takes for each requirement, online and for recordings, and why.
-
-        Args:
-            only: ids of the requirements, as they are judged together; default all.
-
-        Raises:
-            UnknownNameError: there is no such requirement.
-
-        >>> from rvmon import loads
-        >>> loads("signal a : bool\nrequirement R\n  always a\n").engines()["R"].online
-        'python'
-        """
-        from rvmon.monitor.engines.choice import choices
-
-        return choices(self._compiled.chosen(requirements_asked(self.checked, only)))
-
     def monitor(
         self,
         *,
         only: Iterable[str] | None = None,
-        engine: str = "auto",
         settle: str = "now",
         sources: Iterable[str] | None = None,
         keep: int | None = None,
@@ -123,25 +104,21 @@ class Spec:
 
         Args:
             only: ids of the requirements to judge; default all.
-            engine: `auto` or the name of one; `c`, the native core, tells of input health only
-                what concerns the order of samples.
             settle: `now` judges each sample at once; `next` merges samples with equal stamps and
                 judges each when the next stamp settles it.
             sources: the signals and events that can arrive; the others are unknown throughout.
             keep: for runs of weeks: of each verdict the newest `keep` records are kept per
                 requirement, so that many passes hide no failure; verdicts and counts stay exact,
-                the report says how many were dropped. Default: all. Not for the engine `c`.
+                the report says how many were dropped. Default: all.
 
         Raises:
-            UnknownNameError: `only`, `engine`, `settle` or `sources` names what does not exist.
-            RvmonError: the engine cannot judge a requirement, or `keep` is no count.
+            UnknownNameError: `only`, `settle` or `sources` names what does not exist.
+            RvmonError: a requirement is beyond the core, or `keep` is no count.
         """
         from rvmon.monitor import build_monitor
 
         asked = sources_asked(self.checked, sources)
-        return build_monitor(
-            self._compiled, only=only, engine=engine, settle=settle, sources=asked, keep=keep
-        )
+        return build_monitor(self._compiled, only=only, settle=settle, sources=asked, keep=keep)
 
     def restore(self, data: bytes) -> Monitor:
         """Make the monitor that a snapshot was taken of; it goes on as that would have.
@@ -160,7 +137,6 @@ class Spec:
         self,
         trace: Any,
         *,
-        engine: str = "auto",
         only: Iterable[str] | None = None,
         until: float | None = None,
         **reading: Unpack[ReadingArguments],
@@ -171,7 +147,6 @@ class Spec:
             trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
                 too), a table (arrays or lists by name, an Arrow table, a data frame), a
                 `Recording`, or an iterable of `(t, values)` with t in seconds.
-            engine: `auto` or the name of one, such as `c`, the native core.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.
@@ -196,13 +171,12 @@ class Spec:
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         end = None if until is None else ticks_of_seconds(until)
-        return evaluate_trace(self._compiled, trace, given, only=asked, engine=engine, until=end)
+        return evaluate_trace(self._compiled, trace, given, only=asked, until=end)
 
     def judge(
         self,
         source: Source,
         *,
-        engine: str = "auto",
         only: Iterable[str] | None = None,
         decided: Callable[[Sequence[Attempt]], object] = len,
         robustness: bool = False,
@@ -211,20 +185,18 @@ class Spec:
 
         Args:
             source: the recording.
-            engine: as for `evaluate`; so is `only`, and so are the errors.
-            only: see there.
+            only: as for `evaluate`; so are the errors.
             decided: called with each attempt as it is decided, where samples are judged one by one.
             robustness: whether each attempt is to have its robustness.
         """
-        from rvmon.monitor.engines.registry import Asked, engine_named
+        from rvmon.monitor.judge import Asked, judge_source
 
-        asked = Asked(requirements_asked(self.checked, only), decided=decided)
-        judge = engine_named("c" if robustness else engine).judge
+        asked = Asked(requirements_asked(self.checked, only), decided)
         if robustness:
-            from rvmon.monitor.measure import measuring
+            from rvmon.monitor.measure import judge_and_measure
 
-            judge = measuring(judge)
-        return judge(self._compiled, source, asked)
+            return judge_and_measure(self._compiled, source, asked)
+        return judge_source(self._compiled, source, asked)
 
     def _reading(
         self,
@@ -243,7 +215,6 @@ class Spec:
         self,
         traces: Iterable[Any],
         *,
-        engine: str = "auto",
         only: Iterable[str] | None = None,
         jobs: int = 1,
         **reading: Unpack[ReadingArguments],
@@ -252,8 +223,7 @@ class Spec:
 
         Args:
             traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
-            engine: as for `evaluate`.
-            only: see there.
+            only: as for `evaluate`.
             jobs: processes; 1 judges in this one.
             **reading: as for `evaluate`; so are the errors.
 
@@ -271,9 +241,7 @@ class Spec:
         from rvmon.monitor.evaluate import evaluate_trace
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
-        begin = partial(
-            partial, evaluate_trace, self._compiled, reading=given, only=asked, engine=engine
-        )
+        begin = partial(partial, evaluate_trace, self._compiled, reading=given, only=asked)
         return execute(traces, begin, jobs=jobs, what="trace")
 
     def robustness(

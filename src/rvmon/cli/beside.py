@@ -28,7 +28,6 @@ class Options:
 
     Attributes:
         only: ids of the requirements, or `None` for all.
-        engine: `auto` or the name of one.
         until: the instant in seconds to which recordings are judged; default their last sample.
         strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
@@ -38,7 +37,6 @@ class Options:
     """
 
     only: tuple[str, ...] | None = None
-    engine: str = "auto"
     until: float | None = None
     strict_columns: bool = False
     robustness: bool = False
@@ -59,7 +57,6 @@ def spec_and_options(
     spec = reading_spec(loaded, arguments)
     return spec, Options(
         asked_ids(arguments, spec),
-        arguments.engine,
         arguments.until,
         arguments.strict_columns,
         arguments.robustness,

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
@@ -29,8 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "check",
         help="find what is wrong in specifications",
         description="Find what is wrong in specifications: all errors and warnings of each file.",
-        epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format "
-        "concise; rvmon check examples/base.rv --engines",
+        epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
     add_const(parser)
@@ -50,12 +48,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "others imply",
     )
     parser.add_argument(
-        "--engines",
-        action="store_true",
-        help="show which engine evaluates each requirement, online and in recordings, and why no "
-        "other",
-    )
-    parser.add_argument(
         "--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file"
     )
     add_max_memory(parser)
@@ -66,7 +58,6 @@ def run(arguments: argparse.Namespace) -> int:
     constants = constants_of(arguments.const)
     findings: list[Diagnostic] = []
     remarks: list[str] = []
-    engines: dict[str, dict[str, Any]] = {}
     unreadable = broken = 0
     for name in arguments.specs:
         try:
@@ -82,9 +73,6 @@ def run(arguments: argparse.Namespace) -> int:
             continue
         checked, found = _checked(text, name, constants)
         findings += found
-        if arguments.engines and checked is not None:
-            engines[name], table = _engines(checked)
-            remarks.append(table)
         broken += checked is None
         if arguments.binding is not None and checked is not None:
             remarks += _bound(arguments.binding, checked)
@@ -94,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
             findings += more
             remarks += remark
     findings = list(dict.fromkeys(findings))  # a file may be imported by several
-    _show(arguments.format, findings, engines if arguments.engines else None)
+    _show(arguments.format, findings)
     if arguments.format == "text":
         if remarks:
             say("\n".join(["", *remarks] if findings else remarks))
@@ -143,18 +131,7 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
     return [f"{path} does not bind {', '.join(free)}"] if free else []
 
 
-def _engines(checked: CheckedSpec) -> tuple[dict[str, Any], str]:
-    """Which engine judges each requirement, and why no other: as data, and as a table."""
-    from rvmon.report.engines_text import engines_data, engines_text
-    from rvmon.session import Spec
-
-    choices = Spec(checked).engines()
-    return engines_data(choices), engines_text(choices).rstrip()
-
-
-def _show(
-    form: str, findings: list[Diagnostic], engines: Mapping[str, dict[str, Any]] | None
-) -> None:
+def _show(form: str, findings: list[Diagnostic]) -> None:
     from rvmon.diagnostics.render import (
         coloured,
         render_concise,
@@ -163,9 +140,6 @@ def _show(
     )
 
     match form:
-        case "json" if engines is not None:
-            engines_text = json.dumps(engines, indent=1, ensure_ascii=False)
-            say_json(f'{{"findings": {render_json(findings)},\n"engines": {engines_text}}}')
         case "json":
             say_json(render_json(findings))
         case "concise" if findings:

@@ -53,6 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
             raise RvmonError(f"error: {arguments.spec} has no requirement: it has no automaton")
         _write_or_print(_automata(spec, ids, arguments.to), arguments.output)
         return 0
+    if not spec.requirements:
+        raise RvmonError("the specification has no requirements: there is nothing to compile")
     if arguments.output is None:
         raise RvmonError("C is several files: name a folder with -o DIR")
     folder = Path(arguments.output)

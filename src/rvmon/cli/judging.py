@@ -115,14 +115,12 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             recording,
             end,
             is_cut=True,
-            row_by_row="" if beside.is_idle else "coverage is found sample by sample",
             read=iter if beside.is_idle else beside.reading,
             shown=partial(shown_while_reading, recording) if is_alone else iter,
         )
         try:
             report = spec.judge(
                 source,
-                engine=options.engine,
                 only=options.only,
                 decided=before.extend,
                 robustness=options.robustness,

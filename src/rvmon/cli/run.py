@@ -27,7 +27,6 @@ from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacke
 from rvmon.cli.run_files import write_files, write_results
 from rvmon.cli.say import rendered, say_json, warn
 from rvmon.errors import RvmonError
-from rvmon.monitor.engines.registry import ENGINES
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
@@ -71,12 +70,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add_reading(parser)
     add_allow_missing(parser)
-    parser.add_argument(
-        "--engine",
-        metavar="NAME",
-        default="auto",
-        help=f"how to evaluate: auto (default), {', '.join(ENGINES[1:-1])}, or c: the native core",
-    )
     parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"
     )

@@ -60,7 +60,7 @@ class Judges:
         self.undetermined = sum(rule.determined is not None for _, rule in plan.judges)
         for number, (owner, rule) in enumerate(plan.judges):
             place = form = diagram = -1
-            match _machine_of(rule, plan.gap):
+            match machine_of(rule, plan.gap):
                 case Automaton() as automaton:
                     place = automata.place(automaton)
                     diagram = automata.diagram(automaton.class_of, rule.alphabet)
@@ -128,7 +128,7 @@ class Judges:
         )
 
 
-def _machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
+def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
     """What judges a rule: an automaton, or a network, which may be a chain of windows.
 
     An automaton of windows within windows steps each open attempt by itself; a chain is one step

@@ -165,7 +165,7 @@ class Programs:
         if number is None:
             raise RvmonError(
                 f"the whole number {value} has more digits than the core computes with: "
-                "evaluate the specification with the engine `auto`, or write another bound"
+                "write another bound"
             )
         (bits,) = struct.unpack("=q", struct.pack("=d", number))
         return self._sections.shared(Section.NUMBERS, _REAL, bits)

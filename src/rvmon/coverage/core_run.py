@@ -10,10 +10,10 @@ import numpy as np
 
 from rvmon import native
 from rvmon.coverage.hits import Hit
-from rvmon.monitor.core.monitor import CoreMonitor
+from rvmon.monitor.core.monitor import Monitor
 from rvmon.monitor.core.planned import DECISIONS, VERDICTS
 from rvmon.monitor.core.recorded import RECORD
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.attempt import Decision
 from rvmon.verdict.report import Report, report_of
 from rvmon.verdict.verdict import Verdict
 
@@ -37,18 +37,11 @@ class Judged(NamedTuple):
     verdict: Verdict
 
 
-class CoverageRun(CoreMonitor):
+class CoverageRun(Monitor):
     """Takes samples as every monitor does, and makes no report."""
 
-    @property
-    def core(self) -> native.Monitor:
-        """The run."""
-        return self._core
-
-    def _conclude(self, t_ns: int | None) -> tuple[Report, Sequence[Attempt]]:
-        end = self._core.finish(t_ns)
-        self._note_times()
-        return report_of((), (), end=end), ()
+    def _reported(self, end: int | None) -> Report:
+        return report_of((), (), end=end)
 
 
 def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judged]]:

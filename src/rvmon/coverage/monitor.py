@@ -16,6 +16,7 @@ from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recording import RecordingRun
+from rvmon.monitor.core.snapshot import Options
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
 from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
@@ -164,7 +165,7 @@ class CoverageMonitor:
     def __init__(self, watched: _Watched, settle: str, sources: frozenset[str] | None) -> None:
         self._watched = watched
         self._runs = [
-            CoverageRun(planned, compiled, settle, sources, None)
+            CoverageRun(planned, compiled, Options(settle, sources, None))
             for compiled, planned in watched.planned.items()
         ]
 

@@ -155,31 +155,3 @@ def _is_read(plan: NetworkPlan, place: int) -> bool:
     if isinstance(node, Junction):
         return all(_is_read(plan, operand) for operand in node.operands)
     return isinstance(node, Leaf)
-
-
-class Windows:
-    """What generated code follows a chain by; see `rvmon.codegen.python_windows`.
-
-    Args:
-        start: the first position; what is kept up is well up to there.
-        letter: that of the position, the truth of each of the plan's leaves.
-    """
-
-    def __init__(self, start: int, letter: Sequence[bool]) -> None:
-        raise NotImplementedError
-
-    def note(self, position: int, letter: Sequence[bool]) -> None:
-        """Take a position, whose letter stays until the next one."""
-        raise NotImplementedError
-
-    def outcome(self, position: int) -> tuple[bool, int]:
-        """The value of the formula at a position, and the stamp as of which it is known.
-
-        If the letter stays, where that stamp is yet to come: then that is behind all stamps if it
-        would stay unknown.
-        """
-        raise NotImplementedError
-
-    def forget(self, position: int) -> int:
-        """Drop what lies before all that is not known at a position; returns where that begins."""
-        raise NotImplementedError

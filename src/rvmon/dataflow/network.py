@@ -21,7 +21,6 @@ from rvmon.dataflow.news_of_until import until_work
 from rvmon.dataflow.news_of_window import sampled_window_work, window_work
 from rvmon.dataflow.nodes import Junction, Shift, Sweep, Window
 from rvmon.dataflow.piecewise import FAR, Piece
-from rvmon.dataflow.soonest_news import Soonest, soonest_of
 
 Noted = Sequence[tuple[int, Sequence[bool]]]
 """Positions with their letters."""
@@ -41,16 +40,8 @@ class Network(Knowledge):
         gap: ticks between two positions; `None` if only samples are positions.
     """
 
-    STATE = (
-        *("plan", "positions", "known", "news", "grown", "pending", "swept", "carried"),
-        *("arrived", "_letter", "noted", "watched", "_visits"),
-    )
-
     _works: Sequence[Work] | None = None
     """What works out the news of the nodes but for leaves, bound to what is known of them."""
-
-    _soonest: Soonest | None = None
-    """What tells before when a position is not known, whatever letters come."""
 
     def begin_at(self, start: int, first: int, letter: Sequence[bool]) -> None:
         """Begin in the midst of a word; what is before only leads on to where it does.
@@ -151,28 +142,6 @@ class Network(Knowledge):
                 sides[not value].append((first, end, 1, slope))
             self.add_news(place, 0, sides[0])
             self.add_news(place, 1, sides[1])
-
-    def soonest_news(self, wanted: int) -> int:
-        """An instant before which nothing becomes known that is waited for, whatever letters come.
-
-        But for one with a value that is watched for; see `is_roused`.
-
-        Args:
-            wanted: the instant of the first position whose value is waited for.
-        """
-        self.watched.clear()
-        positions = self.positions
-        now = min((self.grown - 1) // positions.slope, positions.last)
-        if self._soonest is None:
-            self._soonest = soonest_of(self)
-        first = wanted // positions.gap
-        return min(self._soonest(self, side, first, now) for side in (0, 1))
-
-    def is_roused(self, letter: Sequence[bool]) -> bool:
-        """Whether a letter may make something known before the soonest news, or many are noted."""
-        return len(self.noted) >= MOST_NOTED or any(
-            letter[index] is value for index, value in self.watched
-        )
 
     def _bound(self) -> Sequence[Work]:
         self._works = [_work_of(self, place, node) for place, node in self.plan.inner]

@@ -25,8 +25,6 @@ class Positions:
         last: the last position; `FAR` while it is taken that they go on.
     """
 
-    STATE = ("gap", "slope", "sparse", "first", "last", "stamps")
-
     def __init__(self, gap: int | None) -> None:
         self.gap = gap or 1
         self.slope = 2 * self.gap

@@ -51,7 +51,6 @@ class Judging(msgspec.Struct, frozen=True):
     clock: str | None
     binding: str | None
     allow_missing: str | None
-    engine: str
     strict_columns: bool
     robustness: bool
     severity: str | None = None

@@ -1,4 +1,4 @@
-"""What judging a requirement takes: engine, size, horizon, memory."""
+"""What judging a requirement takes: its automaton, size, horizon, memory."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def facts_of(compiled: CompiledRequirement) -> Facts:
     """By heading, one line each."""
     automaton = compiled.automaton
     facts = {
-        "engine": _engine(compiled, automaton),
+        "judged by": _judge(compiled, automaton),
         "decided": _decided(compiled),
         "memory": _memory(compiled, automaton),
     }
@@ -26,7 +26,7 @@ def facts_of(compiled: CompiledRequirement) -> Facts:
     return {heading: fact for heading, fact in facts.items() if fact}
 
 
-def _engine(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
+def _judge(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
     if automaton is None:
         return f"delay network: as an automaton it would have {compiled.refusal}"
     clocks = automaton.clocks

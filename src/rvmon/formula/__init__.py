@@ -1,1 +1,1 @@
-"""Formulas as the engines read them: hash-consed, in negation normal form, progressed."""
+"""Formulas as monitors read them: hash-consed, in negation normal form, progressed."""

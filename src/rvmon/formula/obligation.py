@@ -12,7 +12,7 @@ from rvmon.spec.checked.formula import Formula
 
 
 class UnmonitorableError(RvmonError):
-    """A formula is beyond all engines; the message says which part of it."""
+    """A formula cannot be monitored; the message says which part of it."""
 
 
 @dataclass(frozen=True, slots=True)

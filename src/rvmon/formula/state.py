@@ -1,4 +1,4 @@
-"""State formulas: present and past only, so known at once; the propositions of the engines."""
+"""State formulas: present and past only, so known at once; the propositions of what judges."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ class DurableMonitor:
 
     def _lose(self, names: Iterable[str]) -> None:
         """Have unknown what a sample spoke of; before the first one, nothing is known anyhow."""
-        checked = self.monitor.options.compiled.checked
+        checked = self.monitor.compiled.checked
         lost = [name for name in names if name in checked.signals or name in checked.events]
         if self._reached is not None:
             if self.monitor.options.settle != "next":  # else it may be one more at the same stamp

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rvmon.monitor.build import build_monitor
     from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
-    from rvmon.monitor.online.monitor import Monitor
+    from rvmon.monitor.core.monitor import Monitor
 
 __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "compile_spec"]
 
@@ -17,7 +17,7 @@ __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "c
 _HOMES = {
     "CompiledRequirement": "rvmon.monitor.compiled.requirement",
     "CompiledSpec": "rvmon.monitor.compiled.specification",
-    "Monitor": "rvmon.monitor.online.monitor",
+    "Monitor": "rvmon.monitor.core.monitor",
     "build_monitor": "rvmon.monitor.build",
     "compile_spec": "rvmon.monitor.compiled.specification",
 }

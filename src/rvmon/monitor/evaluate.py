@@ -8,8 +8,8 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from rvmon.diagnostics.shown import shown_path
-from rvmon.monitor.engines.registry import Asked, engine_named
 from rvmon.monitor.inputs.missing import expect_names
+from rvmon.monitor.judge import Asked, judge_source
 from rvmon.readers.any_trace import recording_of
 from rvmon.readers.columns import TableRecording
 from rvmon.readers.reading import Reading
@@ -48,7 +48,6 @@ def evaluate_trace(
     reading: Reading,
     *,
     only: Sequence[str] | None,
-    engine: str,
     until: int | None = None,
 ) -> Report:
     """Judge a trace.
@@ -58,14 +57,11 @@ def evaluate_trace(
         trace: as `Spec.evaluate` takes it; so are the errors.
         reading: how it is read.
         only: ids of the requirements; default all.
-        engine: `auto` or the name of one.
         until: the end of the trace in ticks, if after its last sample.
     """
-    judge = engine_named(engine).judge
     recording = open_trace(compiled.checked, trace, reading, only=only)
-    named = "" if reading.sources is None else "its sources are named"
-    source = Source(recording, until, row_by_row=named)
-    report = judge(compiled, source, Asked(None if only is None else tuple(only)))
+    source = Source(recording, until)
+    report = judge_source(compiled, source, Asked(None if only is None else tuple(only)))
     rows = getattr(recording, "rows", None)
     health = rows.with_findings(report.health) if isinstance(rows, Rows) else report.health
     if isinstance(recording, FileRecording | TableRecording):

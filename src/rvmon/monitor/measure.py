@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import planned_core
-from rvmon.monitor.engines.registry import Asked
 from rvmon.monitor.evaluate import open_trace
+from rvmon.monitor.judge import Asked, judge_source
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import FIGURES, Margins, Measured, margins_from
 from rvmon.readers.reading import Reading
@@ -22,13 +22,6 @@ if TYPE_CHECKING:
 
 _ROWS = 4096
 """So many are measured, and their figures taken, at once: they suit a cache of the processor."""
-
-
-class Judge(Protocol):
-    """Judges a recording."""
-
-    def __call__(self, compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-        """See `rvmon.monitor.engines.registry.Engine`."""
 
 
 class _Run(Protocol):
@@ -68,25 +61,22 @@ def margins_of(
     return run.margins()
 
 
-def measuring(judge: Judge) -> Judge:
-    """What judges a recording as `judge` does, and gives each attempt its robustness.
+def judge_and_measure(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+    """Judge a recording, and give each attempt its robustness.
 
-    The recording is read once: each piece is measured, then judged.
+    The recording is read once: each piece is measured, then judged. Arguments and errors are those
+    of `judge_source`.
     """
+    run = _run_of(compiled, source, asked.only, streams=False)
 
-    def measured(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-        run = _run_of(compiled, source, asked.only, streams=False)
+    def shown(pieces: Iterator[Any]) -> Iterator[Any]:
+        for piece in source.shown(pieces):
+            _take_to_end(run, source, piece)  # nobody may come back behind the last one
+            yield piece
 
-        def shown(pieces: Iterator[Any]) -> Iterator[Any]:
-            for piece in source.shown(pieces):
-                _take_to_end(run, source, piece)  # nobody may come back behind the last one
-                yield piece
-
-        report = judge(compiled, replace(source, shown=shown), asked)
-        margins = run.margins()
-        return replace(report, attempts=tuple(map(margins.of, report.attempts)))
-
-    return measured
+    report = judge_source(compiled, replace(source, shown=shown), asked)
+    margins = run.margins()
+    return replace(report, attempts=tuple(map(margins.of, report.attempts)))
 
 
 def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:

@@ -109,7 +109,7 @@ class Monitor:
         """
 
     def take_arrivals(self, data: bytes, /) -> bool:
-        """Go on from what `arrivals` gave; false, and nothing is done, if it is none of this plan."""
+        """Go on from what `arrivals` gave; false, if it is none of this plan."""
 
     def keep(self, most: int, /) -> None:
         """See `rv_keep`; records are dropped once they were given out."""

@@ -1,1 +1,1 @@
-"""How requirements run: state formulas as one graph, and what judges; every engine reads it."""
+"""How requirements run: state formulas as one graph, and what judges."""

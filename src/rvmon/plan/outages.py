@@ -42,8 +42,6 @@ class Outages:
         now: by name, what is not known.
     """
 
-    STATE = ("now",)
-
     def __init__(self, spec: CheckedSpec, sources: Set[str] | None) -> None:
         names = {*spec.signals, *spec.events}
         self.absent: frozenset[str] = frozenset(() if sources is None else names - sources)

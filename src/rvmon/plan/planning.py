@@ -68,16 +68,6 @@ def plan_of_watches(
     )
 
 
-def plan_of_evaluator(
-    spec: CheckedSpec, graph: Graph, names: Iterable[str], uses: Mapping[str, Uses]
-) -> Plan:
-    """The plan of what only evaluates state formulas: somebody else judges."""
-    kept = frozenset(names)
-    signals = tuple(name for name in spec.signals if name in kept)
-    events = tuple(name for name in spec.events if name in kept)
-    return Plan(spec, (), graph, spec.gap, signals, events, uses)
-
-
 def uses_of(graphs: Iterable[Graph], captured: Iterable[Numeric]) -> dict[str, Uses]:
     """What is asked of signals and events."""
     leaves: dict[str, list[State]] = {}

@@ -42,9 +42,6 @@ FORMATS = {
 }
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
 
-SHORT = 1 << 15
-"""Bytes of text that are sooner read line by line than NumPy is imported."""
-
 TINY = 1 << 10
 """Bytes of text that are sooner read line by line than as columns."""
 
@@ -189,11 +186,6 @@ class FileRecording:
             if number == 0 and self._schema.stamps is None and '"t_ns"' in line:
                 self._stamps = stamps_of("t_ns")
             yield line
-
-    @property
-    def is_short(self) -> bool:
-        """Whether it is a file of so little text that NumPy is not worth importing."""
-        return self._has_less_than(SHORT)
 
     def _has_less_than(self, size: int) -> bool:
         """Whether it is a file of less text than so many bytes."""

@@ -1,4 +1,4 @@
-"""A finished trace as engines take it: samples, and columns or the reason why there are none."""
+"""A finished trace as it is to be judged: pieces of rows, and samples."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ class Source:
             `rvmon.readers.recording.FileRecording`.
         until: the end of the trace in ticks, if it is not its last sample.
         is_cut: whether what comes after that end is left out.
-        row_by_row: why columns are not to be looked at; empty if they may be.
         read: gives the samples of the recording.
         shown: what samples and batches go through as they are read.
     """
@@ -30,7 +29,6 @@ class Source:
     recording: Recording
     until: int | None = None
     is_cut: bool = False
-    row_by_row: str = ""
     read: Callable[[Any], Iterable[Sample]] = iter
     shown: Callable[[Iterator[Any]], Iterator[Any]] = iter
 
@@ -38,11 +36,6 @@ class Source:
     def names(self) -> frozenset[str] | None:
         """The signals and events that have a source; `None`: all."""
         return self.recording.names
-
-    @property
-    def is_short(self) -> bool:
-        """Whether it is a file of so little text that columns do not pay."""
-        return bool(getattr(self.recording, "is_short", False))
 
     @property
     def end(self) -> int | None:

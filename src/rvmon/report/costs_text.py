@@ -9,11 +9,11 @@ from rvmon.monitor.compiled.costs import CompileReport
 from rvmon.report.plain_table import plain_table
 from rvmon.spec.print.printer import format_duration
 
-_HEAD = ("", "engine", "locations", "clocks", "letters", "decided within", "open attempts")
+_HEAD = ("", "judged by", "locations", "clocks", "letters", "decided within", "open attempts")
 
 
 def costs_text(reports: Mapping[str, CompileReport]) -> str:
-    """A line per requirement: its engine, its size, what an open attempt costs."""
+    """A line per requirement: what judges it, its size, what an open attempt costs."""
     return plain_table([_HEAD, *(_row(name, report) for name, report in reports.items())])
 
 
@@ -22,9 +22,9 @@ def _row(name: str, report: CompileReport) -> tuple[str, ...]:
     reach = "any time" if report.horizon is None else format_duration(report.horizon)
     letters = f"{report.letters:,}"
     if not report.locations:
-        return name, report.engine, "–", "–", letters, reach, f"in one network: {report.why}"
+        return name, report.judge, "–", "–", letters, reach, f"in one network: {report.why}"
     sizes = (f"{report.locations}", f"{report.clocks}", letters, reach)
-    return name, report.engine, *sizes, _open(report)
+    return name, report.judge, *sizes, _open(report)
 
 
 def _open(report: CompileReport) -> str:

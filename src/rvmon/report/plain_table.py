@@ -11,8 +11,8 @@ def plain_table(rows: Sequence[Sequence[str]]) -> str:
     Args:
         rows: the first one is the head; all of one length.
 
-    >>> print(plain_table([("", "engine"), ("R1", "python")]), end="")
-        engine
+    >>> print(plain_table([("", "verdict"), ("R1", "P")]), end="")
+        verdict
     R1  python
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

@@ -11,7 +11,7 @@ from rvmon.trace.sample import Sample
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One thing to compare engines on.
+    """One thing to compare a monitor and the law on.
 
     Attributes:
         spec: what to judge by.

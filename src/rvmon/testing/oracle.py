@@ -53,7 +53,7 @@ def evaluate(
         names: the names that have a source; default the trace's own, else all.
         outages: what was lost, in any order.
         next_law: whether `finish(t)` is `advance(t + 1 tick)` and then the end, whole numbers are
-            int64 throughout and reals binary64, as no engine has it yet.
+            int64 throughout and reals binary64.
 
     Returns:
         The report, without reasons.

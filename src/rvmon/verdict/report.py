@@ -48,8 +48,6 @@ class Report:
         illegal: what was hit of coverpoints and crosses and must not be; where somebody looked.
         coverage: what was hit of them and what not; where somebody looked.
         law: version of the law that judged; a report that was kept may be of an older one.
-        engine: the engines that judged, the fastest first; no part of what was judged, and so
-            neither compared nor written down.
         dropped: by requirement, how many of its attempts were not kept, by verdict; verdicts and
             counts speak of them as well.
     """
@@ -68,7 +66,6 @@ class Report:
     coverage: tuple[CoveredGroup, ...] = ()
     law: int = LAW
     dropped: Mapping[str, Mapping[Verdict, int]] = field(default_factory=dict)
-    engine: str = field(default="", compare=False)
     _kinds: dict[tuple[str, Verdict], list[Attempt]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )

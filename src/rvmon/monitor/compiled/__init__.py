@@ -1,1 +1,1 @@
-"""Requirements made ready for engines, the plan of their code, and what engines refuse."""
+"""Requirements made ready for the core, and the plan of them."""

@@ -1,64 +1,35 @@
-"""The plans of requirements, for generated Python and for the core."""
+"""The plans of requirements for the core."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from functools import cache
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, construct
 from rvmon.dataflow.network_plan import plan_of as network_of
-from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.core import Core, Literal
 from rvmon.formula.factory import Factory
 from rvmon.formula.state import State
-from rvmon.monitor.compiled.refusal import of_tables
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.plan.plan import Plan, PlannedRule
-from rvmon.plan.planning import plan_in_units, plan_of
+from rvmon.plan.planning import plan_in_units
 from rvmon.spec.checked.selection import requirements_asked
 
 
-def plan_requirements(
-    compiled: CompiledSpec,
-    requirements: Sequence[CompiledRequirement],
-) -> Plan:
-    """The plan of some requirements of a specification, of which somebody will ask what is owed.
-
-    It is made once.
+def planned_rule(one: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
+    """A requirement as the core judges it.
 
     Args:
-        compiled: the specification.
-        requirements: chosen from it.
+        one: the requirement.
+        measured: whether its robustness is measured as well.
     """
-    key = "plan", tuple(one.requirement.id for one in requirements)
-    made = compiled.forms.get(key)
-    if not isinstance(made, Plan):
-        rules = [_rule(one, explained=True) for one in requirements]
-        made = plan_of(compiled.checked, rules)
-        compiled.forms[key] = made
-    return made
-
-
-def _rule(
-    one: CompiledRequirement,
-    *,
-    explained: bool,
-    hidden: bool = False,
-    measured: bool = False,
-) -> PlannedRule:
-    owed, alphabet = one.obligation.owed, one.alphabet
-    if explained:
-        # In this process what judges attempts in doubt is made when one comes up.
-        is_judged = hidden or one.follows_windows
-        automaton = None if is_judged or of_tables(one) is not None else one.automaton
-    elif measured and one.counts_alone:
+    owed, alphabet, automaton = one.obligation.owed, one.alphabet, one.shaped
+    if measured and one.counts_alone:
         owed, alphabet, automaton = _nothing_owed()
-    else:
-        automaton = one.shaped
     obligation = one.obligation
     doubted = one.doubted if one.requirement.for_each is not None else None
     captures = bool(one.requirement.captures)
@@ -66,7 +37,7 @@ def _rule(
     def beside(other: CompiledRequirement | None) -> PlannedRule | None:
         if other is None:
             return None
-        return _rule(other, explained=explained, hidden=True, measured=measured)
+        return planned_rule(other, measured=measured)
 
     figured = one.measured_owed if measured else None
     read = [] if figured is None else [core for _, core in network_of(figured, one.gap).leaves]
@@ -93,7 +64,7 @@ def _rule(
 
 def _traced(one: CompiledRequirement) -> PlannedRule:
     """A requirement that its whole automaton judges, as people know it."""
-    rule, automaton = _rule(one, explained=False), one.automaton
+    rule, automaton = planned_rule(one), one.automaton
     in_runs = one.in_runs(automaton)
     return replace(rule, automaton=automaton, in_runs=in_runs, stepped=True, traced=True)
 
@@ -136,22 +107,15 @@ def plan_alone(
         only: ids of its requirements; default all.
         traced: ids of those of which somebody asks where attempts go in their automata.
         stepped: whether no chain of windows is to judge any.
-        measured: whether it is to measure them as well; there may be none then.
+        measured: whether it is to measure them as well.
 
     Raises:
-        UnknownNameError: there is no such requirement, or none is asked for.
-        RvmonError: one of them is beyond all engines; which one and why is in the message.
+        UnknownNameError: there is no such requirement.
+        RvmonError: one of them is beyond the core; which one and why is in the message.
     """
     ids = requirements_asked(compiled.checked, only)
-    if not (measured or compiled.chosen(ids)):
-        if not compiled.requirements:
-            raise RvmonError("the specification has no requirements: there is nothing to compile")
-        known = ", ".join(compiled.requirements)
-        raise UnknownNameError(f"the list of requirements is empty: there are {known}")
     rules = [
-        _traced(one)
-        if one.requirement.id in traced
-        else _rule(one, explained=False, measured=measured)
+        _traced(one) if one.requirement.id in traced else planned_rule(one, measured=measured)
         for one in compiled.chosen(ids)
     ]
     if stepped:

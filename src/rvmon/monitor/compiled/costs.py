@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.location import PASSED
+from rvmon.core.judges import machine_of
 from rvmon.formula.horizon import horizon
-from rvmon.monitor.compiled.refusal import STEPS_EACH
+from rvmon.monitor.compiled.code_plan import planned_rule
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+
+_STEPS_EACH = "its automaton steps each open attempt"
+"""Why windows judge what has an automaton."""
 
 _RUN_BYTES = 20
 """Of an attempt in a run: the instant of its trigger, its number, what was seen."""
@@ -18,7 +23,7 @@ class CompileReport:
     """What became of a requirement.
 
     Attributes:
-        engine: `automaton`, or `network` where that does not close, or would be slower.
+        judge: `automaton`; `windows` or `network` where that does not close, or would be slower.
         why: why no automaton judges it; empty if one does.
         letters: what its propositions can be, as its formula distinguishes them.
         horizon: ticks from the trigger within which an attempt is decided; `None` if unbounded.
@@ -31,7 +36,7 @@ class CompileReport:
         steps: looked at when something changes or a time is due: of all runs, or of each attempt.
     """
 
-    engine: str
+    judge: str
     why: str
     letters: int
     horizon: int | None
@@ -44,11 +49,13 @@ class CompileReport:
 
 
 def compile_report(one: CompiledRequirement) -> CompileReport:
-    """How `auto` judges a requirement, and at what cost."""
+    """How a requirement is judged, and at what cost."""
     reach, letters = horizon(one.obligation.owed), one.alphabet.size
     automaton = one.automaton
-    if automaton is None or one.follows_windows:
-        return CompileReport("network", one.refusal or STEPS_EACH, letters, reach)
+    judge = machine_of(planned_rule(one), one.gap)
+    if automaton is None or not isinstance(judge, Automaton):
+        kind = "network" if isinstance(judge, Automaton) or judge[1] is None else "windows"
+        return CompileReport(kind, one.refusal or _STEPS_EACH, letters, reach)
     in_runs = one.in_runs(automaton)
     live = automaton.locations[PASSED + 1 :]
     parts = sum(len(place.cuts[0]) + 1 if place.cuts else 1 for place in live)

@@ -1,23 +1,19 @@
-"""A specification made ready for monitors: formulas, alphabets, engines."""
+"""A specification made ready for the core: formulas, alphabets, automata."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from typing import Any
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.bulk import moves_in_runs
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.forecast import Forecaster
-from rvmon.automaton.machine import Machine
-from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.shapes import Shapes
-from rvmon.dataflow.chain import Chain, Windows, chain_of, reach_of
+from rvmon.dataflow.chain import reach_of
 from rvmon.dataflow.network_plan import plan_of
 from rvmon.dataflow.nodes import NetworkPlan
-from rvmon.dataflow.soonest_news import delay_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.core import Core
@@ -30,7 +26,6 @@ from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
 from rvmon.plan.graph import Graph, graph_of, leaf_count, leaf_texts
 from rvmon.plan.numbers import events_of, inputs_of
-from rvmon.runtime.table_machine import TableMachine
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 
@@ -42,7 +37,7 @@ _BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
 
 
 class CompiledRequirement:
-    """One requirement, ready to be judged by any engine; what an engine needs is made at first use.
+    """One requirement, ready to be judged; what is needed of it is made at first use.
 
     Attributes:
         rank: its place in the file.
@@ -78,8 +73,6 @@ class CompiledRequirement:
         self.obligation = obligation
         self.alphabet: Alphabet = alphabet_of(obligation.owed)
         self._owed = factory.next(obligation.owed)
-        self.evaluators: dict[object, Any] = {}
-        """What was generated for its runs; see `rvmon.monitor.attempts.evaluator_classes`."""
 
     @cached_property
     def _built(self) -> Automaton | DoesNotCloseError:
@@ -127,21 +120,6 @@ class CompiledRequirement:
         )
 
     @cached_property
-    def follows_windows(self) -> bool:
-        """Whether generated windows, within windows, judge it though it has an automaton.
-
-        That steps each open attempt by itself; the windows are one step for all of them.
-        """
-        return (
-            self.is_fed
-            and self.obligation.trigger is not None
-            and self._chain is not None
-            and len(self._chain.windows) > 1
-            and self.automaton is not None
-            and not self.in_runs(self.automaton)
-        )
-
-    @cached_property
     def hidden(self) -> CompiledRequirement | None:
         """What judges its attempts in doubt; `None` if there are none."""
         return self._beside(self.obligation.hidden, lambda: self.measured.hidden)
@@ -150,12 +128,6 @@ class CompiledRequirement:
     def doubted(self) -> CompiledRequirement | None:
         """The same where no trigger is sure."""
         return self._beside(self.obligation.doubted, lambda: self.measured.doubted)
-
-    @property
-    def judges(self) -> Mapping[str, CompiledRequirement]:
-        """What judges its attempts: it, and those that are in doubt."""
-        beside = {"": self, "?": self.hidden, "??": self.doubted}
-        return {kind: one for kind, one in beside.items() if one is not None}
 
     def _beside(
         self, obligation: Obligation | None, measured: Callable[[], Obligation | None]
@@ -174,29 +146,9 @@ class CompiledRequirement:
         )
 
     @cached_property
-    def _table(self) -> TableMachine | None:
-        return None if self.automaton is None else TableMachine(self.automaton)
-
-    @cached_property
-    def _progression(self) -> Progression:
-        return Progression(self._owed, self.alphabet, self.requirement.id)
-
-    @cached_property
     def network_plan(self) -> NetworkPlan:
         """The nodes of its delay network."""
         return plan_of(self.obligation.owed, self.gap)
-
-    @cached_property
-    def _chain(self) -> Chain | None:
-        return None if self.is_beside else chain_of(self.network_plan, self.gap)
-
-    @cached_property
-    def windows(self) -> type[Windows] | None:
-        """What follows its network's windows; `None` if they are no chain."""
-        from rvmon.codegen.python_windows import windows_class
-
-        chain = self._chain
-        return None if chain is None else windows_class(self.network_plan, chain, self.gap)
 
     @cached_property
     def reach(self) -> int | None:
@@ -213,23 +165,6 @@ class CompiledRequirement:
         """See `CompiledRequirement`."""
         return self._measured()
 
-    def network_delay(self, letter: Sequence[bool]) -> int:
-        """Ticks that pass in its delay network until an attempt that begins can be decided."""
-        key = tuple(letter)
-        found = self._delays.get(key)
-        if found is None:
-            found = self._delays[key] = delay_of(self.network_plan, self.gap, letter)
-        return found
-
-    @cached_property
-    def _delays(self) -> dict[tuple[bool, ...], int]:
-        return {}
-
-    @property
-    def is_fed(self) -> bool:
-        """Whether generated code in this process can work out what it reads."""
-        return self.requirement.for_each is None and not self.requirement.captures
-
     @property
     def counts_alone(self) -> bool:
         """Whether which attempts it has does not hang on what becomes of them.
@@ -237,50 +172,13 @@ class CompiledRequirement:
         Episodes go on after a failure; what is in doubt leaves no record if it is met.
         """
         upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
-        return upon and self.is_fed and not self.is_beside
-
-    def engine(self, name: str) -> str:
-        """Which of `automaton`, `network` and `progression` judges it where no code is generated.
-
-        Args:
-            name: of the engine that was asked for, and that does not refuse this requirement.
-        """
-        if name in ("network", "progression"):
-            return name
-        if self.automaton is None or (self.follows_windows and name != "automaton"):
-            return "network"
-        return "automaton"
-
-    def machine(self, engine: str) -> Machine:
-        """The machine that judges its attempts, if it is none of `network`.
-
-        Args:
-            engine: as `engine` takes it.
-        """
-        if self.engine(engine) == "automaton" and self._table is not None:
-            return self._table
-        return self._progression
+        bare = self.requirement.for_each is None and not self.requirement.captures
+        return upon and bare and not self.is_beside
 
     @cached_property
     def forecaster(self) -> Forecaster:
         """Tells what is still possible for its open attempts."""
         return Forecaster()
-
-    @cached_property
-    def shared_graph(self) -> Graph:
-        """The state formulas of all its attempts: with `let`, only those of the trigger."""
-        return graph_of(self._shared)
-
-    @property
-    def _shared(self) -> Iterator[State]:
-        obligation = self.obligation
-        states = (obligation.trigger, obligation.determined, obligation.doubt)
-        yield from (one for one in states if one is not None)
-        if not self.requirement.captures:
-            yield from self._own
-        for beside in (self.hidden, self.doubted):
-            if beside is not None:
-                yield from beside._shared
 
     @property
     def _own(self) -> Iterator[State]:
@@ -333,13 +231,6 @@ class CompiledRequirement:
         """The propositions of what it owes."""
         return graph_of(self._own)
 
-    def looks_back_beyond(self, followed: Graph) -> bool:
-        """Whether what it owes depends on what was before the trigger and `followed` lacks."""
-        graph = self.consequent_graph
-        if self.network_plan.looks_back or graph.remembers_captured:
-            return True
-        return any(graph.nodes[place] not in followed.index for place in graph.stateful)
-
 
 def compiled_requirements(
     checked: CheckedSpec, *, next_law: bool = False
@@ -351,7 +242,7 @@ def compiled_requirements(
         next_law: see `CompiledSpec`.
 
     Raises:
-        RvmonError: one is beyond all engines; which one and why is in the message.
+        RvmonError: one cannot be monitored; which one and why is in the message.
     """
     factory, shapes = Factory(), Shapes()
     made = {}

@@ -34,7 +34,7 @@ class CompiledSpec:
         """The compiled requirements by id.
 
         Raises:
-            RvmonError: one is beyond all engines; which one and why is in the message.
+            RvmonError: one cannot be monitored; which one and why is in the message.
         """
         # What compiles them is imported now: some recordings are judged without it.
         from rvmon.monitor.compiled.requirement import compiled_requirements
@@ -60,7 +60,7 @@ def compile_spec(checked: CheckedSpec, *, next_law: bool = False) -> CompiledSpe
         next_law: whether for the law to come, which only the core knows.
 
     Raises:
-        RvmonError: a requirement is beyond all engines; which one and why is in the message.
+        RvmonError: a requirement cannot be monitored; which one and why is in the message.
     """
     compiled = CompiledSpec(checked, next_law=next_law)
     _ = compiled.requirements

@@ -41,7 +41,8 @@ class Monitor:
         options: what was asked for.
 
     Attributes:
-        options: the same.
+        compiled: the specification.
+        options: what was asked for.
         step: a function that takes one sample: its time in seconds, and values by name; otherwise
             as `step_ns`.
         step_ns: the same at ticks, later than all samples before; it returns the attempts that the
@@ -60,7 +61,7 @@ class Monitor:
     def __init__(self, planned: PlannedCore, compiled: CompiledSpec, options: Options) -> None:
         checked, sources = compiled.checked, options.sources
         self.options = options
-        self._compiled = compiled
+        self.compiled = compiled
         self._planned = planned
         declared = frozenset((*checked.signals, *checked.events))
         self._absent = frozenset() if sources is None else declared - sources
@@ -94,9 +95,9 @@ class Monitor:
         self._one_call(self._begin)
 
     def _begin(self) -> None:
-        delay = self._compiled.checked.max_delay or 0
+        delay = self.compiled.checked.max_delay or 0
         holds_back = delay or self.options.settle == "next"
-        self._intake = Intake(delay, self._compiled.checked.events) if holds_back else None
+        self._intake = Intake(delay, self.compiled.checked.events) if holds_back else None
         self._report: Report | None = None
         self._torn: int | None = None
         self._core.reset()
@@ -306,8 +307,9 @@ class Monitor:
     def _put_away(self) -> bytes:
         if self._report is not None:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
-        state = {"torn": self._torn, "intake": None if self._intake is None else self._intake.state()}
-        return written(self._compiled, self.options, self._planned, self._core, state)
+        held = None if self._intake is None else self._intake.state()
+        state = {"torn": self._torn, "intake": held}
+        return written(self.compiled, self.options, self._planned, self._core, state)
 
     def take_up(self, document: Mapping[str, Any]) -> None:
         """Go on as the run of a snapshot; this monitor was just made as that was.

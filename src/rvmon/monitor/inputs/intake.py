@@ -81,8 +81,11 @@ class Intake:
         """What is held, as JSON has it."""
         held = [[t, place, dict(values)] for t, place, values in self._held]
         return {
-            **{"floor": self.floor, "late": self.late, "crowded": self.crowded},
-            **{"conflicts": self.conflicts.seen, "held": held},
+            "floor": self.floor,
+            "late": self.late,
+            "crowded": self.crowded,
+            "conflicts": self.conflicts.seen,
+            "held": held,
         }
 
     def take_up(self, state: Mapping[str, Any], validator: Validator) -> None:

@@ -1,4 +1,4 @@
-"""Scopes worked into trigger and consequent, so that no engine needs to know of them.
+"""Scopes worked into trigger and consequent, so that nothing behind needs to know of them.
 
 A scope is a stretch of the run: it opens where `opening` holds (or at the start) and closes right
 before `closing` holds (or never). What is owed is judged as if the run ended where the scope

@@ -1,4 +1,4 @@
-"""The operations on numbers: one entry for each, which checker and engines read.
+"""The operations on numbers: one entry for each, which checker, core and oracle read.
 
 The oracle has readings of its own, of which this is to be found right.
 """

@@ -1,4 +1,4 @@
-"""A specification whose names, types and units are settled: what all engines start from.
+"""A specification whose names, types and units are settled: what monitors start from.
 
 Bare formulas are split into trigger and consequent (SEMANTICS 3).
 """

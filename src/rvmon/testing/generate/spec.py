@@ -61,7 +61,7 @@ class Profile:
         depth: of the deepest consequent.
         requirements: at most so many.
         many: the per cent of specifications that hold 8 to 14, half of them on truth values and
-            their past alone: engines share what such requirements have in common.
+            their past alone: plans share what such requirements have in common.
         crowded: the per cent that hold 20 to 26.
         wide: the per cent whose whole numbers reach to the ends of 64 bits; these are compared, not
             computed with.

@@ -1,1 +1,1 @@
-"""The law of SEMANTICS.md by its definitions; the oracle judges by them, and imports no engine."""
+"""The law of SEMANTICS.md by its definitions; the oracle alone judges by them."""
