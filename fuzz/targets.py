@@ -213,7 +213,7 @@ def recording(data: bytes, engines: Sequence[str] = ("python", "auto", "c")) -> 
 
 def _told_by_engine(time: str, path: Path, engine: str) -> object:
     try:
-        report = _recorded(time).evaluate(path, engine=engine, allow_missing=True)
+        report = _recorded(time).evaluate(path, allow_missing=True)
     except RvmonError:
         return None
     attempts: dict[str, list[object]] = {name: [] for name in report.verdicts}

@@ -63,7 +63,6 @@ def test_numpy_numbers_are_seconds(spec):
     assert attempt.decided == 10**17
 
 
-@pytest.mark.parametrize("engine", ["auto", "network"])
 @pytest.mark.parametrize(
     ("t", "values", "message"),
     [
@@ -77,9 +76,9 @@ def test_numpy_numbers_are_seconds(spec):
         (2, None, "expected values by name, found None"),
     ],
 )
-def test_a_wrong_sample_is_told(spec, engine, t, values, message):
+def test_a_wrong_sample_is_told(spec, t, values, message):
     """What was expected is said, at the first sample and at a later one."""
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for _ in range(2):
         with pytest.raises(TraceError, match=message):
             monitor.step(t, values)
@@ -88,11 +87,10 @@ def test_a_wrong_sample_is_told(spec, engine, t, values, message):
 
 
 @pytest.mark.parametrize("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)], ["ab"]])
-@pytest.mark.parametrize("engine", ["auto", "network", "c"])
-def test_a_wrong_trace_is_told(spec, engine, trace):
+def test_a_wrong_trace_is_told(spec, trace):
     """A trace is a path, columns or pairs."""
     with pytest.raises(TraceError, match=r"expected|no finite number"):
-        spec.evaluate(trace, engine=engine)
+        spec.evaluate(trace)
 
 
 def test_a_snapshot_is_bytes(spec):
@@ -101,20 +99,18 @@ def test_a_snapshot_is_bytes(spec):
         spec.restore("abc")
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_no_requirement_is_judged(spec, engine):
+def test_no_requirement_is_judged(spec):
     """An empty choice has an empty report, whatever judges."""
     arrays = {"t": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     for trace in (arrays, [(0, {"gap": 1.0}), (2, {"gap": 5.0})]):
-        report = spec.evaluate(trace, only=[], engine=engine)
+        report = spec.evaluate(trace, only=[])
         assert (report.verdicts, report.attempts) == ({}, ())
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton", "network", "progression"])
 @pytest.mark.parametrize("wrong", [1.5, 1.0, "1", b"1", None, [], 1j, 10**400, np.array([1, 2])])
-def test_ticks_given_online_are_whole_numbers(spec, engine, wrong):
+def test_ticks_given_online_are_whole_numbers(spec, wrong):
     """A wrong instant is told in words, and the monitor goes on as if it had not come."""
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     monitor.step_ns(1, {"knock": True, "closed": True})
     ends = () if wrong is None else (monitor.finish_ns,)
     for call in (lambda t: monitor.step_ns(t, {}), monitor.advance_ns, *ends):

@@ -66,9 +66,8 @@ def _evaluated(spec: rvmon.Spec, path: Path) -> str:
     return spec.evaluate(path).to_json()
 
 
-@pytest.mark.parametrize("engine", ["stepped", "evaluated"])
 @pytest.mark.usefixtures("quick_turns")
-def test_eight_threads_share_a_new_specification(engine: str, trace: Path) -> None:
+def test_eight_threads_share_a_new_specification(trace: Path) -> None:
     """What is worked out late is worked out alike, whoever asks first."""
     barrier = Barrier(8)
 
@@ -124,12 +123,11 @@ def test_a_used_specification_goes_to_other_processes(method: str, trace: Path) 
     assert (stepped, evaluated) == here
 
 
-@pytest.mark.parametrize("engine", ["auto", "network"])
 @pytest.mark.parametrize("act", [pickle.dumps, copy.copy, copy.deepcopy])
 def test_a_monitor_is_neither_pickled_nor_copied(
     act: Callable[[object], object], engine: str
 ) -> None:
     """The error says how a run is put away."""
-    monitor = rvmon.loads(_SPEC).monitor(engine=engine)
+    monitor = rvmon.loads(_SPEC).monitor()
     with pytest.raises(rvmon.RvmonError, match=r"monitor\.snapshot\(\).*spec\.restore"):
         act(monitor)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rvmon.errors import TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor
-from rvmon.monitor.core.monitor import CoreMonitor
+from rvmon.monitor.core.monitor import Monitor
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.monitor.core.recorded import report_of_run
 from rvmon.monitor.restore import restore
@@ -36,13 +36,8 @@ class Stepped:
         case: gives the sources.
     """
 
-    explains = False
-    """It says nothing of what an attempt owes, and of its inputs."""
-
     def __init__(self, compiled: CompiledSpec, case: Case) -> None:
-        monitor = build_monitor(compiled, engine="c", sources=case.names)
-        assert isinstance(monitor, CoreMonitor)
-        self._monitor = monitor
+        self._monitor = build_monitor(compiled, sources=case.names)
         self._rng = random.Random(len(case.actions))
         self._due: int | None = None
         self._asked = False
@@ -53,12 +48,10 @@ class Stepped:
         """From now on a tenth of the calls goes to what is made of a snapshot."""
         self._interrupts = rng
 
-    def _taken_up(self) -> CoreMonitor:
+    def _taken_up(self) -> Monitor:
         """The monitor, perhaps another one that goes on as it."""
         if self._interrupts is not None and self._interrupts.random() < 0.1:
-            made = restore(self._compiled, self._monitor.snapshot())
-            assert isinstance(made, CoreMonitor)
-            self._monitor = made
+            self._monitor = restore(self._compiled, self._monitor.snapshot())
         return self._monitor
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
@@ -84,12 +77,12 @@ class Stepped:
     def lose(self, names: Iterable[str], since: int, /) -> bool:
         """Lose some names."""
         self._asked = False
-        return self._taken_up()._core.lose(self._numbers(names), since)
+        return self._taken_up().core.lose(self._numbers(names), since)
 
     def found(self, names: Iterable[str], at: int, /) -> bool:
         """Find them again."""
         self._asked = False
-        return self._taken_up()._core.found(self._numbers(names), at)
+        return self._taken_up().core.found(self._numbers(names), at)
 
     def _numbers(self, names: Iterable[str]) -> list[int]:
         return [self._monitor._planned.numbers[name] for name in names]

@@ -30,7 +30,7 @@ class Interrupted:
     def _interrupt(self) -> Monitor:
         if self._rng.random() < self._share:
             self.interruptions += 1
-            self._monitor = restore(self._monitor.options.compiled, self._monitor.snapshot())
+            self._monitor = restore(self._monitor.compiled, self._monitor.snapshot())
         return self._monitor
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value]) -> Sequence[Attempt]:

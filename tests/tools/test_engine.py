@@ -18,9 +18,8 @@ pytestmark = pytest.mark.law
 PAIRS = 35
 
 
-@pytest.mark.parametrize("engine", ["auto", "progression"])
 @pytest.mark.parametrize("time", TimeModel)
-def test_no_disagreement(time: TimeModel, engine: str) -> None:
+def test_no_disagreement(time: TimeModel) -> None:
     """Verdicts, decision instants and what each call returns are the oracle's."""
     seeds = [f"{engine} {number}" for number in range(PAIRS)]
     profile = Profile(time=time, mixed=engine != "progression")

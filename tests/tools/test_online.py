@@ -48,7 +48,7 @@ def test_what_is_owed_and_its_deadline_are_compared() -> None:
             return [replace(attempt, **self.shown) for attempt in super().open]
 
     def told(**shown: Any) -> list[str]:
-        monitor = Spec(case.spec).monitor(engine="automaton")
+        monitor = Spec(case.spec).monitor()
         monitor.__class__ = type("Showing", (Showing,), {"shown": shown})
         return online_differences(Judgement(case), monitor)
 
@@ -102,8 +102,7 @@ def test_a_moment_of_a_run_is_the_run_up_to_there(time: TimeModel) -> None:
     assert min(seen.values()) > 20
 
 
-@pytest.mark.parametrize("engine", ["auto", "network"])
-def test_samples_in_portions(engine: str) -> None:
+def test_samples_in_portions() -> None:
     """Portions of a sample with one stamp come to the same, a stamp later."""
     makers = {way: Maker(f"{engine}+{way}") for way in ("next", "next+interrupt")}
     found = campaign_of(makers, range(25), Profile(), TraceProfile(), online_every=3)

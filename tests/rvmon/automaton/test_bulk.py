@@ -66,7 +66,7 @@ def test_many_attempts_are_judged_as_one_by_one(time, body):
     assert moves_in_runs(spec._compiled.requirements["R1"].automaton)
     reports = []
     for engine in ("python", "automaton"):
-        monitor = spec.monitor(engine=engine)
+        monitor = spec.monitor()
         told = []
         for t in range(400):
             values = {"asked": True} if t % 2 else {}

@@ -4,17 +4,16 @@ from random import Random
 
 import pytest
 from tests.tools.build import always, eventually, no, p, q, r, requirement, two
+from tests.tools.progression import Progression
+from tests.tools.stepped import TableMachine, run
 
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.automaton.location import PASSED
-from rvmon.automaton.progression import Progression
 from rvmon.automaton.reduce import reduce
 from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.runtime.table import run
-from rvmon.runtime.table_machine import TableMachine
 from rvmon.spec.checked.formula import SignalAtom
 from rvmon.trace.time import NEVER
 

@@ -41,26 +41,24 @@ CASES = {
 ENGINES = ("auto", "network")
 
 
-@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("formula", CASES)
-def test_what_is_still_possible(formula, time, engine):
+def test_what_is_still_possible(formula, time):
     """An open attempt says what it must become, and nothing where it can become either."""
-    monitor = loads(HEAD.format(time, formula)).monitor(engine=engine)
+    monitor = loads(HEAD.format(time, formula)).monitor()
     monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})
     (attempt,) = monitor.open
     assert (attempt.forecast and attempt.forecast.value) == CASES[formula]
 
 
 @pytest.mark.parametrize("most", [0, 1, 3])
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_search_that_outgrows_its_limit_says_nothing(engine, most, monkeypatch):
+def test_a_search_that_outgrows_its_limit_says_nothing(most, monkeypatch):
     """What is not searched to the end is not forecast; what is, is forecast as ever."""
     for name in ("MOST_TRIED", "_MOST_APART"):
         monkeypatch.setattr(f"rvmon.automaton.emptiness.{name}", most)
     said = []
     for formula, forecast in CASES.items():
-        monitor = loads(HEAD.format("held", formula)).monitor(engine=engine)
+        monitor = loads(HEAD.format("held", formula)).monitor()
         monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})
         (attempt,) = monitor.open
         said.append(attempt.forecast and attempt.forecast.value)
@@ -68,12 +66,11 @@ def test_a_search_that_outgrows_its_limit_says_nothing(engine, most, monkeypatch
     assert (most < 3) is (said != list(CASES.values()))
 
 
-@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("time", "forecast"), [("held", "F"), ("sampled", None)])
-def test_a_window_without_a_position_asks_for_nothing(time, forecast, engine):
+def test_a_window_without_a_position_asks_for_nothing(time, forecast):
     """In held time every tick is a position; samples may leave a window out."""
     both = "(always[2 s, 3 s] p) and always[2 s, 3 s] not p"
-    monitor = loads(HEAD.format(time, both)).monitor(engine=engine)
+    monitor = loads(HEAD.format(time, both)).monitor()
     monitor.step_ns(0, {"p": False, "q": False})
     (attempt,) = monitor.open
     assert (attempt.forecast and attempt.forecast.value) == forecast
@@ -93,7 +90,7 @@ HELD = "spec t\nsignal p, q, r : bool\nrequirement R1\n  upon start then {}\n"
 
 def forecast_of(formula, *samples):
     """What the network forecasts of an attempt after samples at whole seconds."""
-    monitor = loads(HELD.format(formula)).monitor(engine="network")
+    monitor = loads(HELD.format(formula)).monitor()
     for t, values in enumerate(samples):
         monitor.step(t, values)
     (attempt,) = monitor.open
@@ -125,7 +122,7 @@ def test_more_than_is_looked_at_is_not_forecast():
 
 @settings(max_examples=30, deadline=None)
 @given(data=st.data(), engine=st.sampled_from(ENGINES))
-def test_untimed_forecasts_are_those_of_the_tableau(data, engine):
+def test_untimed_forecasts_are_those_of_the_tableau(data):
     """Verdict or forecast is what the infinite continuations leave, at every position."""
 
     class Drawn:
@@ -136,7 +133,7 @@ def test_untimed_forecasts_are_those_of_the_tableau(data, engine):
     tableau = Tableau(formula)
     word = data.draw(st.lists(st.frozensets(st.sampled_from("pqr")), min_size=1, max_size=5))
     spec = Spec(spec_of(requirement(formula, upon=start), time=TimeModel.SAMPLED))
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     verdict = None
     for t, letter in enumerate(word):
         for attempt in monitor.step_ns(t, {name: name in letter for name in "pqr"}):
@@ -147,8 +144,7 @@ def test_untimed_forecasts_are_those_of_the_tableau(data, engine):
         assert said == wanted
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton"])
-def test_forecasts_with_windows_are_those_of_the_tableau(engine):
+def test_forecasts_with_windows_are_those_of_the_tableau():
     """Where every tick is a position, windows are nests of `X`; hardly a forecast is missed."""
     given = missed = 0
     for seed in range(30):
@@ -160,7 +156,7 @@ def test_forecasts_with_windows_are_those_of_the_tableau(engine):
             continue
         for _ in range(6):
             word = [frozenset(n for n in "pqr" if rng.random() < 0.5) for _ in range(6)]
-            monitor = spec.monitor(engine=engine)
+            monitor = spec.monitor()
             for t, letter in enumerate(word):
                 if monitor.step_ns(t, {name: name in letter for name in "pqr"}):
                     break
@@ -175,11 +171,11 @@ def test_forecasts_with_windows_are_those_of_the_tableau(engine):
 
 @settings(max_examples=40, deadline=None)
 @given(case=cases(Profile(), TraceProfile()), engine=st.sampled_from(ENGINES))
-def test_forecasts_come_true(case, engine):
+def test_forecasts_come_true(case):
     """What was forecast of an attempt at some moment is never overturned by a later decision."""
     if case.spec.max_delay is not None:
         return
-    monitor = Spec(case.spec).monitor(engine=engine, sources=case.names)
+    monitor = Spec(case.spec).monitor(sources=case.names)
     seen = {}
     for action in case.actions:
         if isinstance(action, Sample):

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from tests.tools.build import always, eventually, false, no, p, q, r, requirement, two
+from tests.tools.stepped import TableMachine
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
@@ -14,7 +15,6 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, UNKNOWN
 from rvmon.monitor.reasons.obligation_words import Words
-from rvmon.runtime.table_machine import TableMachine
 from rvmon.testing.generate.formula import Shape
 from rvmon.testing.strategies import formulas
 

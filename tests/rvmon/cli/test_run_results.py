@@ -136,7 +136,7 @@ def test_many_attempts_have_the_rows_that_few_have(folder):
     rows = "".join(f"{t},{t % 3 > 0:d}\n" for t in range(3000))
     (folder / "many.csv").write_text(f"t,p\n{rows}")
     spec = rvmon.load("s.rv")
-    report = spec.evaluate("many.csv", engine="columns")
+    report = spec.evaluate("many.csv")
     assert isinstance(report.attempts, LazyAttempts)
     assert [*report.rows()] == [*replace(report, attempts=tuple(report.attempts)).rows()]
 

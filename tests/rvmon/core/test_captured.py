@@ -42,9 +42,9 @@ def test_many_at_once_and_forgotten(only):
         (0.25 * n, {"x": n % 7, "go": {"id": n % 90}, "done": {"id": (n * 7) % 50}})
         for n in range(300)
     ]
-    by_c, by_python = (spec.evaluate(trace, engine=engine, only=only) for engine in ("c", "auto"))
+    by_c, by_python = (spec.evaluate(trace, only=only) for engine in ("c", "auto"))
     assert outcomes(by_c) == outcomes(by_python)
-    monitor = spec.monitor(engine="c", only=only)
+    monitor = spec.monitor(only=only)
     for t, values in trace:
         monitor.step(t, values)
     assert outcomes(monitor.finish()) == outcomes(by_python)
@@ -65,7 +65,7 @@ def test_those_that_become_sure_at_once_are_numbered_by_their_triggers(many):
     found = [{"o": {"k": key}} for key in keys]
     values = [{"x": 0.0}, {"x": None}, *asked, *found, {"x": 2.0}, {"x": 0.0}, {"x": None}, {}]
     trace = list(enumerate(values))
-    by_c, by_python = (spec.evaluate(trace, engine=engine) for engine in ("c", "auto"))
+    by_c, by_python = (spec.evaluate(trace) for engine in ("c", "auto"))
     assert outcomes(by_c) == outcomes(by_python)
     assert [one.in_doubt for one in by_c.attempts].count(False) == many
 
@@ -74,7 +74,7 @@ def test_reports_as_json_say_what_was_captured():
     """The same text as of the other engines, but for reasons."""
     spec = rvmon.loads(SPEC)
     trace = [(0, {"x": 1.5, "mode": "red", "go": True}), (1, {"x": 2, "go": {"id": 4}})]
-    found = json.loads(spec.evaluate(trace, engine="c").to_json())
+    found = json.loads(spec.evaluate(trace).to_json())
     captured = [one["captured"] for one in found["requirements"]["R2"]["attempts"]]
     assert captured == [{"a": 1.5, "m": "red"}, {"a": 2.0, "m": "red"}]
 
@@ -85,7 +85,7 @@ def test_what_came_since_the_last_tick_belongs_to_the_instance_that_begins_at_th
         "spec s\ntime sampled every 3 ns\nevent h\nevent g(k: int)\n"
         "requirement R\n  upon h\n  then true\n  for each key in g.k\n"
     )
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     monitor.step_ns(10, {"h": True})
     decided = [*monitor.step_ns(11, {"g": {"k": -2}}), *monitor.step_ns(15, {})]
     assert [(one.triggered, one.captured, one.verdict) for one in decided] == [
@@ -123,7 +123,7 @@ def test_an_instance_that_begins_between_ticks_stands_as_at_the_last_one(require
     )
     found = []
     for engine in ("auto", "c"):
-        monitor = spec.monitor(engine=engine)
+        monitor = spec.monitor()
         for t, values in samples:
             monitor.step_ns(t, values)
         found.append(outcomes(monitor.finish()))
@@ -143,7 +143,7 @@ def test_a_field_of_another_kind_may_name_an_instance(each, other):
     named, its = other.split(".")
     found = []
     for engine in ("auto", "c"):
-        monitor = spec.monitor(engine=engine)
+        monitor = spec.monitor()
         for t, values in enumerate([{event: {field: 1}, "q": True}, {}, {named: {its: 1}}]):
             monitor.step_ns(t, values)
         found.append(outcomes(monitor.finish()))

@@ -28,8 +28,8 @@ def test_what_is_kept_is_told_as_if_all_was(time):
         spec = random_spec(rng, Profile(time=time, requirements=3))
         case = random_trace(rng, spec, TraceProfile(samples=300, fewest=200, span=900))
         compiled, keep = CompiledSpec(spec), rng.randint(0, 4)
-        whole = build_monitor(compiled, engine="c", sources=case.names)
-        kept = build_monitor(compiled, engine="c", sources=case.names, keep=keep)
+        whole = build_monitor(compiled, sources=case.names)
+        kept = build_monitor(compiled, sources=case.names, keep=keep)
         for action in case.actions:
             want, got = feed(whole, action), feed(kept, action)
             assert list(map(told, got)) == list(map(told, want))

@@ -83,7 +83,7 @@ def test_samples_of_all_kinds_most_of_them_wrong():
     odd += [{"k": 3, "where": "left"}, {"z": 1}, (), ({"k": 1},), ({"k": 1}, {"k": 2}), [], True]
     odd += [False, 0.5, object(), b"red"]
     names: list[Any] = [*NUMBERS, "z", 3]
-    monitor = rvmon.loads(SPEC).monitor(engine="c")
+    monitor = rvmon.loads(SPEC).monitor()
     kept: list[rvmon.Attempt] = []
     refused = 0
     for _ in range(3):
@@ -109,7 +109,7 @@ def test_samples_of_all_kinds_most_of_them_wrong():
 
 def test_the_collector_steps_in_the_midst_of_a_step():
     """Attempts are made of copies: what the core holds may move while they are."""
-    monitor = rvmon.loads(WAITING).monitor(engine="c")
+    monitor = rvmon.loads(WAITING).monitor()
     meanwhile: list[int] = []
     t = 0
 

@@ -76,16 +76,15 @@ def test_each_call_returns_what_the_network_of_python_does(form, model):
         assert "network" in {choice.online for choice in spec.engines().values()}
     for seed, lost in ((1, True), (2, False)):
         rows = list(rows_of(seed, 300, lost=lost))
-        assert told(spec.monitor(engine="c"), rows) == told(spec.monitor(engine="network"), rows)
+        assert told(spec.monitor(), rows) == told(spec.monitor(), rows)
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("engine", ["c", "network"])
-def test_no_window_of_the_past_holds_what_is_taken_of_a_since_before_the_trace(engine, model):
+def test_no_window_of_the_past_holds_what_is_taken_of_a_since_before_the_trace(model):
     """`once` was met nowhere before the first position, which is in no window either."""
     form = "upon start then historically[0 s, 5 s] once F[0 s, 3 s] q"
     rows = [(0, {"q": False}), (1 * S, {}), (2 * S, {"q": True})]
-    monitor = rvmon.loads(text_of(form, model)).monitor(engine=engine)
+    monitor = rvmon.loads(text_of(form, model)).monitor()
     decided = [one for t, values in rows for one in monitor.step_ns(t, values)]
     assert [(str(one.verdict), one.decided) for one in decided] == [("P", 2 * S)]
 
@@ -95,7 +94,7 @@ def test_what_stays_unknown_while_nobody_looks_fails_nothing():
     spec = rvmon.loads(text_of(FORMS["between ticks"]))
 
     def verdicts_of(engine):
-        monitor = spec.monitor(engine=engine)
+        monitor = spec.monitor()
         for t in range(0, 800 * S, 20 * S):
             monitor.step_ns(t, {"p": True, "q": False})
             monitor.step_ns(t + 1000, {"p": False, "q": None})
@@ -117,7 +116,7 @@ def test_columns_are_judged_alike():
         "x": [rng.uniform(0, 5) for _ in range(400)],
         "y": [rng.uniform(0, 4) for _ in range(400)],
     }
-    fast = spec.evaluate(columns, engine="c")
+    fast = spec.evaluate(columns)
     assert len(fast.attempts) > 20
     found = [[bare(one) for one in report.attempts] for report in (fast, spec.evaluate(columns))]
     assert found[0] == found[1]
@@ -126,7 +125,7 @@ def test_columns_are_judged_alike():
 def test_what_time_alone_decides_is_foreseen():
     """`next_due` is the instant, however far away; then time alone decides."""
     spec = rvmon.loads(text_of("whenever p then F[3600 s, 7200 s] G[1 s, 2 s] q"))
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     assert monitor.step_ns(0, {"p": True, "q": False}) == ()
     assert monitor.step_ns(1, {"p": False}) == ()
     due = monitor.next_due

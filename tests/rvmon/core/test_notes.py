@@ -51,7 +51,7 @@ def test_the_core_tells_what_auto_tells(model):
 
 def test_a_reason_can_be_read_long_after(tmp_path):
     """After many samples, after a reset, when the monitor is gone, in another process."""
-    monitor = spec_of(RESPONSE).monitor(engine="c")
+    monitor = spec_of(RESPONSE).monitor()
     monitor.step_ns(0, {"p": False, "q": False})
     monitor.step_ns(7 * MS, {"p": True})
     failed = [*monitor.advance_ns(13 * MS), *monitor.advance_ns(30 * MS)]
@@ -76,7 +76,7 @@ def test_a_reason_can_be_read_long_after(tmp_path):
 
 def test_reasons_of_a_report_are_those_of_its_monitor():
     """What a step handed out and what the report has are equal in all they say."""
-    monitor = spec_of(RESPONSE).monitor(engine="c")
+    monitor = spec_of(RESPONSE).monitor()
     told = []
     for t in range(400):
         told += monitor.step_ns(t * MS, {"p": t % 9 < 4, "q": t % 5 == 0})
@@ -90,7 +90,7 @@ def test_reasons_of_a_report_are_those_of_its_monitor():
 def test_many_open_attempts_say_what_they_wait_for():
     """Each says its own deadline, however many are open."""
     spec = spec_of("event p\nsignal q : bool\nrequirement R\n  upon p\n  then within 200 s q\n")
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     for t in range(20_000):
         monitor.step_ns(t * MS, {"p": True, "q": False})
     waiting = monitor.open
@@ -113,7 +113,7 @@ def test_letters_are_those_of_the_attempt():
     samples = [
         (t * MS, {"p": rng.random() < 0.5, "q": rng.random() < 0.9}) for t in range(0, 3000, 2)
     ]
-    core, auto = spec.monitor(engine="c"), spec.monitor()
+    core, auto = spec.monitor(), spec.monitor()
     told, wanted = [], []
     for t, values in samples:
         told += core.step_ns(t, values)
@@ -127,7 +127,7 @@ def test_what_an_endless_run_owes_is_told_by_its_last_part():
     spec = spec_of(
         "signal p, q : bool\nrequirement U\n  upon start\n  then always (p -> within 3 ms q)\n"
     )
-    core, auto = spec.monitor(engine="c"), spec.monitor()
+    core, auto = spec.monitor(), spec.monitor()
     for t in range(30_000):
         values = {"p": t % 4 == 0, "q": t % 4 == 2 and t < 29_990}
         told, wanted = core.step_ns(t * MS, values), auto.step_ns(t * MS, values)
@@ -142,7 +142,7 @@ def test_open_attempts_are_told_of_at_any_time():
     rng = random.Random(3)
     spec = Spec(random_spec(rng, Profile(time=TimeModel.HELD, captures=True)))
     case = random_trace(rng, spec.checked, TraceProfile())
-    asked, other = spec.monitor(engine="c"), spec.monitor(engine="c")
+    asked, other = spec.monitor(), spec.monitor()
     for action in case.actions:
         assert feed(asked, action) == feed(other, action)
         assert asked.open == asked.open

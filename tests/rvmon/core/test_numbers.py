@@ -48,7 +48,7 @@ def test_whole_numbers_are_exact(owed, x, y, verdict):
     spec = spec_of(owed)
     for trace in forms_of(x, y):
         for engine in ("automaton", "c"):
-            report = spec.evaluate(trace, engine=engine, allow_missing=["e"])
+            report = spec.evaluate(trace, allow_missing=["e"])
             assert report.verdicts == {"R1": verdict}, engine
 
 
@@ -67,7 +67,7 @@ def test_what_leaves_64_bits_is_unknown(owed, x, y):
     """No sum of two numbers that are there is one that is not."""
     spec = spec_of(f"{owed} or x == 0")
     for trace in forms_of(x, y):
-        report = spec.evaluate(trace, engine="c", allow_missing=["e"])
+        report = spec.evaluate(trace, allow_missing=["e"])
         assert report.verdicts == {"R1": "I"}
 
 
@@ -85,7 +85,7 @@ def test_a_whole_number_beside_a_real_one_is_compared_exactly(owed, x, z, verdic
     spec = spec_of(owed)
     for trace in forms_of(x, 0, z):
         for engine in ("automaton", "c"):
-            report = spec.evaluate(trace, engine=engine, allow_missing=["e"])
+            report = spec.evaluate(trace, allow_missing=["e"])
             assert report.verdicts == {"R1": verdict}, engine
 
 
@@ -95,7 +95,7 @@ def test_a_whole_number_for_a_real_one_is_rounded_once():
         "spec s\nsignal z : real\nrequirement R1\n  upon start\n  then z == 0\n  let v = z\n"
     )
     for whole in (2**53 + 1, 2**53 + 3, 2**63 + 1025, 2**70 + 1, -(2**53) - 1):
-        (failed,) = spec.monitor(engine="c").step(0.0, {"z": whole})
+        (failed,) = spec.monitor().step(0.0, {"z": whole})
         assert failed.captured == {"v": float(whole)}
         assert isinstance(failed.captured["v"], float)
 
@@ -106,10 +106,10 @@ def test_fields_are_exact():
     for k, verdict in ((2**53, "P"), (2**53 + 1, "F")):
         trace = [(0.0, {}), (1.0, {"e": {"k": k}})]
         for engine in ("automaton", "c"):
-            assert spec.evaluate(trace, engine=engine).verdicts == {"R1": verdict}
+            assert spec.evaluate(trace).verdicts == {"R1": verdict}
     for k in (2**63, 10**400):
         with pytest.raises(rvmon.TraceError, match=r"sample at 1 s: `e.k` is a number too large"):
-            spec.evaluate([(0.0, {}), (1.0, {"e": {"k": k}})], engine="c")
+            spec.evaluate([(0.0, {}), (1.0, {"e": {"k": k}})])
 
 
 def test_doubles_are_doubles():
@@ -117,7 +117,7 @@ def test_doubles_are_doubles():
     spec = spec_of("z * z + 1000000 * z < 1e300")
     trace = {"t": np.arange(2), "z": np.array([1e19, 2e150])}
     for engine in ("automaton", "c"):
-        report = spec.evaluate(trace, engine=engine, allow_missing=True)
+        report = spec.evaluate(trace, allow_missing=True)
         assert report.verdicts == {"R1": "F"}
 
 
@@ -126,4 +126,4 @@ def test_a_number_of_many_digits_in_a_file_is_refused(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text(f"t,x\n0,1\n1,{'9' * 400}\n")
     with pytest.raises(rvmon.TraceError, match=r"sample at 1 s: `x` is a number too large"):
-        spec_of("x > 0").evaluate(path, engine="c", allow_missing=True)
+        spec_of("x > 0").evaluate(path, allow_missing=True)

@@ -1,4 +1,4 @@
-"""Monitors that the core runs: what a user of `Spec.monitor(engine="c")` meets."""
+"""Monitors that the core runs: what a user of `Spec.monitor()` meets."""
 
 import copy
 import gc
@@ -50,7 +50,7 @@ def told(attempts):
 
 def both(spec, samples, end=None, **how):
     """Step a monitor of the core and one that gives reasons; they say the same each time."""
-    fast, slow = spec.monitor(engine="c", **how), spec.monitor(engine="automaton", **how)
+    fast, slow = spec.monitor(**how), spec.monitor(**how)
     found = []
     for t, values in samples:
         due = fast.next_due
@@ -190,7 +190,7 @@ def test_names_in_any_order(spec):
 )
 def test_what_is_wrong_is_refused(spec, t, values, error, text):
     """A wrong sample is refused as by every monitor, and changes nothing."""
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     monitor.step_ns(S, FIRST)
     with pytest.raises(error, match=text):
         monitor.step_ns(t, values)
@@ -199,7 +199,7 @@ def test_what_is_wrong_is_refused(spec, t, values, error, text):
 
 def test_a_wrong_call(spec):
     """Python's own errors for what is no call of a method."""
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     with pytest.raises(TypeError, match="positional"):
         monitor.step_ns()
     with pytest.raises(TypeError, match="unexpected"):
@@ -219,7 +219,7 @@ def test_seconds_are_rounded_as_by_every_monitor(spec, seconds):
     """The same tick, or the same refusal, whatever the time is."""
     found = []
     for engine in ("c", "auto"):
-        monitor = spec.monitor(engine=engine)
+        monitor = spec.monitor()
         monitor.step_ns(-(1 << 62) + 1, FIRST)
         try:
             found.append(told(monitor.step(seconds, {"speed": 3.0})))
@@ -230,7 +230,7 @@ def test_seconds_are_rounded_as_by_every_monitor(spec, seconds):
 
 def test_advance_finish_reset(spec):
     """Time passes without samples; a finished run takes nothing; another one begins afresh."""
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     assert monitor.open == ()
     assert monitor.next_due is None
     for _ in range(2):
@@ -255,7 +255,7 @@ def test_advance_finish_reset(spec):
 
 def test_no_sample_at_all(spec):
     """A run without samples has judged nothing."""
-    report = spec.monitor(engine="c").finish()
+    report = spec.monitor().finish()
     assert set(report.verdicts.values()) == {"I"}
     assert report.end is None
     assert list(report.attempts) == []
@@ -266,7 +266,7 @@ def test_only_and_sources(spec):
     samples = [(0, {"p": False}), (S, {"p": True}), (5 * S, {})]
     both(spec, samples, only=["R1"], sources=["p", "q"])
     with pytest.raises(TraceError, match="not among the sources"):
-        spec.monitor(engine="c", sources=["p"]).step(0, {"q": True})
+        spec.monitor(sources=["p"]).step(0, {"q": True})
 
 
 def test_settled_by_the_next_stamp(spec):
@@ -277,7 +277,7 @@ def test_settled_by_the_next_stamp(spec):
 
 def test_attempts_are_attempts(spec):
     """Records are whole: equal, shown, copied, changed as others are."""
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     monitor.step(0.0, FIRST)
     (made,) = monitor.step(1.0, {"speed": 3.0})
     assert made.reason.endswith("became false at 1 s; it had to be true at all times")
@@ -305,7 +305,7 @@ def knocks(begin: int, count: int) -> list[tuple[int, dict[str, bool]]]:
 def test_open_attempts_beyond_any_number():
     """The room for open attempts grows, also where a gap between samples starts many at once."""
     bursts = [row for n in range(22) for row in knocks(10 * n * S, 50)]
-    monitor = rvmon.loads(ECHO).monitor(engine="c")
+    monitor = rvmon.loads(ECHO).monitor()
     decided = []
     for t, row in [(-9 * S, {"p": False, "q": False}), *bursts, (300 * S, {"q": True})]:
         decided += told(monitor.step_ns(t, row))
@@ -329,7 +329,7 @@ def test_there_is_room_for_all_stretches():
 
 def test_a_monitor_is_freed(spec):
     """The monitor and its run refer to each other; both go once nobody else does."""
-    monitor = spec.monitor(engine="c")
+    monitor = spec.monitor()
     monitor.step(0.0, FIRST)
     gone = weakref.ref(monitor)
     del monitor
@@ -343,7 +343,7 @@ def test_captured_values_are_told():
         "spec s\nsignal x : int\nsignal mode : {red, green}\nevent e(k: int)\nrequirement R1\n"
         "  upon e\n  then within 1 s x > v\n  for each i in e.k\n  let v = x\n  let m = mode\n"
         "  let h = x / 2\n"
-    ).monitor(engine="c")
+    ).monitor()
     monitor.step(0.0, {"x": 3, "e": ({"k": 2}, {"k": 1})})
     assert [one.captured["i"] for one in monitor.open] == [2, 1]
     passed = monitor.step(0.5, {"x": 4, "mode": "green"})
@@ -354,6 +354,6 @@ def test_captured_values_are_told():
 
 def test_nothing_to_judge(spec):
     """No requirement is asked for: there is nothing to judge."""
-    monitor = spec.monitor(engine="c", only=[])
+    monitor = spec.monitor(only=[])
     monitor.step(0.0, FIRST)
     assert monitor.finish().verdicts == {}

@@ -33,8 +33,8 @@ def test_without_a_declared_column_all_is_unknown(form, tmp_path):
         parquet.write_table(table, trace)
     for engine in ("auto", "c"):
         with pytest.raises(rvmon.MissingNameError, match="`e`, read by R1"):
-            spec.evaluate(trace, engine=engine)
-        report = spec.evaluate(trace, engine=engine, allow_missing=True)
+            spec.evaluate(trace)
+        report = spec.evaluate(trace, allow_missing=True)
         assert report.verdicts == {"R1": "I"}, engine
 
 
@@ -44,10 +44,7 @@ def test_what_was_met_is_carried_on_over_many_rows():
     rows = np.arange(300)
     trace = {"t": rows * 1e-9, "p": rows % 150 == 50, "q": rows % 150 != 20, "r": rows % 7 == 0}
     found = [
-        [
-            (one.triggered, one.decided, one.verdict)
-            for one in spec.evaluate(trace, engine=engine).attempts
-        ]
+        [(one.triggered, one.decided, one.verdict) for one in spec.evaluate(trace).attempts]
         for engine in ("automaton", "c")
     ]
     assert found[0] == found[1]
@@ -58,7 +55,7 @@ def test_a_whole_number_without_a_column_is_unknown():
     """Nothing is looked at of a column that is not there."""
     spec = spec_of("signal n : int", "upon start then for 2 s (n + 1 < 3)")
     table = {"t": np.array([0.0, 5.0])}
-    assert spec.evaluate(table, engine="c", allow_missing=["n"]).verdicts == {"R1": "I"}
+    assert spec.evaluate(table, allow_missing=["n"]).verdicts == {"R1": "I"}
 
 
 DECLARED = """signal x : real
@@ -102,7 +99,7 @@ def test_values_of_another_type_are_refused(name, value, form):
     told = []
     for engine in ("automaton", "c"):
         with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}") as error:
-            spec.evaluate(trace, engine=engine, allow_missing=True)
+            spec.evaluate(trace, allow_missing=True)
         told.append(str(error.value))
     assert told[0] == told[1]
 
@@ -111,7 +108,7 @@ def test_an_undeclared_name_in_a_sample_is_refused():
     """A name that the specification does not know is an error that names it."""
     spec = spec_of("signal x : real", "always x < 5")
     with pytest.raises(rvmon.TraceError, match="sample at 1 s: no signal or event named `y`"):
-        spec.evaluate([(0.0, {"x": 1.0}), (1.0, {"y": 1.0})], engine="c")
+        spec.evaluate([(0.0, {"x": 1.0}), (1.0, {"y": 1.0})])
 
 
 def test_strings_in_a_parquet_file_are_refused(tmp_path):
@@ -121,7 +118,7 @@ def test_strings_in_a_parquet_file_are_refused(tmp_path):
     path = tmp_path / "a.parquet"
     parquet.write_table(arrow.table({"t": [0.0, 1.0], "x": ["1", "9"]}), path)
     with pytest.raises(rvmon.TraceError, match="`x`"):
-        spec_of("signal x : real", "always x < 5").evaluate(path, engine="c")
+        spec_of("signal x : real", "always x < 5").evaluate(path)
 
 
 @pytest.mark.parametrize("trace", [{"t": np.array([0.0])}, [(0.0, {})], "nowhere.csv"])
@@ -129,9 +126,9 @@ def test_an_unknown_engine_is_told_which_there_are(trace):
     """The engine `c` judges recordings and is stepped: it stands in both lists."""
     spec = spec_of("signal x : real", "always x < 5")
     with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
-        spec.evaluate(trace, engine="nope")
+        spec.evaluate(trace)
     with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
-        spec.monitor(engine="nope")
+        spec.monitor()
 
 
 def test_lengths_of_vectors_are_those_of_python():
@@ -142,11 +139,11 @@ def test_lengths_of_vectors_are_those_of_python():
     trace = {"t": np.arange(len(x)), "x": x, "y": y}
     trace["h"] = np.array(list(map(math.hypot, x.tolist(), y.tolist())))
     spec = spec_of("signal x, y, h : real", "always hypot(x, y) == h")
-    assert spec.evaluate(trace, engine="c").verdicts == {"R1": "P"}
+    assert spec.evaluate(trace).verdicts == {"R1": "P"}
     unknown = {"t": np.arange(2), "x": np.array([np.inf, 1e308]), "y": np.array([1.0, 1.7e308])}
     spec = spec_of("signal x, y : real", "upon start\n  then within 1 s hypot(x, y) > 5")
     for engine in ("automaton", "c"):
-        assert spec.evaluate(unknown, engine=engine).verdicts == {"R1": "I"}
+        assert spec.evaluate(unknown).verdicts == {"R1": "I"}
 
 
 def test_a_signal_is_not_born_by_nan():
@@ -161,7 +158,7 @@ def test_a_signal_is_not_born_by_nan():
         "y": np.array([1.0, 0.0, 0.0]),
     }
     for engine in ("auto", "c"):
-        (attempt,) = spec.evaluate(trace, engine=engine).attempts
+        (attempt,) = spec.evaluate(trace).attempts
         assert (attempt.verdict, attempt.decided) == ("I", None), engine
 
 
@@ -173,7 +170,7 @@ def test_each_row_is_an_update(owed):
     trace = {"t_ns": rows, "p": rows % 100 > 0, "x": np.floor(rows / 50) ** 2}
     told = [
         [(one.triggered, one.decided, one.verdict) for one in report.attempts]
-        for report in (spec.evaluate(trace, engine=engine) for engine in ("automaton", "c"))
+        for report in (spec.evaluate(trace) for engine in ("automaton", "c"))
     ]
     assert told[0] == told[1]
     assert any(verdict == "F" for _, _, verdict in told[0])

@@ -36,9 +36,9 @@ def spec_of(requirement, time="held"):
     )
 
 
-def outcomes(spec, samples, end=None, engine="auto"):
+def outcomes(spec, samples, end=None):
     """Trigger and decision instants in ticks, with the verdicts."""
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for t, values in samples:
         monitor.step(t, values)
     return [(a.triggered, a.decided, a.verdict.value) for a in monitor.finish(end).attempts]
@@ -62,7 +62,7 @@ def test_no_disagreement(time):
         ("upon e then within 3 s once (a and within 1 s b)", "network"),
     ],
 )
-def test_the_compiler_picks_it_where_no_automaton_closes(requirement, engine):
+def test_the_compiler_picks_it_where_no_automaton_closes(requirement):
     """What has an automaton is judged by it, the rest by the network, and the report says why."""
     [compiled] = compile_spec(spec_of(requirement).checked).requirements.values()
     assert compile_report(compiled).engine == compiled.engine("auto") == engine
@@ -83,7 +83,7 @@ def test_progression_says_that_it_cannot():
     """Asked for by name, an engine that cannot judge a requirement says so."""
     spec = spec_of("upon e then immediately once (within 3 s b)")
     with pytest.raises(RvmonError, match="use the engine `auto` or `network`"):
-        spec.monitor(engine="progression")
+        spec.monitor()
 
 
 def test_a_window_that_is_started_at_every_tick():
@@ -104,9 +104,7 @@ def test_what_only_led_on_is_settled_together(last):
     stamps = list(accumulate(1 + 6 * (k % 7 == 0) for k in range(last)))
     samples = [(t, {"a": True, "b": t < stamps[-1]}) for t in stamps]
     spec = spec_of("whenever a then b", "sampled")
-    assert outcomes(spec, samples, engine="network") == [
-        (stamps[0] * SECOND, stamps[-1] * SECOND, "F")
-    ]
+    assert outcomes(spec, samples) == [(stamps[0] * SECOND, stamps[-1] * SECOND, "F")]
 
 
 @pytest.mark.parametrize("at", range(20, 37))
@@ -115,7 +113,7 @@ def test_the_sample_before_is_kept(at):
     samples = [(2 * k, {"a": True, "e": k == at}) for k in range(at + 3)]
     spec = spec_of("upon e then F[1 s, 2 s] rise(F[0 s, 0 s] a)", "sampled")
     began = 2 * at * SECOND
-    assert outcomes(spec, samples, engine="network") == [(began, began + 2 * SECOND + 1, "F")]
+    assert outcomes(spec, samples) == [(began, began + 2 * SECOND + 1, "F")]
 
 
 def count_steps(monkeypatch, case):
@@ -130,7 +128,7 @@ def count_steps(monkeypatch, case):
             return original(self, *args)
 
         monkeypatch.setattr(Network, name, counted)
-    report, _ = drive(Spec(case.spec).monitor(engine="network", sources=case.names), case)
+    report, _ = drive(Spec(case.spec).monitor(sources=case.names), case)
     monkeypatch.undo()
     return report, count
 
@@ -171,7 +169,7 @@ def test_letters_that_decide_nothing_are_but_noted(time, monkeypatch):
 
     monkeypatch.setattr(Network, "grow", counted)
     owed = "upon e then F[0 s, 5 s] ((G[0 s, 4 s] a) or b)"
-    monitor = spec_of(owed, time).monitor(engine="network")
+    monitor = spec_of(owed, time).monitor()
     monitor.step(0, {"e": True, "a": False, "b": False})
     before = len(grown)
     for k in range(1, 390):
@@ -186,7 +184,7 @@ def test_a_letter_that_stays_is_soon_not_looked_at(monkeypatch):
     """However many samples say the same, what time brings is worked out once."""
     grown, original = [], Network.grow
     monkeypatch.setattr(Network, "grow", lambda *given: grown.append(original(*given)))
-    monitor = spec_of("always (a -> (not b) U[2 s, 10 s] b)").monitor(engine="network")
+    monitor = spec_of("always (a -> (not b) U[2 s, 10 s] b)").monitor()
     decided = [one for k in range(1200) for one in monitor.step(k / 100, {"a": k == 0, "b": False})]
     assert [(one.triggered, one.decided) for one in decided] == [(0, 10 * SECOND + 1)]
     assert len(grown) <= 12
@@ -210,7 +208,7 @@ def test_time_that_passes_in_one_go_leaves_out_no_failure():
 def test_time_decides_under_another_letter_before_the_next_position():
     """What an unknown occurrence left open is known as soon as another one is told."""
     spec = spec_of("whenever e then F[1 ns, 1 ns] true", "sampled every 4 ns")
-    monitor = spec.monitor(engine="network")
+    monitor = spec.monitor()
     monitor.step_ns(0, {"e": None})
     monitor.step_ns(1, {"e": True})
     [failed] = monitor.step_ns(10, {})
@@ -223,7 +221,7 @@ def test_an_instance_fails_under_another_letter_before_its_next_trigger():
         "spec s\ntime sampled every 4 ns\nsignal p : bool stale after 5 ns\nevent g(k: int)\n"
         "requirement R1\n  whenever (p or (g.k == each))\n  then F[0 ns, 0 ns] false\n"
         "  for each each in g.k\n"
-    ).monitor(engine="network")
+    ).monitor()
     monitor.step_ns(0, {"p": True})
     for t in (15, 24, 28):
         monitor.step_ns(t, {"g": {"k": 0}})
@@ -233,7 +231,7 @@ def test_an_instance_fails_under_another_letter_before_its_next_trigger():
 
 def calls_per_change(low, high, time):
     """How many functions are called for a change, once the window is full."""
-    monitor = spec_of(f"whenever a then F[{low}, {high}] b", time).monitor(engine="network")
+    monitor = spec_of(f"whenever a then F[{low}, {high}] b", time).monitor()
     rng = random.Random(1)
     count, changes = 0, 60
 
@@ -262,7 +260,7 @@ def test_a_change_costs_what_it_makes_known(time):
 
 def test_what_time_alone_decides_is_known_beforehand():
     """However far ahead, and though the letter has changed at every sample."""
-    monitor = spec_of("upon e then F[1 h, 2 h] for 3 s b").monitor(engine="network")
+    monitor = spec_of("upon e then F[1 h, 2 h] for 3 s b").monitor()
     for k in range(50):
         monitor.step(k * 0.01, {"b": k % 2 == 0, "e": True} if k == 7 else {"b": k % 2 == 0})
     assert monitor.next_due == 7_200_070_000_001
@@ -285,7 +283,7 @@ def test_deadlines_of_records_are_those_of_automata(time):
         samples = [(t, {name: rng.random() < 0.5 for name in "pqr"}) for t in stamps]
         found = []
         for engine in ("network", "automaton"):
-            monitor = spec.monitor(engine=engine)
+            monitor = spec.monitor()
             for t, values in samples:
                 monitor.step_ns(t, values)
             attempts = monitor.finish_ns(stamps[-1]).attempts
@@ -302,7 +300,7 @@ def test_it_is_woken_before_time_alone_decides(time):
     woken = 0
     for seed in range(20):
         case = case_of(f"woken {seed}", Profile(time=time), TraceProfile())
-        monitor = Spec(case.spec).monitor(engine="network", sources=case.names)
+        monitor = Spec(case.spec).monitor(sources=case.names)
         for action in case.actions:
             feed(monitor, action)
             for judge in monitor._evaluators.judges:
@@ -320,7 +318,7 @@ def test_reasons_are_the_same_later(time):
         case = case_of(f"asked {seed}", Profile(time=time), TraceProfile())
         found = []
         for at_once in (True, False):
-            monitor = Spec(case.spec).monitor(engine="network", sources=case.names)
+            monitor = Spec(case.spec).monitor(sources=case.names)
             if at_once:
                 monitor.on_decided(repr)
             report, _ = drive(monitor, case)

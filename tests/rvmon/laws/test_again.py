@@ -15,15 +15,14 @@ from rvmon.testing.strategies import cases
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ["auto", "c"])
 @settings(max_examples=20, deadline=None)
 @given(data=st.data())
-def test_a_run_leaves_nothing_behind(engine: str, data: st.DataObject) -> None:
+def test_a_run_leaves_nothing_behind(data: st.DataObject) -> None:
     """Whatever came before a reset, and however far, each call says what it says in a first run."""
     case = data.draw(cases())
     before = data.draw(st.integers(0, len(case.actions)))
     try:
-        monitor, new = (Spec(case.spec).monitor(engine=engine, sources=case.names) for _ in "12")
+        monitor, new = (Spec(case.spec).monitor(sources=case.names) for _ in "12")
     except RvmonError:  # the core does not judge it
         assume(False)
     for action in case.actions[:before]:

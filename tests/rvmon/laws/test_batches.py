@@ -32,14 +32,13 @@ def whole(engine: str, case: Case) -> Report:
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(data=st.data())
-def test_the_order_inside_a_batch(engine: str, data: st.DataObject) -> None:
+def test_the_order_inside_a_batch(data: st.DataObject) -> None:
     """A sample in pieces with equal stamps, in any order, is the same as the whole sample."""
     case = data.draw(cases(Profile(mixed=False)))
     expected = whole(engine, case)
-    monitor = Spec(case.spec).monitor(engine=engine, settle="next", sources=case.names)
+    monitor = Spec(case.spec).monitor(settle="next", sources=case.names)
     for action in case.actions:
         if not isinstance(action, Sample):
             monitor.advance_ns(action)
@@ -53,16 +52,15 @@ def test_the_order_inside_a_batch(engine: str, data: st.DataObject) -> None:
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(data=st.data())
-def test_the_order_within_the_delay(engine: str, data: st.DataObject) -> None:
+def test_the_order_within_the_delay(data: st.DataObject) -> None:
     """Samples that come late, but within `max delay`, are judged at their instants."""
     case = data.draw(cases(Profile(mixed=False)))
     case = replace(case, actions=case.samples)
     late = [(s.t + data.draw(st.integers(0, DELAY)), s) for s in case.samples]
     spec = replace(case.spec, max_delay=DELAY)
-    monitor = Spec(spec).monitor(engine=engine, sources=case.names)
+    monitor = Spec(spec).monitor(sources=case.names)
     told = [sample for _, sample in sorted(late, key=lambda entry: entry[0])]
     for sample in told:
         monitor.step_ns(sample.t, sample.values)
@@ -72,15 +70,14 @@ def test_the_order_within_the_delay(engine: str, data: st.DataObject) -> None:
     assert report.health == expected.health
     pairs = [(sample.t * 1e-9, sample.values) for sample in told]
     end = None if case.end is None else case.end * 1e-9
-    found = Spec(spec).evaluate(pairs, engine=engine, sources=case.names, until=end)
+    found = Spec(spec).evaluate(pairs, sources=case.names, until=end)
     assert differences(expected, found) == []
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_what_comes_after_the_delay_is_left_out(engine: str) -> None:
+def test_what_comes_after_the_delay_is_left_out() -> None:
     """A sample below the watermark is not judged; one within it is, whatever came between."""
     spec = replace(spec_of(requirement(e, upon=e)), max_delay=3)
-    monitor = Spec(spec).monitor(engine=engine)
+    monitor = Spec(spec).monitor()
     for t in (10, 6, 7, 20, 17, 16):
         monitor.step_ns(t, {"e": True})
     report = monitor.finish_ns()

@@ -14,9 +14,8 @@ from rvmon.spec.checked.specification import TimeModel
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.CLOCKED])
-def test_advance_changes_no_record(time, engine):
+def test_advance_changes_no_record(time):
     """Reasons, deadlines and blame are the same, however finely a stretch of time is split."""
     decided = 0
     for seed in range(60):
@@ -31,7 +30,7 @@ def test_advance_changes_no_record(time, engine):
         ]
         found = []
         for split in (False, True):
-            monitor = spec.monitor(engine=engine)
+            monitor = spec.monitor()
             for t, values in samples:
                 monitor.step_ns(t, values)
                 if split:

@@ -14,9 +14,9 @@ from rvmon.live.durable import DurableMonitor
 SPEC = rvmon.loads(killed_watch.SPEC)
 
 
-def judged(path, fed, cuts, told, every=25, engine="auto"):
+def judged(path, fed, cuts, told, every=25):
     """Feed samples; at each cut the monitor is left as it is, and another takes the run up."""
-    monitor = DurableMonitor(SPEC, path, told, every=every, settle="next", engine=engine)
+    monitor = DurableMonitor(SPEC, path, told, every=every, settle="next")
     for number, (t, values) in enumerate(fed):
         if number in cuts:
             monitor = DurableMonitor(SPEC, path, told, every=every, settle="next")
@@ -27,9 +27,8 @@ def judged(path, fed, cuts, told, every=25, engine="auto"):
             continue
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
 @pytest.mark.parametrize("seed", range(2))
-def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed, engine):
+def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
     """Wherever it is cut, also behind refused samples: numbers, records, reasons are the same."""
     rng = random.Random(seed)
     fed = [*killed_watch.samples(rng, 120)]
@@ -40,42 +39,39 @@ def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed, engine):
         assert found.setdefault(number, attempt) == attempt
         assert found[number].reason == attempt.reason
 
-    judged(tmp_path / "cut", fed, rng.sample(range(120), 5), told, engine=engine)
+    judged(tmp_path / "cut", fed, rng.sample(range(120), 5), told)
     assert len(whole) > 20
     assert found == whole
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_a_torn_entry_is_as_one_that_never_came(tmp_path, engine):
+def test_a_torn_entry_is_as_one_that_never_came(tmp_path):
     """And what comes after it is kept."""
     told = []
     path = tmp_path / "run"
-    DurableMonitor(SPEC, path, told.append, engine=engine).step_ns(0, {"speed": 0.5})
+    DurableMonitor(SPEC, path, told.append).step_ns(0, {"speed": 0.5})
     path.write_bytes(path.read_bytes() + b"0123456")
-    monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one), engine=engine)
+    monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one))
     monitor.step_ns(1, {"speed": 2.0})
-    again = DurableMonitor(SPEC, path, lambda *one: told.append(one), engine=engine)
+    again = DurableMonitor(SPEC, path, lambda *one: told.append(one))
     assert again.taken == 2
     assert [(number, one.name) for number, one in told] == [(1, "R2#1")] * 2
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_what_was_saved_is_not_told_again(tmp_path, engine):
+def test_what_was_saved_is_not_told_again(tmp_path):
     """So a watch that came to its end tells nothing when it is begun again."""
     told = []
-    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one), engine=engine)
+    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
     monitor.step_ns(0, {"speed": 2.0})
     monitor.advance_ns(5)
     monitor.save()
-    DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one), engine=engine)
+    DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
     assert len(told) == 1
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path, engine):
+def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path):
     """What is not known passes nothing."""
     told = []
-    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one), engine=engine)
+    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
     monitor.step_ns(0, {"speed": 0.5, "p": True})
     monitor.lose(["p", "other"])
     monitor.step_ns(9, {"go": True})

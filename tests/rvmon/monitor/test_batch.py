@@ -15,13 +15,12 @@ BEYOND = [[0, LIMIT + 5], [0, LIMIT], [-(2**63), 5], [-LIMIT, 5], [0, 2**63 - 1]
 
 def told(spec: rvmon.Spec, trace: object, time: str, engine: str) -> str:
     with pytest.raises(rvmon.TraceError) as error:
-        spec.evaluate(trace, time=time, engine=engine)
+        spec.evaluate(trace, time=time)
     return str(error.value)
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton"])
 @pytest.mark.parametrize("stamps", BEYOND)
-def test_ticks_beyond_the_limits_are_refused(stamps, engine, tmp_path):
+def test_ticks_beyond_the_limits_are_refused(stamps, tmp_path):
     """Ticks of columns and Parquet files lie between the limits of time, at both ends."""
     spec = rvmon.loads(BOUND)
     table = {"t_ns": np.array(stamps), "x": np.array([1.0, 1.0])}
@@ -64,32 +63,30 @@ def test_seconds_up_to_the_limits_are_taken(last):
 
 
 @pytest.mark.parametrize("rows", [3, 3000])
-@pytest.mark.parametrize("engine", ["auto", "python", "automaton"])
-def test_what_a_mask_hides_is_no_update(engine, rows):
+def test_what_a_mask_hides_is_no_update(rows):
     """A masked cell says nothing, as None in a list does not: the value before is held."""
     spec = rvmon.loads(BOUND)
     values = np.resize([1.0, 9.0, 1.0], rows)
     columns = {"t": np.arange(float(rows)), "x": np.ma.array(values, mask=values > 5)}
-    report = spec.evaluate(columns, engine=engine)
+    report = spec.evaluate(columns)
     lists = {"t": list(range(rows)), "x": np.where(values > 5, None, values).tolist()}
-    assert report == spec.evaluate(lists, engine="automaton")
+    assert report == spec.evaluate(lists)
     assert report.verdicts["R1"] == "P"
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton"])
-def test_the_time_column_is_no_signal(engine, tmp_path):
+def test_the_time_column_is_no_signal(tmp_path):
     """A signal of the name of the time column has no source in arrays, lists and files."""
     spec = rvmon.loads("spec s\nsignal t : real\nrequirement R1\n  always t < 5\n")
     table = {"t": np.array([0.0, 1.0])}
     (tmp_path / "a.csv").write_text("t\n0\n1\n")
     with pytest.raises(rvmon.MissingNameError, match="`t`, read by R1"):
-        spec.evaluate(table, engine=engine)
+        spec.evaluate(table)
     reports = [
-        spec.evaluate(trace, engine=engine, allow_missing=["t"])
+        spec.evaluate(trace, allow_missing=["t"])
         for trace in (table, {"t": [0.0, 1.0]}, pyarrow.table(table))
     ]
     assert reports[0] == reports[1] == reports[2]
-    from_file = spec.evaluate(tmp_path / "a.csv", engine=engine, allow_missing=["t"])
+    from_file = spec.evaluate(tmp_path / "a.csv", allow_missing=["t"])
     assert reports[0].verdicts == from_file.verdicts == {"R1": "I"}
     assert {one.kind.value for one in reports[0].health} == {"absent"}
 
@@ -112,10 +109,9 @@ def test_two_columns_of_a_name_are_refused(name):
         rvmon.loads(BOUND).evaluate(table)
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton"])
 @pytest.mark.parametrize("unit", ["s", "ns"])
 @pytest.mark.parametrize("time", ["t", "t_ns"])
-def test_dates_are_no_instants(time, unit, engine, tmp_path):
+def test_dates_are_no_instants(time, unit, tmp_path):
     """A date or a duration is not taken for a number of seconds; what to give is said."""
     spec = rvmon.loads(BOUND)
     values = np.array([1.0, 1.0])
@@ -159,8 +155,7 @@ def test_what_is_no_column_is_refused(name, wrong):
         rvmon.loads(BOUND).evaluate(table)
 
 
-@pytest.mark.parametrize("engine", ["auto", "python", "automaton"])
-def test_wide_floats_are_refused(engine):
+def test_wide_floats_are_refused():
     """A number that is no double would be rounded: every engine says so."""
     table = {"t": np.arange(3000.0), "x": np.ones(3000, np.longdouble)}
     assert "`x`: expected a number" in told(rvmon.loads(BOUND), table, "t", engine)
@@ -174,6 +169,6 @@ def test_infinite_numbers_are_values(rows):
     for values in ([np.inf, -np.inf, 1e308], [1e308, 1e308, 1e308], [np.nan, np.inf, -np.inf]):
         column = np.resize(np.array(values), rows)
         report = spec.evaluate({"t": np.arange(float(rows)), "x": column})
-        lists = spec.evaluate({"t": list(range(rows)), "x": column.tolist()}, engine="automaton")
+        lists = spec.evaluate({"t": list(range(rows)), "x": column.tolist()})
         assert report.verdicts == lists.verdicts
         assert report.health == lists.health

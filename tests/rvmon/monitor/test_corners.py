@@ -138,9 +138,8 @@ CASES = {
 
 @pytest.mark.law
 @pytest.mark.parametrize("time", TimeModel)
-@pytest.mark.parametrize("engine", ["auto", "progression"])
 @pytest.mark.parametrize("name", CASES)
-def test_corner(name, engine, time):
+def test_corner(name, time):
     """The engine agrees with the oracle, call by call, in each time model that has the formula."""
     judged, actions = CASES[name]
     if time is TimeModel.HELD and "moves with each sample" in name:
@@ -150,7 +149,7 @@ def test_corner(name, engine, time):
     spec = spec_of(judged, time=time, period=4 if time is TimeModel.CLOCKED else None)
 
     def make(case):
-        return build_monitor(compile_spec(case.spec), engine=engine, sources=case.names)
+        return build_monitor(compile_spec(case.spec), sources=case.names)
 
     for finish in (None, 2, 9):
         assert disagreements(Case(spec, actions, finish), make, online=True) == []

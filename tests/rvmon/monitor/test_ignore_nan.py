@@ -69,14 +69,11 @@ def test_it_is_unknown_a_while_after_its_last_good_value(spec):
 
 
 @pytest.mark.parametrize("value", [NAN, None, np.float32("nan")])
-@pytest.mark.parametrize("engine", ["auto", "network", "python", "c"])
-def test_samples_are_judged_as_without_what_they_ignore(spec, value, engine):
+def test_samples_are_judged_as_without_what_they_ignore(spec, value):
     """Whichever way it is said that there is no value."""
     rows = [(t, {n: value if v != v else v for n, v in row.items()}) for t, row in ROWS]
     only = None if engine != "python" else ["Near", "Fresh", "Young"]
-    told, expected = (
-        spec.monitor(engine=engine, only=only, sources=["range", "free", "look"]) for _ in "12"
-    )
+    told, expected = (spec.monitor(only=only, sources=["range", "free", "look"]) for _ in "12")
     for (t, row), (_, bare) in zip(rows, without(rows), strict=True):
         assert [str(a) for a in told.step(t, row)] == [str(a) for a in expected.step(t, bare)]
     assert told.finish() == expected.finish()
@@ -91,8 +88,7 @@ def test_it_is_no_finding_on_the_inputs(spec):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_columns_are_judged_as_samples(spec, engine):
+def test_columns_are_judged_as_samples(spec):
     """In arrays of any length each row holds a value, or NaN."""
     for times in (1, 400):
         rows = [(t + 2 * k, row) for k in range(times) for t, row in ROWS]
@@ -103,11 +99,10 @@ def test_columns_are_judged_as_samples(spec, engine):
             "look": np.array(["look" in row for _, row in rows]),
         }
         looks = [(t, {"look": False, **row}) for t, row in rows]
-        assert records(spec.evaluate(table, engine=engine)) == records(spec.evaluate(looks))
+        assert records(spec.evaluate(table)) == records(spec.evaluate(looks))
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_files_are_judged_as_samples(spec, tmp_path, engine):
+def test_files_are_judged_as_samples(spec, tmp_path):
     """Also where NaN has the stamp of a value: that is no conflict, and the value stays."""
     lines = ["t,range,free,look"]
     for t, row in ROWS:
@@ -115,7 +110,7 @@ def test_files_are_judged_as_samples(spec, tmp_path, engine):
         lines.append(f"{t},nan,nan,0")
     (tmp_path / "a.csv").write_text("\n".join(lines))
     looks = [(t, {"look": False, **row}) for t, row in ROWS]
-    report = spec.evaluate(tmp_path / "a.csv", engine=engine)
+    report = spec.evaluate(tmp_path / "a.csv")
     assert records(report) == records(spec.evaluate(looks))
     assert HealthKind.CONFLICT not in {one.kind for one in report.health}
 

@@ -117,7 +117,7 @@ def test_each_engine_is_measured_beside():
 
     def judged(engine):
         source = Source(spec.recording(arrays_of([0, 1, 2], {"x": [3.0, 0.5, 2.0]})))
-        found = spec.judge(source, engine=engine, robustness=True)
+        found = spec.judge(source, robustness=True)
         return [(one.name, one.robustness) for one in found.attempts]
 
     assert judged("c") == judged("auto") == [("R#1", -0.5), ("R#2", 1.0)]

@@ -270,7 +270,7 @@ def test_what_cannot_be_judged_within_bounds_says_so():
     spec = rvmon.loads(
         "spec s\nsignal a : bool\nevent b\nrequirement R1\n  always (a -> F[2 s, 5 s] b)\n"
     )
-    monitor = spec.monitor(engine="progression")
+    monitor = spec.monitor()
     monitor.step(0, {"a": True})
     with pytest.raises(
         rvmon.RvmonError, match="an attempt of R1 has more than 256 open obligations"
@@ -278,14 +278,13 @@ def test_what_cannot_be_judged_within_bounds_says_so():
         monitor.step(1, {"a": False})
 
 
-@pytest.mark.parametrize("engine", ["python", "automaton"])
-def test_a_value_that_comes_again_after_it_was_stale_is_known(engine):
+def test_a_value_that_comes_again_after_it_was_stale_is_known():
     """Samples that hold all names: time passes before it is seen what is new."""
     spec = rvmon.loads(
         "spec s\nsignal y : int stale after 4 ns\nevent e\n"
         "requirement R1\n  upon e\n  then within 3 ns y == -1\n"
     )
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for t in (4, 11, 14, 18):
         monitor.step_ns(t, {"y": -2, "e": t == 11})
     (attempt,) = monitor.finish_ns().attempts
@@ -304,14 +303,13 @@ def test_a_network_learns_of_an_until_in_order(seed):
     assert not disagreements(Case(spec.checked, tuple(told)), Maker("network"), online=False)
 
 
-@pytest.mark.parametrize("engine", ["automaton", "network", "auto"])
-def test_time_that_passes_without_a_sample_hides_no_further_attempt(engine):
+def test_time_that_passes_without_a_sample_hides_no_further_attempt():
     """A failure that time brings after `advance` is followed by the next attempt, as without."""
     spec = rvmon.loads(
         "spec s\nsignal r : bool\n"
         "requirement R\n  whenever true\n  then eventually[3 ns, 3 ns] G r\n"
     )
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     monitor.step_ns(-3, {"r": False})
     monitor.advance_ns(5)
     monitor.step_ns(7, {})

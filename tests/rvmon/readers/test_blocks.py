@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rvmon.readers.csv_blocks import csv_blocks
 
 import rvmon
 from rvmon.readers import as_blocks, recording
 from rvmon.readers import csv_blocks as module
 from rvmon.readers import parquet as parquet_module
 from rvmon.readers.batch import NotPlainError
-from rvmon.readers.csv_blocks import csv_blocks
 from rvmon.readers.decimals import Cells, decimals, instants, whole_numbers
 from rvmon.readers.source import Source
 from rvmon.trace.time import ticks_of_text
@@ -72,7 +72,7 @@ def by_columns(
     """The report of the quick way; what is not plain fails."""
     opened = spec.recording(path)
     source = Source(opened, end, is_cut=True, read=lambda _: pytest.fail("rows are read"))
-    return spec.judge(source, engine=engine)
+    return spec.judge(source)
 
 
 def has_columns(spec: rvmon.Spec, path: Path) -> bool:
@@ -90,10 +90,9 @@ def cut_into(request, monkeypatch):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ["auto", "automaton"])
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("end", [0.1, 31.4, 120.0, 9999.0])
-def test_a_file_can_be_cut(end, time, engine, tmp_path, cut_into):
+def test_a_file_can_be_cut(end, time, tmp_path, cut_into):
     """Rows behind an instant are left out, wherever it lies in a block."""
     cut_into(1999)
     (tmp_path / "a.csv").write_text(csv_text(3))

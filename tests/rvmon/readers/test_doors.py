@@ -58,9 +58,9 @@ def test_the_core_tells_of_every_door_what_all_engines_do(seed, tmp_path):
         for door, write in doors().items() if content.rows else ():
             trace, arguments = write(content, tmp_path)
             expected = bare(judged(spec, trace, **arguments))
-            found = [bare(judged(spec, trace, engine="c", **arguments))]
+            found = [bare(judged(spec, trace, **arguments))]
             with in_pieces(200):
-                found.append(bare(judged(spec, trace, engine="c", **arguments)))
+                found.append(bare(judged(spec, trace, **arguments)))
             assert found == [expected, expected], door
 
 
@@ -209,18 +209,17 @@ def test_all_that_read_recordings_are_told_alike(tmp_path):
             spec.recording(trace, time="ms:ms", allow_missing=["y"])
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton"])
-def test_equal_stamps_are_merged_and_the_order_is_kept(engine, tmp_path):
+def test_equal_stamps_are_merged_and_the_order_is_kept(tmp_path):
     """The last of two values wins and is told; what goes backwards is an error."""
     table = {"t": [0.0, 1.0, 1.0], "speed": [1.0, 9.0, 2.0]}
     for trace in doors_of(table, tmp_path):
-        report = judged(base(), trace, engine=engine)
+        report = judged(base(), trace)
         assert report.verdicts["R1"] == "P"
         [conflict] = [one for one in report.health if one.kind == "conflict"]
         assert (conflict.name, conflict.first) == ("speed", 10**9)
     for trace in doors_of(table | {"t": [0.0, 2.0, 1.0]}, tmp_path):
         with pytest.raises(TraceError, match="time goes backwards, from 2 s to 1 s"):
-            judged(base(), trace, engine=engine)
+            judged(base(), trace)
 
 
 def test_ticks_are_found_by_the_name_of_their_column():

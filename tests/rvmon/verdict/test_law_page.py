@@ -24,9 +24,8 @@ def test_every_specification_of_the_page_is_an_example():
     assert len(EXAMPLES) == PAGE.count("```rv\n") > 0
 
 
-@pytest.mark.parametrize("engine", ["auto", "network"])
 @pytest.mark.parametrize(("text", "form", "data", "table"), EXAMPLES)
-def test_what_is_judged_now(text, form, data, table, engine, tmp_path):
+def test_what_is_judged_now(text, form, data, table, tmp_path):
     """The last column holds verdicts, attempts and exit code as they are."""
     spec, trace = tmp_path / "base.rv", tmp_path / f"base.{form}"
     spec.write_text(text, encoding="utf-8")
@@ -38,9 +37,9 @@ def test_what_is_judged_now(text, form, data, table, engine, tmp_path):
         assert main(words) == int(now["exit code"])
     if now["verdicts"] == "refused":
         with pytest.raises(MissingNameError):
-            rvmon.load(spec).evaluate(trace, engine=engine)
+            rvmon.load(spec).evaluate(trace)
         return
-    report = rvmon.load(spec).evaluate(trace, engine=engine)
+    report = rvmon.load(spec).evaluate(trace)
     verdicts = [f"{name} {verdict}" for name, verdict in report.verdicts.items()]
     assert listed(verdicts) == now["verdicts"]
     assert listed(f"{one.name} {one.verdict}" for one in report.attempts) == now["attempts"]

@@ -58,7 +58,7 @@ def kept_in(folder):
 def judged(text=TEXT, **how):
     """What a monitor that is made anew says of the samples, online and afterwards."""
     spec = rvmon.loads(text)
-    monitor = spec.monitor(engine="c", **how)
+    monitor = spec.monitor(**how)
     decided = [list(monitor.step(t, values)) for t, values in SAMPLES]
     return decided, monitor.finish(9).to_json(), spec
 
@@ -66,14 +66,14 @@ def judged(text=TEXT, **how):
 def test_the_second_time_it_is_read(folder, packs_nothing):
     """Nothing is compiled or packed then, for streams and for recordings, and the same is said."""
     decided, report, spec = judged()
-    evaluated = spec.evaluate(SAMPLES, engine="c").verdicts
+    evaluated = spec.evaluate(SAMPLES).verdicts
     assert [path.stat().st_mode & 0o077 for path in kept_in(folder)] == [0]
     packs_nothing()
     again, same, spec = judged()
     assert (again, same) == (decided, report)
     assert [one.requirement for call in decided for one in call] == ["R", "S", "R"]
     spec = rvmon.loads(TEXT)
-    assert spec.evaluate(SAMPLES, engine="c").verdicts == evaluated
+    assert spec.evaluate(SAMPLES).verdicts == evaluated
     assert "requirements" not in vars(spec._compiled)
     assert len(kept_in(folder)) == 1
 
@@ -137,7 +137,7 @@ def test_only_what_was_loaded_is_kept(folder):
     """Not each of the specifications that programs make up, of which there may be thousands."""
     from rvmon.monitor import build_monitor, compile_spec
 
-    build_monitor(compile_spec(rvmon.loads(TEXT).checked), engine="c")
+    build_monitor(compile_spec(rvmon.loads(TEXT).checked))
     assert not kept_in(folder)
 
 
@@ -155,7 +155,7 @@ def test_all_processes_share_it(folder, tmp_path):
     """Whatever the order of their sets is."""
     spec = tmp_path / "spec.rv"
     spec.write_text(TEXT)
-    program = f"import rvmon; rvmon.load({str(spec)!r}).monitor(engine='c')"
+    program = f"import rvmon; rvmon.load({str(spec)!r}).monitor()"
     for seed in "123":
         env = {**os.environ, "PYTHONHASHSEED": seed}
         command = [sys.executable, "-c", program]

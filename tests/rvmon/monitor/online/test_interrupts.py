@@ -6,9 +6,9 @@ from types import CodeType, FrameType
 from typing import Any
 
 import pytest
+from rvmon.monitor.online.monitor import Monitor
 
 import rvmon
-from rvmon.monitor.online.monitor import Monitor
 from rvmon.report.junit import junit_xml
 from rvmon.report.run_text import health_lines
 from rvmon.trace.health import HealthKind
@@ -88,7 +88,7 @@ def _some(places: dict[Place, None], engine: str) -> list[Place]:
 
 
 def _begun(spec: rvmon.Spec, engine: str) -> Monitor:
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     monitor.step_ns(1 * _S, {"x": 1.0, "y": 1.0, "e": False, "p": False, "f": True, "q": False})
     monitor.step_ns(2 * _S, {"x": 1.0, "y": 4.0, "e": True, "p": False, "f": False, "q": True})
     return monitor
@@ -126,8 +126,7 @@ def _untouched(report: Report) -> list[Attempt]:
     return [one for one in report.attempts if one.requirement in ("R3", "R4")]
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton", "network", "progression"])
-def test_an_interrupt_leaves_the_monitor_open(engine: str) -> None:
+def test_an_interrupt_leaves_the_monitor_open() -> None:
     """Whatever place of the code it strikes, later calls are taken, and judged right."""
     spec = rvmon.loads(_SPEC)
     for _ in range(2):  # the second time what a specification keeps for its monitors is there
@@ -165,7 +164,7 @@ def _is_torn(report: Report) -> bool:
         ("c", _Odd),
     ],
 )
-def test_after_a_torn_step_nothing_passes(engine: str, make: type[dict[str, object]]) -> None:
+def test_after_a_torn_step_nothing_passes(make: type[dict[str, object]]) -> None:
     """A step is judged in full, or not at all, or what has not failed is inconclusive."""
     spec = rvmon.loads(_SPEC)
     skipped = _ended(_begun(spec, engine))
@@ -191,8 +190,7 @@ def test_after_a_torn_step_nothing_passes(engine: str, make: type[dict[str, obje
     assert torn > len(struck) / 2
 
 
-@pytest.mark.parametrize("engine", ["auto", "network", "c"])
-def test_a_snapshot_keeps_that_a_step_was_torn(engine: str) -> None:
+def test_a_snapshot_keeps_that_a_step_was_torn() -> None:
     """What goes on from it says the same."""
     spec = rvmon.loads(_SPEC)
     for _ in range(2):

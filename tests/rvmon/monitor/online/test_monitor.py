@@ -3,13 +3,12 @@
 import math
 
 import pytest
-from tests.tools.forms import EXPLAINING as ENGINES
+from rvmon.monitor.online.generated import GeneratedMonitor
 
 import rvmon
 from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
-from rvmon.monitor.online.generated import GeneratedMonitor
 from rvmon.verdict.verdict import Verdict
 
 SPEC = """spec handover "Handover"
@@ -49,13 +48,12 @@ def brief(attempts):
 
 @pytest.fixture(name="monitor", params=["auto", "automaton", "progression"])
 def _monitor(request):
-    return rvmon.loads(SPEC).monitor(engine=request.param)
+    return rvmon.loads(SPEC).monitor()
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_generated_code_runs_only_where_it_is_asked_for(engine):
+def test_generated_code_runs_only_where_it_is_asked_for():
     """It does so where the engine is left open, too; another engine judges by itself."""
-    monitor = rvmon.loads(SPEC).monitor(engine=engine)
+    monitor = rvmon.loads(SPEC).monitor()
     assert isinstance(monitor, GeneratedMonitor) is (engine in ("auto", "python"))
 
 
@@ -195,7 +193,7 @@ def test_an_engine_that_cannot_judge_says_so():
     """A formula whose automaton does not close is refused by that engine, judged by `auto`."""
     spec = rvmon.loads(SPAWNING)
     with pytest.raises(RvmonError, match="R has no automaton"):
-        spec.monitor(engine="automaton")
+        spec.monitor()
     monitor = spec.monitor()
     monitor.step_ns(0, {"a": True})
     monitor.step_ns(1, {"a": True})
@@ -250,8 +248,8 @@ def test_code_is_generated_for_so_many_requirements(count, generated, monkeypatc
     assert (type(monitor) is GeneratedMonitor) == generated
     if not generated:
         with pytest.raises(RvmonError, match="one of 101 requirements, more than the 100"):
-            spec.monitor(engine="python")
-        assert type(spec.monitor(only=["R7"], engine="python")) is GeneratedMonitor
+            spec.monitor()
+        assert type(spec.monitor(only=["R7"])) is GeneratedMonitor
     monitor.step(0, {"p": False, "e": True})
     monitor.step(1, {"p": True})
     report = monitor.finish(9)

@@ -44,8 +44,7 @@ SAMPLES = [
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "progression", "network", "c"])
-def test_interruptions_change_nothing(engine):
+def test_interruptions_change_nothing():
     """Every engine, taken up from snapshots at random points, judges as the law says."""
     seeds = [f"snapshot/{number}" for number in range(20)]
     profile, traces = Profile(mixed=engine in ("auto", "network")), TraceProfile()
@@ -55,13 +54,12 @@ def test_interruptions_change_nothing(engine):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_another_process_could_take_over(engine):
+def test_another_process_could_take_over():
     """A specification that was compiled anew takes the snapshot, and gives the same bytes again."""
     taken = 0
     for number in range(6):
         case = case_of(f"anew/{number}", Profile(), TraceProfile())
-        monitor = Spec(case.spec).monitor(engine=engine, sources=case.names)
+        monitor = Spec(case.spec).monitor(sources=case.names)
         rng = random.Random(number)
         for action in case.actions:
             feed(monitor, action)
@@ -74,12 +72,11 @@ def test_another_process_could_take_over(engine):
 
 
 @pytest.mark.parametrize("text", ["max delay 2 s\n", ""])
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_samples_held_back_are_kept(text, engine):
+def test_samples_held_back_are_kept(text):
     """What waits to be sorted or merged is in the snapshot, and so is what came too late."""
     spec = rvmon.loads(TEXT.replace("spec door\n", f"spec door\n{text}"))
-    plain = spec.monitor(engine=engine, settle="next")
-    other = Interrupted(spec.monitor(engine=engine, settle="next"), random.Random(1), share=1)
+    plain = spec.monitor(settle="next")
+    other = Interrupted(spec.monitor(settle="next"), random.Random(1), share=1)
     stream = [*SAMPLES, (9, {"width": 2.5}), (9, {"closed": True})]
     if text:
         stream = [stream[1], stream[0], *stream[2:], (1, {"closed": False})]
@@ -90,11 +87,10 @@ def test_samples_held_back_are_kept(text, engine):
     assert {"late", "conflict"} & {one.kind.value for one in report.health}
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_open_attempts_and_records_are_kept(engine):
+def test_open_attempts_and_records_are_kept():
     """The restored monitor shows the same open attempts and reports the same run."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for t, values in SAMPLES[:4]:
         monitor.step(t, values)
     restored = spec.restore(monitor.snapshot())
@@ -105,10 +101,9 @@ def test_open_attempts_and_records_are_kept(engine):
     assert monitor.finish(20) == restored.finish(20)
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_another_specification_is_refused(engine):
+def test_another_specification_is_refused():
     """A snapshot names what it does not fit; layout and comments do not count."""
-    monitor = rvmon.loads(TEXT).monitor(engine=engine)
+    monitor = rvmon.loads(TEXT).monitor()
     monitor.step(0, {"closed": True})
     data = monitor.snapshot()
     with pytest.raises(SnapshotError, match="another specification"):
@@ -116,11 +111,10 @@ def test_another_specification_is_refused(engine):
     assert rvmon.loads(f"# the front door\n{TEXT}\n").restore(data).snapshot() == data
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_wrong_bytes_are_refused(engine):
+def test_wrong_bytes_are_refused():
     """Bytes that are cut, changed or something else are no snapshot, whatever is changed."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     monitor.step(0, {"closed": True})
     data = monitor.snapshot()
     for wrong in (b"", b"PK\x03\x04", data[:-1], data + b" ", data.replace(b"settle", b"sattle")):
@@ -155,10 +149,9 @@ def test_forged_bytes_are_refused():
             spec.restore(head.rpartition(b" ")[0] + b" " + checksum + b"\n" + text)
 
 
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_a_finished_run_has_a_report_and_no_snapshot(engine):
+def test_a_finished_run_has_a_report_and_no_snapshot():
     """After the end there is nothing to go on with."""
-    monitor = rvmon.loads(TEXT).monitor(engine=engine)
+    monitor = rvmon.loads(TEXT).monitor()
     monitor.finish()
     with pytest.raises(SnapshotError, match="finished"):
         monitor.snapshot()
@@ -174,11 +167,10 @@ def places_in(value, path=()):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("engine", ["auto", "c"])
-def test_most_hostile_snapshots_are_refused_at_once(engine):
+def test_most_hostile_snapshots_are_refused_at_once():
     """A sealed snapshot with something else at a place is refused, or makes a monitor to ask."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for t, values in SAMPLES[:5]:
         monitor.step(t, values)
     head, _, body = monitor.snapshot().partition(b"\n")
@@ -207,7 +199,7 @@ def test_a_snapshot_whose_times_have_passed_is_refused():
     """With any one number of what waits in a network below zero, restoring comes to an end."""
     text = "spec s\nsignal p, q : bool\nsignal v : real\nrequirement R1\n"
     spec = rvmon.loads(text + "  whenever v > 3 then (p until[0 s, 4 s] q)\n")
-    monitor = spec.monitor(engine="network")
+    monitor = spec.monitor()
     for t, (p, q, v) in enumerate([(True, False, 4.0), (None, False, None), (True, None, 5.0)]):
         monitor.step(t, {"p": p, "q": q, "v": v})
     head, _, body = monitor.snapshot().partition(b"\n")
@@ -231,11 +223,10 @@ def test_a_snapshot_whose_times_have_passed_is_refused():
 
 
 @pytest.mark.parametrize("value", [float("inf"), float("nan"), 1.5, "x"])
-@pytest.mark.parametrize("engine", ["auto", "network"])
-def test_an_instant_that_is_none_is_refused(engine, value):
+def test_an_instant_that_is_none_is_refused(value):
     """How far the run has come is a whole number of ticks, or it is not known."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for t, values in SAMPLES[:5]:
         monitor.step(t, values)
     reached = str(int(SAMPLES[4][0] * 10**9))
@@ -255,7 +246,7 @@ def test_an_instant_that_is_none_is_refused(engine, value):
 def test_a_run_that_was_torn_at_its_first_step_is_restored():
     """Of an interrupt before all samples no instant is told."""
     spec = rvmon.loads(TEXT)
-    monitor = spec.monitor(engine="network")
+    monitor = spec.monitor()
 
     class Torn(BaseException):
         pass
@@ -271,15 +262,14 @@ def test_a_run_that_was_torn_at_its_first_step_is_restored():
     assert ("interrupted", None) in {(one.kind.value, one.first) for one in report.health}
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton", "network", "c"])
-def test_a_captured_attempt_that_is_not_looked_after_stays_so(engine):
+def test_a_captured_attempt_that_is_not_looked_after_stays_so():
     """Between the ticks of a clock, what occurs is judged at the tick that follows, as before."""
     spec = rvmon.loads(
         "time sampled every 3 ns\nsignal x : real\nevent f\nevent h(m: real)\n"
         "requirement R1\n  upon f\n  then h.m >= 1\n  let v = x\n"
     )
     samples = [(0, {"f": None}), (2, {"h": {"m": None}}), (7, {"f": None}), (8, {}), (11, {})]
-    whole, torn = spec.monitor(engine=engine), spec.monitor(engine=engine)
+    whole, torn = spec.monitor(), spec.monitor()
     for t, values in samples:
         whole.step_ns(t, values)
         torn.step_ns(t, values)

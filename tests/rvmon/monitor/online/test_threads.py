@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from itertools import count
 
 import pytest
+from rvmon.monitor.online.monitor import Monitor
 
 import rvmon
 from rvmon.errors import OverlapError
-from rvmon.monitor.online.monitor import Monitor
 
 _SPEC = """spec s
 signal x : real
@@ -37,7 +37,7 @@ def quick_turns() -> Iterator[None]:
 
 
 def _monitor(engine: str = "auto") -> Monitor:
-    return rvmon.loads(_SPEC).monitor(engine=engine)
+    return rvmon.loads(_SPEC).monitor()
 
 
 def _row(number: int) -> dict[str, object]:
@@ -73,9 +73,8 @@ def _stepped_by_two(
     return Counter(found)
 
 
-@pytest.mark.parametrize("engine", _ENGINES)
 @pytest.mark.usefixtures("quick_turns")
-def test_two_threads_break_nothing_but_their_own_calls(engine: str) -> None:
+def test_two_threads_break_nothing_but_their_own_calls() -> None:
     """Every call is taken whole, or refused for its time or for the call under way."""
     monitor = _monitor(engine)
     clock = count(1)
@@ -87,8 +86,7 @@ def test_two_threads_break_nothing_but_their_own_calls(engine: str) -> None:
     assert len(numbers) <= found["taken"]
 
 
-@pytest.mark.parametrize("engine", [*_ENGINES[1:], "c"])
-def test_a_call_within_another_is_refused(engine: str) -> None:
+def test_a_call_within_another_is_refused() -> None:
     """Whatever is called while a step is under way is refused; the step itself is taken."""
     monitor = _monitor(engine)
     refused = []
@@ -159,8 +157,7 @@ def test_a_signal_handler_within_a_step_is_refused_or_takes_its_sample_whole() -
     )
 
 
-@pytest.mark.parametrize("engine", _ENGINES)
-def test_callbacks_may_call_their_monitor(engine: str) -> None:
+def test_callbacks_may_call_their_monitor() -> None:
     """The call that decided is over when it is told: callbacks look, and even step."""
     monitor = _monitor(engine)
     looked = []
@@ -179,8 +176,7 @@ def test_callbacks_may_call_their_monitor(engine: str) -> None:
     assert monitor.finish_ns(5).counts["R1"]["F"] == 2
 
 
-@pytest.mark.parametrize("engine", _ENGINES)
-def test_a_call_that_fails_leaves_the_monitor_open(engine: str) -> None:
+def test_a_call_that_fails_leaves_the_monitor_open() -> None:
     """What is wrong with a sample, or with a callback, closes nothing."""
     monitor = _monitor(engine)
     monitor.step_ns(1, {"x": 1.0})

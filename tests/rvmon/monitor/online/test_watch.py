@@ -56,7 +56,7 @@ def _spec():
 @pytest.fixture(name="engine", params=ENGINES)
 def _engine(request, spec):
     try:
-        spec.monitor(engine=request.param)
+        spec.monitor()
     except RvmonError as error:
         pytest.skip(str(error))
     return request.param
@@ -65,9 +65,9 @@ def _engine(request, spec):
 # Verdicts so far.
 
 
-def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec, engine):
+def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec):
     """F if an attempt failed, else P if one passed, else NT, after each call."""
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     seen = {name: set() for name in spec.requirements}
     assert set(monitor.verdicts.values()) == {"NT"}
     for t, values in samples(60):
@@ -85,9 +85,9 @@ def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec, engine):
     assert set(monitor.verdicts.values()) == {"NT"}
 
 
-def test_what_is_undecided_does_not_count_so_far(spec, engine):
+def test_what_is_undecided_does_not_count_so_far(spec):
     """An open attempt leaves the verdict; what `finish` makes of it is the report's."""
-    monitor = spec.monitor(engine=engine, only=["U1"])
+    monitor = spec.monitor(only=["U1"])
     monitor.step(0, {"e": True})
     assert monitor.verdicts == {"U1": "NT"}
     monitor.step(1, {"stop": True})
@@ -101,9 +101,9 @@ def test_what_is_undecided_does_not_count_so_far(spec, engine):
 
 
 @pytest.mark.parametrize("settle", ["now", "next"])
-def test_callbacks_hear_of_each_decision_once_in_order(spec, engine, settle):
+def test_callbacks_hear_of_each_decision_once_in_order(spec, settle):
     """They hear what the calls return and what finish decides, failures alone if asked."""
-    monitor = spec.monitor(engine=engine, settle=settle)
+    monitor = spec.monitor(settle=settle)
     heard, failed, returned = [], [], []
     monitor.on_decided(heard.append)
     monitor.on_failure(failed.append)
@@ -121,9 +121,9 @@ def test_callbacks_hear_of_each_decision_once_in_order(spec, engine, settle):
     assert len(heard) == len(decided)
 
 
-def test_a_monitor_that_is_listened_to_returns_the_same(spec, engine):
+def test_a_monitor_that_is_listened_to_returns_the_same(spec):
     """A callback changes neither records nor what is due next."""
-    plain, watched = spec.monitor(engine=engine), spec.monitor(engine=engine)
+    plain, watched = spec.monitor(), spec.monitor()
     watched.on_failure(lambda _: None)
     for t, values in samples(60):
         assert watched.step_ns(t, values) == plain.step_ns(t, values)
@@ -132,9 +132,9 @@ def test_a_monitor_that_is_listened_to_returns_the_same(spec, engine):
     assert watched.finish() == plain.finish()
 
 
-def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec, engine):
+def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec):
     """It hears nothing after it was taken away, twice does no harm; until then every run."""
-    monitor = spec.monitor(engine=engine, only=["L1"])
+    monitor = spec.monitor(only=["L1"])
     heard = []
     stop = monitor.on_failure(heard.append)
     monitor.step(0, {"x": 5})
@@ -152,9 +152,9 @@ def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec, engine):
     assert len(heard) == 3
 
 
-def test_what_a_callback_raises_leaves_the_monitor_in_order(spec, engine):
+def test_what_a_callback_raises_leaves_the_monitor_in_order(spec):
     """The sample counts, the other callbacks hear, and the run goes on as without it."""
-    plain, monitor = spec.monitor(engine=engine), spec.monitor(engine=engine)
+    plain, monitor = spec.monitor(), spec.monitor()
     heard = []
 
     def broken(attempt):
@@ -185,9 +185,9 @@ def test_what_a_callback_raises_leaves_the_monitor_in_order(spec, engine):
     assert len(heard) == sum(one.decided is not None for one in report.attempts)
 
 
-def test_a_callback_may_look_at_the_monitor(spec, engine):
+def test_a_callback_may_look_at_the_monitor(spec):
     """Verdicts, what is open and a snapshot are those after the call."""
-    monitor = spec.monitor(engine=engine, only=["L1", "B1"])
+    monitor = spec.monitor(only=["L1", "B1"])
     seen = []
 
     def look(attempt):
@@ -211,7 +211,7 @@ def test_what_cannot_be_called_is_refused(spec):
 def test_monitors_of_the_core_tell_the_same(spec):
     """Callbacks and verdicts so far of the engine `c` are those of the others."""
     for settle in ("now", "next"):
-        compiled = spec.monitor(engine="c", settle=settle)
+        compiled = spec.monitor(settle=settle)
         plain = spec.monitor(settle=settle)
         heard, expected = [], []
         stop = compiled.on_decided(heard.append)
@@ -242,10 +242,10 @@ def hasty(monkeypatch):
 
 
 @pytest.mark.slow
-def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec, engine):
+def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec):
     """Verdicts and counts are those of a run that keeps all; the rest is told as dropped."""
-    plain = spec.monitor(engine=engine)
-    monitors = {keep: spec.monitor(engine=engine, keep=keep) for keep in (0, 1, 7)}
+    plain = spec.monitor()
+    monitors = {keep: spec.monitor(keep=keep) for keep in (0, 1, 7)}
     for t, values in samples(300):
         decided = plain.step_ns(t, values)
         assert all(one.step_ns(t, values) == decided for one in monitors.values())
@@ -265,9 +265,9 @@ def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec, engine):
         assert Report.from_json(report.to_json()) == report
 
 
-def test_memory_does_not_grow_with_what_stays_undecided(spec, engine, hasty):
+def test_memory_does_not_grow_with_what_stays_undecided(spec, hasty):
     """Attempts that unknown input has left without a way out are dropped, but counted."""
-    monitor = spec.monitor(engine=engine, only=["Y1"], keep=5)
+    monitor = spec.monitor(only=["Y1"], keep=5)
     monitor.step(0, {"y": None})
     most = 0
     for second in range(1, 400):
@@ -280,7 +280,7 @@ def test_memory_does_not_grow_with_what_stays_undecided(spec, engine, hasty):
     assert [one.number for one in report.attempts] == [*range(395, 400)]
 
 
-def test_attempts_in_doubt_are_bounded_too(engine, hasty):
+def test_attempts_in_doubt_are_bounded_too(hasty):
     """Episodes whose trigger is lost, one after the other, whose consequent fails."""
     spec = rvmon.loads("""
 spec doubts
@@ -293,7 +293,7 @@ requirement U1
   upon p
   then within 5 ms q
 """)
-    plain, monitor = spec.monitor(engine=engine), spec.monitor(engine=engine, keep=4)
+    plain, monitor = spec.monitor(), spec.monitor(keep=4)
     for t in range(120):
         values = {"p": None if t % 2 else False, "q": False}
         assert monitor.step(t, values) == plain.step(t, values)
@@ -305,7 +305,7 @@ requirement U1
         assert list(map(key, report.of(name, "I"))) == list(map(key, expected.of(name, "I")))[-4:]
 
 
-def test_void_episodes_are_bounded_too(engine, hasty):
+def test_void_episodes_are_bounded_too(hasty):
     """Episodes that were over before all that is owed had a value."""
     spec = rvmon.loads("""
 spec void
@@ -315,7 +315,7 @@ requirement W1
   whenever p
   then q
 """)
-    plain, monitor = spec.monitor(engine=engine), spec.monitor(engine=engine, keep=4)
+    plain, monitor = spec.monitor(), spec.monitor(keep=4)
     for t in range(160):
         plain.step(t, {"p": bool(t % 2)})
         monitor.step(t, {"p": bool(t % 2)})
@@ -326,9 +326,9 @@ requirement W1
     assert list(report.attempts) == list(expected.attempts)[-4:]
 
 
-def test_a_snapshot_carries_the_counts(spec, engine):
+def test_a_snapshot_carries_the_counts(spec):
     """A run that is put away and taken up again drops and counts as if it had not been."""
-    plain, monitor = spec.monitor(engine=engine, keep=3), spec.monitor(engine=engine, keep=3)
+    plain, monitor = spec.monitor(keep=3), spec.monitor(keep=3)
     sizes = []
     for index, (t, values) in enumerate(samples(400)):
         plain.step_ns(t, values)
@@ -382,11 +382,10 @@ requirement C1
     }
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_of_much_that_is_open_the_oldest_is_enough(engine):
+def test_of_much_that_is_open_the_oldest_is_enough():
     """All are counted; the records are those of `open`: of each requirement that began first."""
     text = SPEC.replace("within 3 s stop", "within 9 s stop")
-    monitor = rvmon.loads(text).monitor(engine=engine, only=["U1", "L1"])
+    monitor = rvmon.loads(text).monitor(only=["U1", "L1"])
     for t in range(4):
         monitor.step(t, {"e": True, "beat": t == 3, "x": 0.0, "y": 1.0})
     counts, records = monitor.owed(2)

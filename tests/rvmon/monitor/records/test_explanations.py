@@ -16,10 +16,10 @@ event released, held_it output
 ENGINES = ("auto", "progression", "network")
 
 
-def run(requirement, samples, end=None, *, engine="auto"):
+def run(requirement, samples, end=None, *):
     """The attempts on a trace whose times are seconds."""
     spec = rvmon.loads(f"{HEAD}requirement R\n{requirement}\n")
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for t, values in samples:
         monitor.step(t, values)
     return spec, monitor.finish(end).attempts
@@ -95,12 +95,11 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", CASES)
-def test_a_failure_names_obligation_window_and_place(name, engine):
+def test_a_failure_names_obligation_window_and_place(name):
     """The reason is one sentence, and the blame points into the text of the spec."""
     requirement, samples, end, reason, blamed, window = CASES[name]
-    spec, attempts = run(requirement, samples, end, engine=engine)
+    spec, attempts = run(requirement, samples, end)
     [failed] = [a for a in attempts if a.verdict == "F"]
     assert failed.reason == reason
     assert failed.blame.window == window
@@ -108,11 +107,10 @@ def test_a_failure_names_obligation_window_and_place(name, engine):
     assert text == failed.blame.subformula == blamed
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_the_blamed_sample_is_the_one_that_changed_the_value(engine):
+def test_the_blamed_sample_is_the_one_that_changed_the_value():
     """A value that has been wrong for long is blamed on the sample that made it so."""
     samples = [(1, {"near": True}), (5, {"go": True})]
-    _, [failed] = run("upon go\nthen for 2 s not near", samples, engine=engine)
+    _, [failed] = run("upon go\nthen for 2 s not near", samples)
     assert failed.blame.at == (10**9,)
 
 
@@ -123,11 +121,10 @@ def test_propositions_are_shown_at_trigger_and_decision():
     assert failed.at_decision == {"go": False, "released": False, "near": None}
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_an_undecided_attempt_says_what_is_owed_and_till_when(engine):
+def test_an_undecided_attempt_says_what_is_owed_and_till_when():
     """An I names the obligation and its deadline."""
     samples = [(1, {"go": True})]
-    _, [left] = run("upon go\nthen within 3 s released", samples, 2, engine=engine)
+    _, [left] = run("upon go\nthen within 3 s released", samples, 2)
     assert (
         left.reason == "still owed when the recording ended at 2 s: `within 3 s released` by 4 s; "
         "a recording more than 2 s longer would have decided it"
@@ -135,13 +132,12 @@ def test_an_undecided_attempt_says_what_is_owed_and_till_when(engine):
     assert left.deadline == 4 * 10**9
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_what_time_has_ruled_out_is_owed_no_more(engine):
+def test_what_time_has_ruled_out_is_owed_no_more():
     """An I leaves out what time alone has settled, also where no position came with it."""
     monitor = rvmon.loads(
         "spec s\ntime sampled\nsignal p, q : bool\nevent go\n"
         "requirement R1\n  upon go\n  then (within 3 ns p) or (within 9 ns q)\n"
-    ).monitor(engine=engine)
+    ).monitor()
     monitor.step_ns(0, {"p": False, "q": False, "go": True})
     monitor.advance_ns(6)
     [left] = monitor.finish_ns().attempts
@@ -157,11 +153,10 @@ def test_captured_values_are_recorded():
     assert (attempt.captured, attempt.verdict.value) == ({"d": 0.5}, "P")
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_what_is_owed_is_told_once(engine):
+def test_what_is_owed_is_told_once():
     """What is owed at each position, and owed now, stands once, with its deadline."""
     text = "spec s\nsignal p, q : bool\nrequirement R1\n  whenever p\n  then within 5 s q\n"
-    monitor = rvmon.loads(text).monitor(engine=engine)
+    monitor = rvmon.loads(text).monitor()
     monitor.step(0, {"p": False, "q": False})
     monitor.step(2, {"p": True})
     [owed] = monitor.open
@@ -169,13 +164,12 @@ def test_what_is_owed_is_told_once(engine):
 
 
 @pytest.mark.parametrize("advances", [(), (10**9,), (2 * 10**9,), (2 * 10**9 + 1,)])
-@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
-def test_a_run_that_time_alone_takes_on_and_decides_is_told_as_it_was(engine, advances):
+def test_a_run_that_time_alone_takes_on_and_decides_is_told_as_it_was(advances):
     """The record names the window that closed, however time was told to pass."""
     monitor = rvmon.loads(
         "spec s\nsignal p, r : bool\nrequirement R1\n"
         "  upon start then eventually[2 s, 2 s] (p until r)\n"
-    ).monitor(engine=engine)
+    ).monitor()
     monitor.step(0, {"p": False, "r": False})
     for t in advances:
         monitor.advance_ns(t)
@@ -185,13 +179,12 @@ def test_a_run_that_time_alone_takes_on_and_decides_is_told_as_it_was(engine, ad
     assert attempt.blame.window == (2 * 10**9, 2 * 10**9)
 
 
-@pytest.mark.parametrize("engine", ["auto", "automaton", "network"])
-def test_the_deadline_of_what_ends_an_obligation_is_that_of_its_window(engine):
+def test_the_deadline_of_what_ends_an_obligation_is_that_of_its_window():
     """What releases an obligation has a window of its own, which time alone closes."""
     monitor = rvmon.loads(
         "spec s\ntime sampled\nsignal p, q : bool\nrequirement R1\n"
         "  upon start then (q M (always[0 ns, 1 ns] p))\n"
-    ).monitor(engine=engine)
+    ).monitor()
     monitor.step_ns(0, {"p": True, "q": False})
     monitor.step_ns(2, {"p": True, "q": True})
     (attempt,) = monitor.step_ns(5, {"p": False})
@@ -219,20 +212,18 @@ UNKNOWN = {
 }
 
 
-@pytest.mark.parametrize("engine", ["auto", "python", "automaton", "network"])
 @pytest.mark.parametrize("name", UNKNOWN)
-def test_an_attempt_that_the_input_left_open_says_from_when_to_when_and_why(name, engine):
+def test_an_attempt_that_the_input_left_open_says_from_when_to_when_and_why(name):
     """The cause of an I is the stretch over which a signal was not known."""
     samples, told = UNKNOWN[name]
-    _, [left] = run("upon go\nthen immediately distance > 5 cm", samples, engine=engine)
+    _, [left] = run("upon go\nthen immediately distance > 5 cm", samples)
     assert left.reason == f"left open by the input: {told}"
 
 
-@pytest.mark.parametrize("engine", ["python", "automaton"])
-def test_what_was_not_known_when_a_run_was_interrupted_may_end_after_that(engine):
+def test_what_was_not_known_when_a_run_was_interrupted_may_end_after_that():
     """A snapshot keeps which stretch an attempt waits to hear the end of."""
     spec = rvmon.loads(f"{HEAD}requirement R\nupon go\nthen immediately distance > 5 cm\n")
-    first = spec.monitor(engine=engine)
+    first = spec.monitor()
     first.step(0, {"distance": 1.0})
     first.step(2, {"go": True})
     second = spec.restore(first.snapshot())
@@ -245,17 +236,16 @@ def test_a_name_without_a_source_is_said_to_have_none():
     """What has no source is not what was lost."""
     spec = rvmon.loads(f"{HEAD}requirement R\nupon go\nthen immediately near\n")
     for engine in ("python", "automaton"):
-        monitor = spec.monitor(engine=engine, sources=["go"])
+        monitor = spec.monitor(sources=["go"])
         monitor.step(0, {"go": True})
         [left] = monitor.finish().attempts
         assert left.reason == "left open by the input: `near` has no source"
 
 
-@pytest.mark.parametrize("engine", ["python", "automaton", "progression"])
-def test_what_is_owed_in_a_loop_is_that_of_now(engine):
+def test_what_is_owed_in_a_loop_is_that_of_now():
     """Positions at which the same is owed again are passed over: the window moves all the same."""
     text = "requirement R\nupon start\nthen eventually always[1 ns, 1 ns] start"
-    monitor = rvmon.loads(f"spec s\ntime sampled every 1 ns\n{text}\n").monitor(engine=engine)
+    monitor = rvmon.loads(f"spec s\ntime sampled every 1 ns\n{text}\n").monitor()
     monitor.step_ns(0, {})
     for now in range(1, 6):
         monitor.advance_ns(now)
@@ -269,7 +259,7 @@ def test_attempts_decided_together_keep_reasons_of_their_own() -> None:
     spec = rvmon.loads("spec s\nevent e\nevent p\nrequirement R\n  upon e\n  then within 10 s p\n")
     told = []
     for engine in ("auto", "automaton"):
-        monitor = spec.monitor(engine=engine)
+        monitor = spec.monitor()
         for t in range(5):
             monitor.step(2 * t, {"e": True})
             monitor.step(2 * t + 1, {"e": False})

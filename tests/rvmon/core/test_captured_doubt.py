@@ -38,15 +38,14 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("engine", ["automaton", "network", "progression", "python"])
 @pytest.mark.parametrize("name", CASES)
-def test_what_was_captured_in_doubt_decides_nothing(name, engine):
+def test_what_was_captured_in_doubt_decides_nothing(name):
     """Each case once was decided, or an error."""
     time, requirement, samples = CASES[name]
     spec = rvmon.loads(f"{HEAD.format(time)}requirement R\n  {requirement}\n")
     case = Case(spec.checked, tuple(Sample(t, values) for t, values in samples), None)
     assert disagreements(case, Maker(engine), online=True) == []
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for t, values in samples:
         monitor.step_ns(t, values)
     assert monitor.finish_ns().verdicts["R"].value == "I"
