@@ -67,12 +67,13 @@ def _evaluated(spec: rvmon.Spec, path: Path) -> str:
 
 
 @pytest.mark.usefixtures("quick_turns")
-def test_eight_threads_share_a_new_specification(trace: Path) -> None:
+@pytest.mark.parametrize("way", ["stepped", "evaluated"])
+def test_eight_threads_share_a_new_specification(trace: Path, way: str) -> None:
     """What is worked out late is worked out alike, whoever asks first."""
     barrier = Barrier(8)
 
     def judge(spec: rvmon.Spec) -> str:
-        return _stepped(spec) if engine == "stepped" else _evaluated(spec, trace)
+        return _stepped(spec) if way == "stepped" else _evaluated(spec, trace)
 
     def work(spec: rvmon.Spec) -> str:
         barrier.wait()
@@ -124,9 +125,7 @@ def test_a_used_specification_goes_to_other_processes(method: str, trace: Path) 
 
 
 @pytest.mark.parametrize("act", [pickle.dumps, copy.copy, copy.deepcopy])
-def test_a_monitor_is_neither_pickled_nor_copied(
-    act: Callable[[object], object], engine: str
-) -> None:
+def test_a_monitor_is_neither_pickled_nor_copied(act: Callable[[object], object]) -> None:
     """The error says how a run is put away."""
     monitor = rvmon.loads(_SPEC).monitor()
     with pytest.raises(rvmon.RvmonError, match=r"monitor\.snapshot\(\).*spec\.restore"):

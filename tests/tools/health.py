@@ -68,7 +68,7 @@ def health_differences(
     for key in sorted({*wanted, *got}):
         due, actual = wanted.get(key), got.get(key)
         if actual is None and due is not None:
-            spared = key[0] in (HealthKind.MISSING, HealthKind.ABSENT)
+            spared = key[0] in (HealthKind.MISSING, HealthKind.ABSENT, HealthKind.STALE)
             agree = spared and not simple.intersection(due.requirements)
         else:
             agree = due is not None and actual is not None and _agree(due, actual, simple)

@@ -104,7 +104,7 @@ def test_a_moment_of_a_run_is_the_run_up_to_there(time: TimeModel) -> None:
 
 def test_samples_in_portions() -> None:
     """Portions of a sample with one stamp come to the same, a stamp later."""
-    makers = {way: Maker(f"{engine}+{way}") for way in ("next", "next+interrupt")}
+    makers = {way: Maker(f"c+{way}") for way in ("next", "next+interrupt")}
     found = campaign_of(makers, range(25), Profile(), TraceProfile(), online_every=3)
     assert found.disagreements == []
 

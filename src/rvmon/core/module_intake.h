@@ -20,7 +20,8 @@ typedef struct {
     PyObject *words;           /* borrowed: a number for each label; NULL: it has none */
     int32_t kind;              /* of a signal or field */
     int32_t fields;            /* of an event: so many */
-    int32_t single;            /* and whether only one occurrence of it can be judged at an instant */
+    int32_t single;            /* of an event: only one occurrence of it can be judged at an instant; of a
+                                * signal: that it is unknown is no update */
 } reading;
 
 /* What came of a name or a field: how often it said that it is unknown, and when first. */
@@ -307,8 +308,12 @@ static void note_arrivals(const intake *in, int64_t t)
         const rv_update *u = &in->updates[i];
         arrival *a = &in->arrivals[u->name];
         if (u->name < in->signals) {
+            const bool known = u->value.kind != RV_UNKNOWN;
+            if (!known && (in->readings[u->name].single != 0)) {
+                continue;
+            }
             a->came = (a->came == RV_NO_TIME) ? t : a->came;
-            if (u->value.kind == RV_UNKNOWN) {
+            if (!known) {
                 note_unknown(a, &u->value, t);
             }
         } else if (u->says == RV_SAYS_UNKNOWN) {

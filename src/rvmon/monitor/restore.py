@@ -17,11 +17,14 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
     """
     document = document_of(compiled, data)
     try:
+        sources = document["sources"]
+        if sources is not None and not all(isinstance(one, str) for one in sources):
+            raise TypeError("names are texts")
         monitor = build_monitor(
             compiled,
             only=document["only"],
             settle=document["settle"],
-            sources=document["sources"],
+            sources=sources,
             keep=document["keep"],
         )
         monitor.take_up(document)

@@ -25,8 +25,9 @@ class Monitor:
     Args:
         plan: the bytes.
         reading: the numbers of the names that can come; per signal, event and field a number for
-            each label or field, or `None`; of each what it is, in the order of `Kind`; of each name
-            whether only one occurrence of it can be judged at an instant.
+            each label or field, or `None`; of each what it is, in the order of `Kind`; of each
+            event whether only one occurrence of it can be judged at an instant, of each signal
+            whether that it is unknown is no update.
         absent: of each name whether it has no source.
         look_closer: take the samples that are not plain values in a `dict`, at seconds, at ticks.
         attempts: the type, which derives from `Record`, ids of requirements, verdicts, decisions,

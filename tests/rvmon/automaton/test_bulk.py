@@ -1,9 +1,15 @@
 """Open attempts in runs: what the builder proves, and that it is so."""
 
 import pytest
+from tests.tools.compare import differences
+from tests.tools.drive import drive
+from tests.tools.forms import Maker
+from tests.tools.law import judge
 
 import rvmon
 from rvmon.automaton.bulk import moves_in_runs
+from rvmon.testing.case import Case
+from rvmon.trace.sample import Sample
 
 HEAD = """
 spec many
@@ -64,21 +70,19 @@ def test_many_attempts_are_judged_as_one_by_one(time, body):
     """Runs that overlap, split, meet unknown input and end give the records of single attempts."""
     spec = compiled(body, time)
     assert moves_in_runs(spec._compiled.requirements["R1"].automaton)
-    reports = []
-    for engine in ("python", "automaton"):
-        monitor = spec.monitor()
-        told = []
-        for t in range(400):
-            values = {"asked": True} if t % 2 else {}
-            if t % 60 == 20:
-                values |= {"p": None if t == 260 else True, "q": t % 120 == 20}
-            if t % 60 == 23:
-                values |= {"p": "until" in body, "q": False}
-            told += monitor.step_ns(t + t // 9, values)
-            if t % 50 == 7:
-                told += monitor.advance_ns(t + t // 9 + 1)
-        shown = [(one.number, one.triggered, one.owed, one.at_trigger) for one in monitor.open]
-        reports.append((told, shown, monitor.finish_ns(500)))
-    assert reports[0] == reports[1]
-    assert len(reports[0][0]) > 100
-    assert len({attempt.verdict for attempt in reports[0][0]}) > ("until" not in body)
+    actions = []
+    for t in range(400):
+        values = {"asked": True} if t % 2 else {}
+        if t % 60 == 20:
+            values |= {"p": None if t == 260 else True, "q": t % 120 == 20}
+        if t % 60 == 23:
+            values |= {"p": "until" in body, "q": False}
+        actions.append(Sample(t + t // 9, values))
+        if t % 50 == 7:
+            actions.append(t + t // 9 + 1)
+    case = Case(spec.checked, tuple(actions), 500)
+    report, returned = drive(Maker()(case), case)
+    assert differences(judge(case), report) == []
+    told = [one for decided in returned for one in decided]
+    assert len(told) > 100
+    assert len({attempt.verdict for attempt in told}) > ("until" not in body)

@@ -38,9 +38,6 @@ CASES = {
 }
 
 
-ENGINES = ("auto", "network")
-
-
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("formula", CASES)
 def test_what_is_still_possible(formula, time):
@@ -121,7 +118,7 @@ def test_more_than_is_looked_at_is_not_forecast():
 
 
 @settings(max_examples=30, deadline=None)
-@given(data=st.data(), engine=st.sampled_from(ENGINES))
+@given(data=st.data())
 def test_untimed_forecasts_are_those_of_the_tableau(data):
     """Verdict or forecast is what the infinite continuations leave, at every position."""
 
@@ -170,7 +167,7 @@ def test_forecasts_with_windows_are_those_of_the_tableau():
 
 
 @settings(max_examples=40, deadline=None)
-@given(case=cases(Profile(), TraceProfile()), engine=st.sampled_from(ENGINES))
+@given(case=cases(Profile(), TraceProfile()))
 def test_forecasts_come_true(case):
     """What was forecast of an attempt at some moment is never overturned by a later decision."""
     if case.spec.max_delay is not None:

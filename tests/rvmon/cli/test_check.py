@@ -3,7 +3,6 @@
 import io
 import json
 import os
-import re
 import subprocess
 import sys
 
@@ -107,31 +106,6 @@ def test_standard_input(monkeypatch, capsys):
     monkeypatch.setattr("sys.stdin", io.StringIO(WRONG))
     assert main(["check", "-"]) == 2
     assert "<stdin>:3:38" in capsys.readouterr().err
-
-
-def test_engines_are_told_on_demand(write, capsys):
-    """With `--engines` each requirement says what judges it, and why nothing faster does."""
-    path = write(
-        "a.rv",
-        "spec s\nsignal a, b : bool\nevent e\nrequirement R1\n  upon e then within 3 s b\n"
-        "requirement R2\n  whenever a then F[2 s, 5 s] b\n",
-    )
-    assert main(["check", path]) == 0
-    assert "automaton" not in capsys.readouterr().out
-    assert main(["check", path, "--engines"]) == 0
-    shown = capsys.readouterr().out
-    assert re.search(r"^R1 +python +columns$", shown, re.MULTILINE)
-    why = "columns, python, automaton: has no automaton (more than 6 clocks)"
-    assert re.search(rf"^R2 +network +network +{re.escape(why)}$", shown, re.MULTILINE)
-    assert main(["check", path, "--engines", "--format", "json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["engines"][path]["R1"] == {
-        "online": "python",
-        "recording": "columns",
-        "refused": {},
-    }
-    assert found["engines"][path]["R2"]["refused"]["python"]["engine"] == "network"
-    assert "c" not in found["engines"][path]["R2"]["refused"]
 
 
 @pytest.mark.parametrize("seconds", ["nan", "-1", "inf", "x"])

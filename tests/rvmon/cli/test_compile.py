@@ -98,7 +98,9 @@ def test_costs(spec, capsys):
     """A line per requirement says what judges it and what open attempts cost."""
     assert main(["compile", spec, "--to", "costs"]) == 0
     head, first, second = capsys.readouterr().out.splitlines()
-    assert " ".join(head.split()) == "engine locations clocks letters decided within open attempts"
+    assert (
+        " ".join(head.split()) == "judged by locations clocks letters decided within open attempts"
+    )
     assert first.startswith("D1  automaton")
     assert "2 s" in first
     assert "in runs: 20 bytes each" in first

@@ -32,12 +32,6 @@ SILENT = {
 }
 
 
-@pytest.fixture(autouse=True)
-def none_is_short(monkeypatch):
-    """Little text is read by columns, too."""
-    monkeypatch.setattr(recording, "SHORT", 0)
-
-
 def rows(seed: int) -> list[dict]:
     """A plain recording in which few rows change something."""
     rng = random.Random(seed)
@@ -102,8 +96,7 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     spec = rvmon.loads(text)
     by_columns = [judge(spec, trace, Options(until=until)).report for trace in traces]
 
-    for size in ("SHORT", "TINY"):
-        monkeypatch.setattr(recording, size, 1 << 30)
+    monkeypatch.setattr(recording, "TINY", 1 << 30)
     by_samples = [judge(spec, trace, Options(until=until)).report for trace in traces]
     assert by_columns == by_samples
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3

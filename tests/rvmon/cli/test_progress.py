@@ -39,7 +39,7 @@ def test_recordings_are_counted(screen, jobs):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("more", [[], ["--engine", "c"], ["--engine", "python"]])
+@pytest.mark.parametrize("more", [[]])
 def test_a_single_recording_shows_how_far_it_is_read(screen, more):
     """By its name, be it read as columns, in pieces or sample by sample."""
     with redirect_stderr(screen):

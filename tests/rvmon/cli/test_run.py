@@ -9,7 +9,6 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
-from rvmon.monitor.engines.registry import ENGINES
 
 from rvmon.cli import judging, main
 from rvmon.cli.judging import judge
@@ -118,19 +117,6 @@ def told(text: str) -> dict:
     }
 
 
-@pytest.mark.parametrize("until", [[], ["--until", "2.5"]])
-def test_the_core_judges_alike(files, capsys, until):
-    """`--engine c` gives the same verdicts, attempts and exit codes, from CSV and JSON lines."""
-    (files / "whole.csv").write_text("t,closed,knock\n0,1,0\n1,1,1\n2,0,0\n5,1,1\n9,1,0\n")
-    (files / "F.jsonl").write_text('{"t": 0, "closed": true}\n{"t": 1, "events": ["knock"]}\n')
-    for trace in ("P.csv", "F.csv", "NT.csv", "I.csv", "whole.csv", "F.jsonl"):
-        command = ["run", "door.rv", trace, "--format", "json", *until]
-        code = main(command)
-        expected = told(capsys.readouterr().out)
-        assert main([*command, "--engine", "c"]) == code
-        assert told(capsys.readouterr().out) == expected
-
-
 def test_a_failure_shows_cause_window_and_spec_line(files, capsys):
     """Every F says why, over which window, and where in the spec."""
     assert main(["run", "door.rv", "F.csv"]) == 1
@@ -191,13 +177,6 @@ def test_a_file_like_no_other_is_not_guessed(files, capsys):
     for name in ("/".join((str(files), "quite-else.mcap")), "gone/P.csv"):
         assert main(["run", "door.rv", name]) == 2
         assert "did you mean" not in capsys.readouterr().err
-
-
-def test_help_names_the_engines(capsys):
-    """All that --engine takes."""
-    assert main(["run", "--help"]) == 0
-    shown = " ".join(capsys.readouterr().out.split())
-    assert f"how to evaluate: auto (default), {', '.join(ENGINES[1:-1])}, or c:" in shown
 
 
 def test_many_recordings_are_counted(files, capsys):
@@ -261,7 +240,7 @@ def test_an_option_that_can_go_without_a_value_takes_no_other_word(files, option
 def test_a_broken_recording_keeps_what_was_judged(files, capsys):
     """Exit 2, one message with file and line, and the failure before the break is still told."""
     (files / "cut.csv").write_text(FAIL + "6,,\n9,maybe,\n")
-    assert main(["run", "door.rv", "cut.csv", "--engine", engine]) == 2
+    assert main(["run", "door.rv", "cut.csv"]) == 2
     told = capsys.readouterr().err
     assert "cut.csv: line 6: column `closed`: `maybe`" in told
     assert "decided before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
@@ -313,7 +292,6 @@ def test_until_before_the_first_sample_is_told(files, capsys):
         (["gone.rv", "P.csv"], "gone.rv"),
         (["door.rv", "P.csv", "--only", "D9"], "no requirement `D9`"),
         (["door.rv", "P.csv", "--const", "T"], "expected NAME=VALUE"),
-        (["door.rv", "P.csv", "--engine", "warp"], "warp"),
         (["door.rv", "P.csv", "--only", ""], "there are D1"),
         (["door.rv", "P.csv", "--jobs", "0"], "at least 1, not 0"),
         (["door.rv", "P.csv", "--until", "nan"], "a time in seconds, such as 12.5, not nan"),

@@ -44,7 +44,7 @@ def test_what_was_captured_in_doubt_decides_nothing(name):
     time, requirement, samples = CASES[name]
     spec = rvmon.loads(f"{HEAD.format(time)}requirement R\n  {requirement}\n")
     case = Case(spec.checked, tuple(Sample(t, values) for t, values in samples), None)
-    assert disagreements(case, Maker(engine), online=True) == []
+    assert disagreements(case, Maker(), online=True) == []
     monitor = spec.monitor()
     for t, values in samples:
         monitor.step_ns(t, values)

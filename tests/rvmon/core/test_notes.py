@@ -4,8 +4,6 @@ import gc
 import pickle
 import random
 
-import pytest
-from benchmarks.reason_differential import compare
 from tests.tools.drive import feed
 
 import rvmon
@@ -31,22 +29,6 @@ requirement W "lasting"
   upon rise(p)
   then eventually[0 ms, 20 ms] always[0 ms, 3 ms] q
 """
-
-
-@pytest.mark.parametrize("model", list(TimeModel), ids=str)
-def test_the_core_tells_what_auto_tells(model):
-    """All fields, of decided and open attempts, with what is unknown, keys and captures."""
-    from collections import Counter
-
-    tally, wrong = Counter(), []
-    for number in range(24):
-        rng = random.Random(f"notes/{model}/{number}")
-        spec = Spec(random_spec(rng, Profile(time=model)))
-        for _ in range(2):
-            wrong += compare(spec, random_trace(rng, spec.checked, TraceProfile()), tally)
-    assert not wrong, wrong[0]
-    assert sum(count for what, count in tally.items() if what.startswith("attempts")) > 200
-    assert sum(count for what, count in tally.items() if "prefix" in what) > 50
 
 
 def test_a_reason_can_be_read_long_after(tmp_path):
@@ -105,33 +87,14 @@ def test_many_open_attempts_say_what_they_wait_for():
     assert [one.number for one in oldest] == [1]
 
 
-def test_letters_are_those_of_the_attempt():
-    """Of attempts that share pieces of letters each is told of by its own."""
-    text = "signal p, q : bool\nrequirement W\n  upon rise(p)\n"
-    spec = spec_of(f"{text}  then eventually[0 ms, 900 ms] always[0 ms, 9 ms] q\n")
-    rng = random.Random(7)
-    samples = [
-        (t * MS, {"p": rng.random() < 0.5, "q": rng.random() < 0.9}) for t in range(0, 3000, 2)
-    ]
-    core, auto = spec.monitor(), spec.monitor()
-    told, wanted = [], []
-    for t, values in samples:
-        told += core.step_ns(t, values)
-        wanted += auto.step_ns(t, values)
-    assert len(wanted) > 100
-    assert told == wanted
-
-
 def test_what_an_endless_run_owes_is_told_by_its_last_part():
     """An attempt that is open all the time says why it failed, long after what it saw first."""
     spec = spec_of(
         "signal p, q : bool\nrequirement U\n  upon start\n  then always (p -> within 3 ms q)\n"
     )
-    core, auto = spec.monitor(), spec.monitor()
+    core = spec.monitor()
     for t in range(30_000):
-        values = {"p": t % 4 == 0, "q": t % 4 == 2 and t < 29_990}
-        told, wanted = core.step_ns(t * MS, values), auto.step_ns(t * MS, values)
-        assert [*told] == [*wanted]
+        core.step_ns(t * MS, {"p": t % 4 == 0, "q": t % 4 == 2 and t < 29_990})
     (failed, *_) = core.finish().attempts
     assert failed.verdict.name == "FAIL"
     assert failed.reason.startswith("`q` had to come true between 29.98")

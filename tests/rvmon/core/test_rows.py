@@ -9,7 +9,6 @@ from tests.tools.forms import Compiler
 from tests.tools.tables import planned_for, random_table, rows_differ
 
 import rvmon
-from rvmon.errors import UnknownNameError
 from rvmon.testing.generate.spec import Profile, random_spec
 
 
@@ -31,11 +30,10 @@ def test_without_a_declared_column_all_is_unknown(form, tmp_path):
         parquet = pytest.importorskip("pyarrow.parquet")
         table, trace = arrow.table(trace), tmp_path / "a.parquet"
         parquet.write_table(table, trace)
-    for engine in ("auto", "c"):
-        with pytest.raises(rvmon.MissingNameError, match="`e`, read by R1"):
-            spec.evaluate(trace)
-        report = spec.evaluate(trace, allow_missing=True)
-        assert report.verdicts == {"R1": "I"}, engine
+    with pytest.raises(rvmon.MissingNameError, match="`e`, read by R1"):
+        spec.evaluate(trace)
+    report = spec.evaluate(trace, allow_missing=True)
+    assert report.verdicts == {"R1": "I"}
 
 
 def test_what_was_met_is_carried_on_over_many_rows():
@@ -97,10 +95,9 @@ def test_values_of_another_type_are_refused(name, value, form):
     else:
         trace = [(0.0, {}), (1.0, {name: value})]
     told = []
-    for engine in ("automaton", "c"):
-        with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}") as error:
-            spec.evaluate(trace, allow_missing=True)
-        told.append(str(error.value))
+    with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}") as error:
+        spec.evaluate(trace, allow_missing=True)
+    told.append(str(error.value))
     assert told[0] == told[1]
 
 
@@ -121,16 +118,6 @@ def test_strings_in_a_parquet_file_are_refused(tmp_path):
         spec_of("signal x : real", "always x < 5").evaluate(path)
 
 
-@pytest.mark.parametrize("trace", [{"t": np.array([0.0])}, [(0.0, {})], "nowhere.csv"])
-def test_an_unknown_engine_is_told_which_there_are(trace):
-    """The engine `c` judges recordings and is stepped: it stands in both lists."""
-    spec = spec_of("signal x : real", "always x < 5")
-    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
-        spec.evaluate(trace)
-    with pytest.raises(UnknownNameError, match=r"no engine `nope`: .*network, c$"):
-        spec.monitor()
-
-
 def test_lengths_of_vectors_are_those_of_python():
     """`hypot` gives the number that all engines compute, to the last bit."""
     rng = np.random.default_rng(1)
@@ -142,8 +129,7 @@ def test_lengths_of_vectors_are_those_of_python():
     assert spec.evaluate(trace).verdicts == {"R1": "P"}
     unknown = {"t": np.arange(2), "x": np.array([np.inf, 1e308]), "y": np.array([1.0, 1.7e308])}
     spec = spec_of("signal x, y : real", "upon start\n  then within 1 s hypot(x, y) > 5")
-    for engine in ("automaton", "c"):
-        assert spec.evaluate(unknown).verdicts == {"R1": "I"}
+    assert spec.evaluate(unknown).verdicts == {"R1": "I"}
 
 
 def test_a_signal_is_not_born_by_nan():
@@ -157,9 +143,8 @@ def test_a_signal_is_not_born_by_nan():
         "x": np.array([math.nan, math.nan, 1.0]),
         "y": np.array([1.0, 0.0, 0.0]),
     }
-    for engine in ("auto", "c"):
-        (attempt,) = spec.evaluate(trace).attempts
-        assert (attempt.verdict, attempt.decided) == ("I", None), engine
+    (attempt,) = spec.evaluate(trace).attempts
+    assert (attempt.verdict, attempt.decided) == ("I", None)
 
 
 @pytest.mark.parametrize("owed", ["delta(x) < 1", "changed(x) -> p", "updated(x) -> p"])

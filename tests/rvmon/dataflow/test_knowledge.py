@@ -3,54 +3,12 @@
 import random
 
 import pytest
-from tests.tools.chains import random_chain
 
 import rvmon
 from rvmon.dataflow import knowledge
 from rvmon.dataflow.network import Network
 from rvmon.formula.core import Constant
 from rvmon.monitor import compile_spec
-from rvmon.monitor.attempts.network_letters import Clear, journal_of
-
-
-@pytest.mark.parametrize("seed", range(200))
-def test_nothing_becomes_known_while_it_sleeps(seed, monkeypatch):
-    """Whatever letters come, but for those watched for; also where much is forgotten."""
-    monkeypatch.setattr(knowledge, "_SELDOM", 1 + seed % 3)
-    rng = random.Random(seed)
-    [compiled] = compile_spec(random_chain(rng, untils=True)).requirements.values()
-    plan, gap = compiled.network_plan, compiled.gap
-    step = gap or 1
-    network, t, waiting, letters = Network(plan, gap), 0, [], Clear(compiled.reach, gap)
-    letter = random_letter(rng, plan)
-    for _ in range(rng.randint(1, 12)):
-        network.note(t, letter)
-        letters.note(t, (letter, letter))
-        waiting.append(t)
-        network.grow(2 * t + 1, waiting[0])
-        now, t = t, t + step * rng.choice((1, 1, 1, 2, 4))
-        waiting += [] if gap is None else range(now + step, t, step)
-        network.grow(2 * t, waiting[0])
-        reach = compiled.reach
-        all_noted = reach is not None and letters.noted[0][0] <= max(waiting[0], now - reach)
-        if all_noted and rng.random() < 0.5:
-            journal = journal_of(plan, gap, letters.noted, waiting[0])
-            journal.grow(None, 2 * t)
-            network = journal.after(len(journal)).copy()
-        known = [one for one in waiting if network.truth(one) is not None]
-        waiting = [one for one in waiting if one not in known] or [t]
-        bound = network.soonest_news(waiting[0])
-        ahead, at = network.copy(), t
-        while at < min(bound, t + 60) and rng.random() < 0.95:
-            letter = random_letter(rng, plan) if rng.random() < 0.7 else letter
-            if network.is_roused(letter):
-                break
-            ahead.note(at, letter)
-            at += step
-            ahead.grow(min(2 * at, 2 * bound - 1), waiting[0])
-            assert [one for one in waiting if one < t and ahead.truth(one) is not None] == []
-        letter = random_letter(rng, plan) if rng.random() < 0.7 else letter
-        waiting = [one for one in waiting if one < t]
 
 
 @pytest.mark.parametrize("seed", range(40))

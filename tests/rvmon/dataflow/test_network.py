@@ -5,23 +5,18 @@ import sys
 from itertools import accumulate
 
 import pytest
-from tests.tools import build
-from tests.tools.differential import campaign, case_of
-from tests.tools.drive import drive, feed
-from tests.tools.forms import Maker
-from tests.tools.generate_ltl import random_mtl
+from tests.tools.differential import case_of
+from tests.tools.drive import drive
 from tests.tools.scale import in_units, scaled
 
 import rvmon
 from rvmon.dataflow.network import MOST_NOTED, Network
-from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.trace.time import NEVER
 
 SECOND = 10**9
 RESPAWNED = "whenever a then F[2 s, 5 s] b"
@@ -44,29 +39,19 @@ def outcomes(spec, samples, end=None):
     return [(a.triggered, a.decided, a.verdict.value) for a in monitor.finish(end).attempts]
 
 
-@pytest.mark.law
-@pytest.mark.parametrize("time", TimeModel)
-def test_no_disagreement(time):
-    """On formulas of all kinds, mixed ones too, it is the oracle's in verdicts and instants."""
-    seeds = [f"network {number}" for number in range(PAIRS)]
-    tally = campaign(Maker("network"), seeds, Profile(time=time), TraceProfile(), online_every=4)
-    assert tally.pairs == PAIRS
-    assert "\n\n".join(tally.disagreements) == ""
-
-
 @pytest.mark.parametrize(
-    ("requirement", "engine"),
+    ("requirement", "judge"),
     [
         ("upon e then within 3 s b", "automaton"),
         (RESPAWNED, "network"),
         ("upon e then within 3 s once (a and within 1 s b)", "network"),
     ],
 )
-def test_the_compiler_picks_it_where_no_automaton_closes(requirement):
+def test_the_compiler_picks_it_where_no_automaton_closes(requirement, judge):
     """What has an automaton is judged by it, the rest by the network, and the report says why."""
     [compiled] = compile_spec(spec_of(requirement).checked).requirements.values()
-    assert compile_report(compiled).engine == compiled.engine("auto") == engine
-    assert bool(compile_report(compiled).why) is (engine == "network")
+    assert compile_report(compiled).judge == judge
+    assert bool(compile_report(compiled).why) is (judge == "network")
 
 
 def test_the_future_below_the_past():
@@ -77,13 +62,6 @@ def test_the_future_below_the_past():
     assert outcomes(spec, samples) == [(2 * SECOND, 4 * SECOND, "F")]
     met = [*samples[:3], (3.5, {"b": True})]
     assert outcomes(spec, met) == [(2 * SECOND, 3_500_000_000, "P")]
-
-
-def test_progression_says_that_it_cannot():
-    """Asked for by name, an engine that cannot judge a requirement says so."""
-    spec = spec_of("upon e then immediately once (within 3 s b)")
-    with pytest.raises(RvmonError, match="use the engine `auto` or `network`"):
-        spec.monitor()
 
 
 def test_a_window_that_is_started_at_every_tick():
@@ -271,45 +249,6 @@ def test_what_time_alone_decides_is_known_beforehand():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED])
-def test_deadlines_of_records_are_those_of_automata(time):
-    """What is noted of a decision does not depend on who made it."""
-    noted = 0
-    for seed in range(70):
-        rng = random.Random(f"deadlines/{seed}")
-        formula = random_mtl(rng, 2)
-        spec = Spec(build.spec_of(build.requirement(formula, upon=build.start), time=time))
-        stamps = list(accumulate(rng.choice((1, 1, 2, 3, 5)) for _ in range(10)))
-        samples = [(t, {name: rng.random() < 0.5 for name in "pqr"}) for t in stamps]
-        found = []
-        for engine in ("network", "automaton"):
-            monitor = spec.monitor()
-            for t, values in samples:
-                monitor.step_ns(t, values)
-            attempts = monitor.finish_ns(stamps[-1]).attempts
-            found.append([(one.decided, one.verdict, one.deadline) for one in attempts])
-        assert found[0] == found[1], formula
-        noted += sum(deadline is not None for _, _, deadline in found[0])
-    assert noted > 10
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("time", TimeModel)
-def test_it_is_woken_before_time_alone_decides(time):
-    """What it waits for costs little to work out, and is not later than what comes."""
-    woken = 0
-    for seed in range(20):
-        case = case_of(f"woken {seed}", Profile(time=time), TraceProfile())
-        monitor = Spec(case.spec).monitor(sources=case.names)
-        for action in case.actions:
-            feed(monitor, action)
-            for judge in monitor._evaluators.judges:
-                assert judge.due <= judge.next_due
-                woken += judge.due < NEVER
-    assert woken > 10
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("time", TimeModel)
 def test_reasons_are_the_same_later(time):
     """What is said of a decision does not depend on when someone asks."""
@@ -330,9 +269,7 @@ def test_reasons_are_the_same_later(time):
 
 def test_a_window_without_a_tick_is_over_in_time():
     """Nothing is awaited in it; what that makes of it is told when time has passed it."""
-    monitor = spec_of("upon e then F[1 ms, 5 ms] a", "sampled every 10 ms").monitor(
-        engine="network"
-    )
+    monitor = spec_of("upon e then F[1 ms, 5 ms] a", "sampled every 10 ms").monitor()
     monitor.step(0, {"a": True})
     monitor.step(0.01, {"e": True})
     [failed] = monitor.advance_ns(15_000_001)

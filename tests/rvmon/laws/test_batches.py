@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tools.build import e, requirement, spec_of
 from tests.tools.compare import differences
@@ -19,16 +19,12 @@ from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 
-ENGINES = ("auto", "progression", "network", "c")
 DELAY = 9
 
 
-def whole(engine: str, case: Case) -> Report:
+def whole(case: Case) -> Report:
     """The report of a monitor that gets every sample whole and in order."""
-    monitor = Maker(engine)(case)
-    assume(monitor is not None)
-    assert monitor is not None
-    return drive(monitor, case)[0]
+    return drive(Maker()(case), case)[0]
 
 
 @pytest.mark.law
@@ -37,7 +33,7 @@ def whole(engine: str, case: Case) -> Report:
 def test_the_order_inside_a_batch(data: st.DataObject) -> None:
     """A sample in pieces with equal stamps, in any order, is the same as the whole sample."""
     case = data.draw(cases(Profile(mixed=False)))
-    expected = whole(engine, case)
+    expected = whole(case)
     monitor = Spec(case.spec).monitor(settle="next", sources=case.names)
     for action in case.actions:
         if not isinstance(action, Sample):
@@ -48,7 +44,7 @@ def test_the_order_inside_a_batch(data: st.DataObject) -> None:
             monitor.step_ns(action.t, piece)
     report = monitor.finish_ns(case.end)
     assert differences(expected, report) == []
-    assert engine == "c" or report.health == expected.health
+    assert report.health == expected.health
 
 
 @pytest.mark.law
@@ -65,7 +61,7 @@ def test_the_order_within_the_delay(data: st.DataObject) -> None:
     for sample in told:
         monitor.step_ns(sample.t, sample.values)
     report = monitor.finish_ns(case.end)
-    expected = whole(engine, case)
+    expected = whole(case)
     assert differences(expected, report) == []
     assert report.health == expected.health
     pairs = [(sample.t * 1e-9, sample.values) for sample in told]

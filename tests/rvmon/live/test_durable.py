@@ -33,7 +33,7 @@ def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
     rng = random.Random(seed)
     fed = [*killed_watch.samples(rng, 120)]
     whole, found = {}, {}
-    judged(tmp_path / "whole", fed, (), lambda n, one: whole.update({n: one}), 10_000, engine)
+    judged(tmp_path / "whole", fed, (), lambda n, one: whole.update({n: one}), 10_000)
 
     def told(number, attempt):
         assert found.setdefault(number, attempt) == attempt

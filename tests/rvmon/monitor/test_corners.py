@@ -1,4 +1,4 @@
-"""Shrunk cases in which an engine once departed from the oracle."""
+"""Shrunk cases in which a monitor once departed from the oracle."""
 
 from dataclasses import replace
 
@@ -140,12 +140,10 @@ CASES = {
 @pytest.mark.parametrize("time", TimeModel)
 @pytest.mark.parametrize("name", CASES)
 def test_corner(name, time):
-    """The engine agrees with the oracle, call by call, in each time model that has the formula."""
+    """The core agrees with the oracle, call by call, in each time model that has the formula."""
     judged, actions = CASES[name]
     if time is TimeModel.HELD and "moves with each sample" in name:
         judged = replace(judged, consequent=eventually(p, 1, 1))
-    if engine == "progression" and "asked for the future" in name:
-        engine = "network"
     spec = spec_of(judged, time=time, period=4 if time is TimeModel.CLOCKED else None)
 
     def make(case):

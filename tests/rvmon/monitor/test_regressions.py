@@ -1,4 +1,4 @@
-"""Cases in which an engine once differed from the law, shrunk by the differential test."""
+"""Cases in which a monitor once differed from the law, shrunk by the differential test."""
 
 import random
 
@@ -300,7 +300,7 @@ def test_a_network_learns_of_an_until_in_order(seed):
     )
     rng = random.Random(seed)
     told = [Sample(t, {"x": rng.uniform(0, 5), "y": rng.uniform(0, 4)}) for t in range(90)]
-    assert not disagreements(Case(spec.checked, tuple(told)), Maker("network"), online=False)
+    assert not disagreements(Case(spec.checked, tuple(told)), Maker(), online=False)
 
 
 def test_time_that_passes_without_a_sample_hides_no_further_attempt():

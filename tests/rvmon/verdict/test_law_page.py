@@ -33,7 +33,7 @@ def test_what_is_judged_now(text, form, data, table, tmp_path):
     cells = [[cell.strip() for cell in row.split("|")[1:-1]] for row in table.splitlines()]
     now = {what: said for what, _, said in cells}
     if "exit code" in now:
-        words = ["run", str(spec), str(trace), "--engine", engine]
+        words = ["run", str(spec), str(trace)]
         assert main(words) == int(now["exit code"])
     if now["verdicts"] == "refused":
         with pytest.raises(MissingNameError):

@@ -48,7 +48,9 @@ class PlannedCore:
         numbers: of names: signals first, then events.
         words: of signals, events, fields: a number for each label, or field.
         kinds: of the same; of events they mean nothing.
-        single: of each name, whether only one payload of it can be judged at one instant.
+        limits: of an event, whether only one payload of it can be judged at one instant; of a
+            signal, whether that it is unknown is no update.
+        single_payloads: the events of which only one payload can be judged at one instant.
         readers: by name that is read, the ids of the requirements that do.
         compiled: the specification, to tell of attempts; `None`: there are none.
     """
@@ -58,7 +60,8 @@ class PlannedCore:
     numbers: Mapping[str, int]
     words: tuple[Mapping[str, int] | None, ...]
     kinds: bytes
-    single: bytes
+    limits: bytes
+    single_payloads: frozenset[str]
     readers: Mapping[str, tuple[str, ...]]
     compiled: CompiledSpec | None
 
@@ -67,11 +70,6 @@ class PlannedCore:
         if self.compiled is None:
             raise ValueError("a plan of watches has no attempts to tell of")
         return self.compiled
-
-    @property
-    def single_payloads(self) -> frozenset[str]:
-        """The events of which only one payload can be judged at one instant."""
-        return frozenset(name for name, only in zip(self.numbers, self.single, strict=True) if only)
 
     def monitor(
         self,
@@ -96,7 +94,7 @@ class PlannedCore:
         )
         return native.Monitor(
             self.packed.data,
-            (coming, self.words, self.kinds, self.single),
+            (coming, self.words, self.kinds, self.limits),
             bytes(name in absent for name in self.numbers),
             (look_closer, look_closer_ns),
             attempts,
@@ -256,7 +254,8 @@ def planned_as(
             *map(labels, types),
         ),
         bytes(map(_KINDS.index, kinds)),
-        bytes(name in made.single for name in names),
+        bytes(name in made.single or name in spec.ignoring for name in names),
+        made.single,
         made.readers,
         compiled,
     )

@@ -78,6 +78,8 @@ class RecordedAttempts(LazyAttempts):
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """See `LazyAttempts`."""
+        if requirement not in self._ids:
+            return iter(())
         records = self._records
         own = records["requirement"] == self._ids.index(requirement)
         chosen = np.flatnonzero(own & (records["verdict"] == VERDICTS.index(verdict)))

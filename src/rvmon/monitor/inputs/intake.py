@@ -94,14 +94,14 @@ class Intake:
         Raises:
             TraceError: a sample is none of the specification.
         """
-        self.floor = whole_ticks(state["floor"])
+        self.floor = _integer(state["floor"])
         self.late, self.crowded = map(_counted, (state["late"], state["crowded"]))
         for name, found in state["conflicts"].items():
             count, first = _counted(found) or (0, 0)
             self.conflicts.add(str(name), first, count)
         for t, place, values in state["held"]:
             checked = validator.check(whole_ticks(t), values)
-            heappush(self._held, (whole_ticks(t), whole_ticks(place), checked))
+            heappush(self._held, (whole_ticks(t), _integer(place), checked))
             self._taken = max(self._taken, place)
 
     def close(self) -> list[Sample]:
@@ -113,5 +113,11 @@ def _counted(found: Any) -> tuple[int, int] | None:
     """How many there were and the first's instant, as JSON has it."""
     if found is None:
         return None
-    count, first = map(whole_ticks, found)
-    return count, first
+    count, first = found
+    return _integer(count), whole_ticks(first)
+
+
+def _integer(number: Any) -> int:
+    if type(number) is not int:
+        raise TypeError(f"expected a whole number, found {number!r}")
+    return number

@@ -3,10 +3,9 @@
 import math
 
 import pytest
-from rvmon.monitor.online.generated import GeneratedMonitor
 
 import rvmon
-from rvmon.errors import RvmonError, TimeOrderError, TraceError, UnknownNameError
+from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
 from rvmon.verdict.verdict import Verdict
@@ -46,15 +45,9 @@ def brief(attempts):
     return [(a.requirement, a.number, a.verdict.value, a.decided) for a in attempts]
 
 
-@pytest.fixture(name="monitor", params=["auto", "automaton", "progression"])
-def _monitor(request):
+@pytest.fixture(name="monitor")
+def _monitor():
     return rvmon.loads(SPEC).monitor()
-
-
-def test_generated_code_runs_only_where_it_is_asked_for():
-    """It does so where the engine is left open, too; another engine judges by itself."""
-    monitor = rvmon.loads(SPEC).monitor()
-    assert isinstance(monitor, GeneratedMonitor) is (engine in ("auto", "python"))
 
 
 def test_a_decision_is_returned_by_the_call_that_brings_it(monitor):
@@ -180,21 +173,16 @@ def test_a_name_without_source_is_unknown_and_must_not_arrive():
     assert monitor.finish(9).verdicts["R1"] is Verdict.INCONCLUSIVE
 
 
-@pytest.mark.parametrize(
-    "options", [{"only": ["R9"]}, {"engine": "warp"}, {"settle": "never"}], ids=str
-)
+@pytest.mark.parametrize("options", [{"only": ["R9"]}, {"settle": "never"}], ids=str)
 def test_an_unknown_option_is_named_with_those_there_are(options):
     """A choice that does not exist is refused when the monitor is built."""
     with pytest.raises(UnknownNameError, match=r"there (are|is)"):
         rvmon.loads(SPEC).monitor(**options)
 
 
-def test_an_engine_that_cannot_judge_says_so():
-    """A formula whose automaton does not close is refused by that engine, judged by `auto`."""
-    spec = rvmon.loads(SPAWNING)
-    with pytest.raises(RvmonError, match="R has no automaton"):
-        spec.monitor()
-    monitor = spec.monitor()
+def test_what_has_no_automaton_is_judged():
+    """A formula whose automaton does not close is judged by a network."""
+    monitor = rvmon.loads(SPAWNING).monitor()
     monitor.step_ns(0, {"a": True})
     monitor.step_ns(1, {"a": True})
     assert brief(monitor.step_ns(99, {})) == [("R", 1, "F", 91)]
@@ -209,12 +197,12 @@ def test_numpy_scalars_are_numbers(monitor):
 
 
 def test_the_compile_report_says_what_became_of_a_requirement():
-    """Engine, size and horizon are known before a run; a refusal names what was too much."""
+    """What judges, size and horizon are known before a run; a refusal names what was too much."""
     reports = {
         name: compile_report(one)
         for name, one in compile_spec(rvmon.loads(SPEC).checked).requirements.items()
     }
-    assert (reports["R1"].engine, reports["R1"].locations, reports["R1"].clocks) == (
+    assert (reports["R1"].judge, reports["R1"].locations, reports["R1"].clocks) == (
         "automaton",
         4,
         1,
@@ -225,32 +213,11 @@ def test_the_compile_report_says_what_became_of_a_requirement():
         compile_report(one)
         for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
     ]
-    assert report.engine == "network"
+    assert report.judge == "network"
     assert "more than" in report.why
     windows = rvmon.loads(
         "signal p : bool\nevent e\nrequirement R\n  upon e then within 5 s for 3 s p"
     )
     [report] = map(compile_report, compile_spec(windows.checked).requirements.values())
-    assert (report.engine, report.locations) == ("network", 0)
+    assert (report.judge, report.locations) == ("windows", 0)
     assert report.why == "its automaton steps each open attempt"
-
-
-@pytest.mark.parametrize(("count", "generated"), [(100, True), (101, False)])
-def test_code_is_generated_for_so_many_requirements(count, generated, monkeypatch):
-    """More are judged as well, without generated code; the engine `python` then says so."""
-    for module in ("compiled.refusal", "engines.python"):
-        monkeypatch.setattr(f"rvmon.monitor.{module}.MOST_GENERATED", 100)
-    text = "spec s\nsignal p : bool\nevent e\n" + "".join(
-        f"requirement R{n}\n  upon e then within {n + 1}0 ms p\n" for n in range(count)
-    )
-    spec = rvmon.loads(text)
-    monitor = spec.monitor()
-    assert (type(monitor) is GeneratedMonitor) == generated
-    if not generated:
-        with pytest.raises(RvmonError, match="one of 101 requirements, more than the 100"):
-            spec.monitor()
-        assert type(spec.monitor(only=["R7"])) is GeneratedMonitor
-    monitor.step(0, {"p": False, "e": True})
-    monitor.step(1, {"p": True})
-    report = monitor.finish(9)
-    assert [report.verdicts[f"R{n}"] for n in (0, 98, 99, count - 1)] == ["F", "F", "P", "P"]

@@ -4,6 +4,7 @@ import copy
 import hashlib
 import json
 import random
+from types import MappingProxyType
 
 import pytest
 from tests.tools.differential import campaign, case_of
@@ -45,10 +46,9 @@ SAMPLES = [
 
 @pytest.mark.law
 def test_interruptions_change_nothing():
-    """Every engine, taken up from snapshots at random points, judges as the law says."""
+    """A run, taken up from snapshots at random points, judges as the law says."""
     seeds = [f"snapshot/{number}" for number in range(20)]
-    profile, traces = Profile(mixed=engine in ("auto", "network")), TraceProfile()
-    tally = campaign(Maker(f"{engine}+interrupt"), seeds, profile, traces, online_every=6)
+    tally = campaign(Maker("c+interrupt"), seeds, Profile(), TraceProfile(), online_every=6)
     assert tally.pairs > 12
     assert not tally.disagreements, tally.disagreements[0]
 
@@ -134,12 +134,13 @@ def test_forged_bytes_are_refused():
     document = json.loads(body)
     forged = [
         {**document, "state": ["object", "os", "system"]},
-        {**document, "state": ["kept"]},
-        {**document, "engine": "none"},
-        {
-            **document,
-            "evaluators": ["tuple", ["list"], ["list", ["tuple", "D2", ["dict"], 7, True]]],
-        },
+        {**document, "state": {}},
+        {**document, "core": document["core"][:-8]},
+        {**document, "core": ""},
+        {**document, "arrivals": "AAAA"},
+        {**document, "plan": "0"},
+        {**document, "sources": [["closed"]]},
+        {**document, "settle": "next"},
         {name: value for name, value in document.items() if name != "only"},
     ]
     for one in forged:
@@ -194,53 +195,20 @@ def test_most_hostile_snapshots_are_refused_at_once():
             continue
 
 
-@pytest.mark.slow
-def test_a_snapshot_whose_times_have_passed_is_refused():
-    """With any one number of what waits in a network below zero, restoring comes to an end."""
-    text = "spec s\nsignal p, q : bool\nsignal v : real\nrequirement R1\n"
-    spec = rvmon.loads(text + "  whenever v > 3 then (p until[0 s, 4 s] q)\n")
-    monitor = spec.monitor()
-    for t, (p, q, v) in enumerate([(True, False, 4.0), (None, False, None), (True, None, 5.0)]):
-        monitor.step(t, {"p": p, "q": q, "v": v})
-    head, _, body = monitor.snapshot().partition(b"\n")
-    document = json.loads(body)
-    refused = 0
-    for path in places_in(document["state"]):
-        hostile = copy.deepcopy(document)
-        inner = hostile["state"]
-        for key in path[:-1]:
-            inner = inner[key]
-        if type(inner[path[-1]]) is not int:
-            continue
-        inner[path[-1]] = -1
-        sealed = json.dumps(hostile, separators=(",", ":")).encode()
-        seal = hashlib.sha256(sealed).hexdigest().encode()
-        try:
-            spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed).finish()
-        except RvmonError:
-            refused += 1
-    assert refused
-
-
-@pytest.mark.parametrize("value", [float("inf"), float("nan"), 1.5, "x"])
+@pytest.mark.parametrize("value", [float("inf"), float("nan"), 1.5, "x", 2**62])
 def test_an_instant_that_is_none_is_refused(value):
-    """How far the run has come is a whole number of ticks, or it is not known."""
+    """When a step was torn is a whole number of ticks, or it is not known."""
     spec = rvmon.loads(TEXT)
     monitor = spec.monitor()
     for t, values in SAMPLES[:5]:
         monitor.step(t, values)
-    reached = str(int(SAMPLES[4][0] * 10**9))
     head, _, body = monitor.snapshot().partition(b"\n")
-    state = json.loads(body)["state"]
-    places = [index for index, one in enumerate(state) if str(one) == reached]
-    assert len(places) >= 2
-    for place in places:
-        document = json.loads(body)
-        document["state"][place] = value
-        sealed = json.dumps(document, separators=(",", ":")).encode()
-        seal = hashlib.sha256(sealed).hexdigest().encode()
-        with pytest.raises(RvmonError, match="damaged"):
-            spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed)
+    document = json.loads(body)
+    document["state"]["torn"] = value
+    sealed = json.dumps(document, separators=(",", ":")).encode()
+    seal = hashlib.sha256(sealed).hexdigest().encode()
+    with pytest.raises(RvmonError, match="damaged"):
+        spec.restore(head.rpartition(b" ")[0] + b" " + seal + b"\n" + sealed)
 
 
 def test_a_run_that_was_torn_at_its_first_step_is_restored():
@@ -254,9 +222,10 @@ def test_a_run_that_was_torn_at_its_first_step_is_restored():
     def tear(*_):
         raise Torn
 
-    monitor.evaluators.sample = tear
+    monitor._judge = tear
+    t, values = SAMPLES[0]
     with pytest.raises(Torn):
-        monitor.step(*SAMPLES[0])
+        monitor.step(t, MappingProxyType(values))
     report = spec.restore(monitor.snapshot()).finish()
     assert {*report.verdicts.values()} == {"I"}
     assert ("interrupted", None) in {(one.kind.value, one.first) for one in report.health}

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from itertools import count
 
 import pytest
-from rvmon.monitor.online.monitor import Monitor
 
 import rvmon
 from rvmon.errors import OverlapError
+from rvmon.monitor.core.monitor import Monitor
 
 _SPEC = """spec s
 signal x : real
@@ -24,7 +24,6 @@ requirement R2
   upon e
   then within 1 s p
 """
-_ENGINES = ("auto", "automaton", "network", "progression")
 
 
 @pytest.fixture
@@ -36,7 +35,7 @@ def quick_turns() -> Iterator[None]:
     sys.setswitchinterval(before)
 
 
-def _monitor(engine: str = "auto") -> Monitor:
+def _monitor() -> Monitor:
     return rvmon.loads(_SPEC).monitor()
 
 
@@ -76,9 +75,9 @@ def _stepped_by_two(
 @pytest.mark.usefixtures("quick_turns")
 def test_two_threads_break_nothing_but_their_own_calls() -> None:
     """Every call is taken whole, or refused for its time or for the call under way."""
-    monitor = _monitor(engine)
+    monitor = _monitor()
     clock = count(1)
-    found = _stepped_by_two(monitor, 600 if engine == "auto" else 60, clock)
+    found = _stepped_by_two(monitor, 600, clock)
     assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
     report = monitor.finish_ns(next(clock))
     numbers = [one.number for one in report.attempts if one.requirement == "R2"]
@@ -88,7 +87,7 @@ def test_two_threads_break_nothing_but_their_own_calls() -> None:
 
 def test_a_call_within_another_is_refused() -> None:
     """Whatever is called while a step is under way is refused; the step itself is taken."""
-    monitor = _monitor(engine)
+    monitor = _monitor()
     refused = []
 
     class Values(dict[str, object]):
@@ -159,7 +158,7 @@ def test_a_signal_handler_within_a_step_is_refused_or_takes_its_sample_whole() -
 
 def test_callbacks_may_call_their_monitor() -> None:
     """The call that decided is over when it is told: callbacks look, and even step."""
-    monitor = _monitor(engine)
+    monitor = _monitor()
     looked = []
 
     def look(attempt: rvmon.Attempt) -> None:
@@ -178,7 +177,7 @@ def test_callbacks_may_call_their_monitor() -> None:
 
 def test_a_call_that_fails_leaves_the_monitor_open() -> None:
     """What is wrong with a sample, or with a callback, closes nothing."""
-    monitor = _monitor(engine)
+    monitor = _monitor()
     monitor.step_ns(1, {"x": 1.0})
 
     def fail(_: object) -> None:

@@ -3,7 +3,6 @@
 import itertools
 
 import pytest
-from tests.tools.forms import EXPLAINING as ENGINES
 
 import rvmon
 from rvmon.errors import RvmonError, TraceError
@@ -51,15 +50,6 @@ def key(attempt):
 @pytest.fixture(name="spec", scope="module")
 def _spec():
     return rvmon.loads(SPEC)
-
-
-@pytest.fixture(name="engine", params=ENGINES)
-def _engine(request, spec):
-    try:
-        spec.monitor()
-    except RvmonError as error:
-        pytest.skip(str(error))
-    return request.param
 
 
 # Verdicts so far.
@@ -206,30 +196,6 @@ def test_what_cannot_be_called_is_refused(spec):
     """The error shows what was given."""
     with pytest.raises(RvmonError, match="takes an attempt, found 3"):
         spec.monitor().on_failure(3)
-
-
-def test_monitors_of_the_core_tell_the_same(spec):
-    """Callbacks and verdicts so far of the engine `c` are those of the others."""
-    for settle in ("now", "next"):
-        compiled = spec.monitor(settle=settle)
-        plain = spec.monitor(settle=settle)
-        heard, expected = [], []
-        stop = compiled.on_decided(heard.append)
-        plain.on_decided(expected.append)
-        for t, values in samples(60):
-            compiled.step(t / 10**9, values)
-            plain.step(t / 10**9, values)
-            compiled.advance_ns(t + 10)
-            plain.advance_ns(t + 10)
-            assert compiled.verdicts == plain.verdicts
-            assert list(map(key, heard)) == list(map(key, expected))
-        assert compiled.finish().verdicts == plain.finish().verdicts
-        assert list(map(key, heard)) == list(map(key, expected))
-        stop()
-        compiled.reset()
-        decided = [*compiled.step(0, {"x": 5.0}), *compiled.advance(1)]
-        assert [one.name for one in decided] == ["L1#1"]
-        assert len(heard) == len(expected)
 
 
 # What is kept.

@@ -13,10 +13,7 @@ event released, held_it output
 """
 
 
-ENGINES = ("auto", "progression", "network")
-
-
-def run(requirement, samples, end=None, *):
+def run(requirement, samples, end=None):
     """The attempts on a trace whose times are seconds."""
     spec = rvmon.loads(f"{HEAD}requirement R\n{requirement}\n")
     monitor = spec.monitor()
@@ -235,11 +232,10 @@ def test_what_was_not_known_when_a_run_was_interrupted_may_end_after_that():
 def test_a_name_without_a_source_is_said_to_have_none():
     """What has no source is not what was lost."""
     spec = rvmon.loads(f"{HEAD}requirement R\nupon go\nthen immediately near\n")
-    for engine in ("python", "automaton"):
-        monitor = spec.monitor(sources=["go"])
-        monitor.step(0, {"go": True})
-        [left] = monitor.finish().attempts
-        assert left.reason == "left open by the input: `near` has no source"
+    monitor = spec.monitor(sources=["go"])
+    monitor.step(0, {"go": True})
+    [left] = monitor.finish().attempts
+    assert left.reason == "left open by the input: `near` has no source"
 
 
 def test_what_is_owed_in_a_loop_is_that_of_now():
@@ -252,17 +248,3 @@ def test_what_is_owed_in_a_loop_is_that_of_now():
         [left] = monitor.open
         assert left.owed.startswith(f"`always[1 ns, 1 ns] start` until {now} ns, or ")
         assert left.deadline == now
-
-
-def test_attempts_decided_together_keep_reasons_of_their_own() -> None:
-    """What is noted once for many is told of each as its own engine tells it."""
-    spec = rvmon.loads("spec s\nevent e\nevent p\nrequirement R\n  upon e\n  then within 10 s p\n")
-    told = []
-    for engine in ("auto", "automaton"):
-        monitor = spec.monitor()
-        for t in range(5):
-            monitor.step(2 * t, {"e": True})
-            monitor.step(2 * t + 1, {"e": False})
-        decided = [*monitor.step(11, {"p": True}), *monitor.finish(30).attempts]
-        told.append([(str(one), one.deadline, one.blame, one.at_trigger) for one in decided])
-    assert told[0] == told[1]

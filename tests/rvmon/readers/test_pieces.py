@@ -1,4 +1,4 @@
-"""Files read by columns: the same report as row by row, or not at all."""
+"""Files read in pieces of columns: the same report as sample by sample."""
 
 import random
 import sys
@@ -6,13 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rvmon.readers.csv_blocks import csv_blocks
 
 import rvmon
-from rvmon.readers import as_blocks, recording
-from rvmon.readers import csv_blocks as module
+from rvmon.readers import csv_batch, line_chunks, recording
 from rvmon.readers import parquet as parquet_module
-from rvmon.readers.batch import NotPlainError
+from rvmon.readers.batch import Batch
 from rvmon.readers.decimals import Cells, decimals, instants, whole_numbers
 from rvmon.readers.source import Source
 from rvmon.trace.time import ticks_of_text
@@ -36,9 +34,9 @@ requirement R3 "c"
 
 
 @pytest.fixture(autouse=True)
-def none_is_short(monkeypatch):
-    """Little text is read by columns, too."""
-    monkeypatch.setattr(recording, "SHORT", 0)
+def none_is_tiny(monkeypatch):
+    """Little text is read in columns, too."""
+    monkeypatch.setattr(recording, "TINY", 0)
 
 
 def csv_text(seed: int, rows: int = 2000) -> str:
@@ -66,27 +64,22 @@ def by_rows(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Repor
     return monitor.finish_ns(end)
 
 
-def by_columns(
-    spec: rvmon.Spec, path: Path, engine: str = "auto", end: int | None = None
-) -> rvmon.Report:
-    """The report of the quick way; what is not plain fails."""
-    opened = spec.recording(path)
-    source = Source(opened, end, is_cut=True, read=lambda _: pytest.fail("rows are read"))
-    return spec.judge(source)
+def in_columns(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Report:
+    """The report of a file that is read in columns alone."""
+    assert all(isinstance(piece, Batch) for piece in spec.recording(path).pieces())
+    return spec.judge(Source(spec.recording(path), end, is_cut=True))
 
 
-def has_columns(spec: rvmon.Spec, path: Path) -> bool:
-    """Whether a file is judged by its columns."""
-    try:
-        return bool(by_columns(spec, path))
-    except (pytest.fail.Exception, rvmon.TraceError):
-        return False
-
-
-@pytest.fixture(params=["BLOCK", "LARGE"])
+@pytest.fixture(params=["numpy", "arrow"])
 def cut_into(request, monkeypatch):
     """Has files read in pieces of so many bytes, by NumPy or by Arrow."""
-    return lambda size: monkeypatch.setattr(module, request.param, size)
+
+    def cut(size):
+        monkeypatch.setattr(line_chunks, "BLOCK", size)
+        if request.param == "arrow":
+            monkeypatch.setattr(csv_batch, "LARGE", size)
+
+    return cut
 
 
 @pytest.mark.law
@@ -97,7 +90,7 @@ def test_a_file_can_be_cut(end, time, tmp_path, cut_into):
     cut_into(1999)
     (tmp_path / "a.csv").write_text(csv_text(3))
     spec = rvmon.loads(SPEC.format(time=time, stale=""))
-    report = by_columns(spec, tmp_path / "a.csv", engine, round(end * 1e9))
+    report = in_columns(spec, tmp_path / "a.csv", round(end * 1e9))
     assert report == by_rows(spec, tmp_path / "a.csv", round(end * 1e9))
 
 
@@ -109,7 +102,7 @@ def test_columns_say_what_rows_say(time, stale, tmp_path, cut_into):
     cut_into(1999)
     (tmp_path / "a.csv").write_text(csv_text(1).replace("\n", "\r\n"))
     spec = rvmon.loads(SPEC.format(time=time, stale=stale))
-    report = by_columns(spec, tmp_path / "a.csv")
+    report = in_columns(spec, tmp_path / "a.csv")
     assert report == by_rows(spec, tmp_path / "a.csv")
     assert spec.evaluate(tmp_path / "a.csv") == report
     assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
@@ -128,7 +121,7 @@ def test_gaps_are_filled_where_only_values_matter(time, tmp_path, cut_into):
     ]
     (tmp_path / "a.csv").write_text("\n".join([first, second, *rest]) + "\n")
     spec = rvmon.loads(SPEC.format(time=time, stale=""))
-    report = by_columns(spec, tmp_path / "a.csv")
+    report = in_columns(spec, tmp_path / "a.csv")
     assert report == by_rows(spec, tmp_path / "a.csv")
     assert {"P", "F"} <= {attempt.verdict for attempt in report.attempts}
     for other in (
@@ -136,7 +129,6 @@ def test_gaps_are_filled_where_only_values_matter(time, tmp_path, cut_into):
         SPEC.format(time=time, stale="") + "requirement R4\n  always not updated(stop)\n",
     ):
         spec = rvmon.loads(other)
-        assert not has_columns(spec, tmp_path / "a.csv")
         assert spec.evaluate(tmp_path / "a.csv") == by_rows(spec, tmp_path / "a.csv")
 
 
@@ -169,7 +161,6 @@ def test_parquet_says_what_csv_says(time, tmp_path, monkeypatch):
                 gaps = gaps.set_column(place, name, kept)
         parquet.write_table(gaps, tmp_path / "gaps.parquet")
         expected = by_rows(spec, tmp_path / "gaps.parquet")
-        assert has_columns(spec, tmp_path / "gaps.parquet") == first
         assert spec.evaluate(tmp_path / "gaps.parquet") == expected
         assert {"P", "F"} <= {attempt.verdict for attempt in expected.attempts}
 
@@ -180,49 +171,6 @@ def test_what_is_no_parquet_file_is_refused_with_its_name(tmp_path):
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     with pytest.raises(rvmon.TraceError, match=r"a\.parquet: not a Parquet file"):
         spec.evaluate(tmp_path / "a.parquet")
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "t,p\n",
-        "",
-        "p,q\n1,0\n",
-        "t,p\n1,1\n0,1\n",
-        "t,p\n1,1\n1,0\n",
-        "t,p\n1,true\n",
-        "t,p\n1,\n",
-        "t,p\n1\n",
-        "t,p\n1,1,1\n",
-        't,p\n1,"1"\n',
-        "t,p\n 1,1\n",
-        "t,p\nsoon,1\n",
-        "t,p\n1e3,1\n",
-        "t,speed\n1,nan\n",
-        "t,speed\n1,0.12345678901234567\n",
-        "t,speed\n1,.\n",
-        "t,speed\n1,1.2.3\n",
-        "t,count\n1,1.5\n",
-        "t,count\n1,-\n",
-        "t,count\n1,7.\n",
-        "t,count,speed\n1,7.,0.5\n",
-        "t_ns,p\n2.,1\n",
-        "t,x\n1,é\n",
-        "t_ns,p\n9223372036854775807,1\n",
-        "t_ns,p\n4611686018427387904,1\n",
-        "t,p\n4611686018.427387904,1\n",
-        "t,count\n1,9223372036854775808\n",
-        "t,count\n1,9999999999999999999\n",
-        "t,count\n1,18446744073709551616\n",
-    ],
-)
-def test_what_is_not_plain_is_left_to_the_other_way(text, tmp_path):
-    """Nothing odd is read by columns: whoever reads rows says what is wrong, or reads it."""
-    (tmp_path / "a.csv").write_text(text)
-    spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    with pytest.raises(NotPlainError):
-        list(csv_blocks(tmp_path / "a.csv", spec.schema))
-    assert not has_columns(spec, tmp_path / "a.csv")
 
 
 CELLS = {
@@ -254,30 +202,11 @@ def test_a_large_file_is_read_as_a_small_one(text, tmp_path, monkeypatch):
     path.write_text(text)
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     with monkeypatch.context() as patched:
-        patched.setattr(as_blocks, "file_blocks", none_plain)
+        patched.setattr(recording, "TINY", 1 << 30)
         by_rows = told(spec, path)
-    monkeypatch.setattr(module, "LARGE", len(text))
     assert told(spec, path) == by_rows
-
-
-def none_plain(*_: object) -> None:
-    """A recording without columns."""
-    raise NotPlainError("it is not asked for")
-
-
-def test_arrow_reads_what_is_written_in_full(tmp_path, monkeypatch):
-    """Decimals of any length and truth values in words: large files of them have columns."""
-    path = tmp_path / "a.csv"
-    text = "t,speed,p\n0.1,0.30000000000000004,true\n1e0,1e-3,False\n"
-    path.write_text(text)
-    spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    with pytest.raises(NotPlainError):
-        list(csv_blocks(path, spec.schema))
-    monkeypatch.setattr(module, "LARGE", len(text))
-    (block,) = csv_blocks(path, spec.schema)
-    assert block.times.tolist() == [100_000_000, 1_000_000_000]
-    assert block.columns["speed"].tolist() == [0.30000000000000004, 1e-3]
-    assert block.columns["p"].tolist() == [True, False]
+    monkeypatch.setattr(csv_batch, "LARGE", len(text))
+    assert told(spec, path) == by_rows
 
 
 def test_without_arrow_a_large_file_is_read_too(tmp_path, monkeypatch):
@@ -285,9 +214,9 @@ def test_without_arrow_a_large_file_is_read_too(tmp_path, monkeypatch):
     (tmp_path / "a.csv").write_text(csv_text(1))
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     expected = spec.evaluate(tmp_path / "a.csv")
-    monkeypatch.setattr(module, "LARGE", 999)
+    monkeypatch.setattr(csv_batch, "LARGE", 999)
     monkeypatch.setitem(sys.modules, "rvmon.readers.csv_arrow", None)
-    assert by_columns(spec, tmp_path / "a.csv") == expected
+    assert in_columns(spec, tmp_path / "a.csv") == expected
 
 
 def test_where_memory_is_limited_arrow_is_not_asked(tmp_path, monkeypatch):
@@ -295,26 +224,21 @@ def test_where_memory_is_limited_arrow_is_not_asked(tmp_path, monkeypatch):
     resource = pytest.importorskip("resource")
     (tmp_path / "a.csv").write_text(csv_text(1))
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    monkeypatch.setattr(module, "LARGE", 999)
-    monkeypatch.setattr(
-        "rvmon.readers.csv_arrow_blocks.arrow_block", lambda *_: pytest.fail("it is")
-    )
+    monkeypatch.setattr(csv_batch, "LARGE", 999)
+    monkeypatch.setattr("rvmon.readers.csv_arrow.arrow_batch", lambda *_: pytest.fail("it is"))
     monkeypatch.setattr(resource, "getrlimit", lambda _: (1 << 30, 1 << 30))
-    assert by_columns(spec, tmp_path / "a.csv").verdicts
+    assert in_columns(spec, tmp_path / "a.csv").verdicts
 
 
 @pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
-def test_a_cell_that_rows_refuse_is_not_read_by_columns(text, tmp_path, cut_into):
+def test_a_cell_that_rows_refuse_is_refused(text, tmp_path, cut_into):
     """A cell is as long as it may be, or one longer: judged both ways, or refused with its line."""
     cut_into(1 << 17)
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
     (tmp_path / "a.csv").write_text(text.format("a" * 131072))
-    assert len(list(csv_blocks(tmp_path / "a.csv", spec.schema))) == 1
     found = spec.evaluate(tmp_path / "a.csv", allow_missing=True)
     assert found == by_rows(spec, tmp_path / "a.csv")
     (tmp_path / "a.csv").write_text(text.format("a" * 131073))
-    with pytest.raises(NotPlainError):
-        list(csv_blocks(tmp_path / "a.csv", spec.schema))
     with pytest.raises(rvmon.TraceError, match=r"line \d: .*field larger than field limit"):
         spec.evaluate(tmp_path / "a.csv", allow_missing=True)
 
