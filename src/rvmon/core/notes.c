@@ -60,6 +60,7 @@ bool make_notes(run *r)
         }
         clear_noting(r, i);
     }
+    r->standing->begun = RV_NO_TIME;
     stand_at_first(r, RV_NO_TIME);
     return true;
 }

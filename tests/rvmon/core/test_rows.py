@@ -88,17 +88,14 @@ event pay(k: int, m: {low, high})"""
 )
 @pytest.mark.parametrize("form", ["columns", "samples"])
 def test_values_of_another_type_are_refused(name, value, form):
-    """What no engine takes is told with the sample and the name, not judged."""
+    """What is of no type is told with the sample and the name, not judged."""
     spec = spec_of(DECLARED, "always (x < 5 or n > 2 or b or mode == red or e or pay.k > 2)")
     if form == "columns":
         trace = {"t": [0.0, 1.0], name: [None, value]}
     else:
         trace = [(0.0, {}), (1.0, {name: value})]
-    told = []
-    with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}") as error:
+    with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}"):
         spec.evaluate(trace, allow_missing=True)
-    told.append(str(error.value))
-    assert told[0] == told[1]
 
 
 def test_an_undeclared_name_in_a_sample_is_refused():

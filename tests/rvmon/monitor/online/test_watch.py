@@ -201,12 +201,6 @@ def test_what_cannot_be_called_is_refused(spec):
 # What is kept.
 
 
-@pytest.fixture
-def hasty(monkeypatch):
-    """What is over is looked for after a few attempts, and not after hundreds."""
-    monkeypatch.setattr("rvmon.monitor.online.retention._PATIENCE", 32)
-
-
 @pytest.mark.slow
 def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec):
     """Verdicts and counts are those of a run that keeps all; the rest is told as dropped."""
@@ -231,7 +225,7 @@ def test_counts_are_exact_and_the_newest_of_each_verdict_are_kept(spec):
         assert Report.from_json(report.to_json()) == report
 
 
-def test_memory_does_not_grow_with_what_stays_undecided(spec, hasty):
+def test_memory_does_not_grow_with_what_stays_undecided(spec):
     """Attempts that unknown input has left without a way out are dropped, but counted."""
     monitor = spec.monitor(only=["Y1"], keep=5)
     monitor.step(0, {"y": None})
@@ -246,7 +240,7 @@ def test_memory_does_not_grow_with_what_stays_undecided(spec, hasty):
     assert [one.number for one in report.attempts] == [*range(395, 400)]
 
 
-def test_attempts_in_doubt_are_bounded_too(hasty):
+def test_attempts_in_doubt_are_bounded_too():
     """Episodes whose trigger is lost, one after the other, whose consequent fails."""
     spec = rvmon.loads("""
 spec doubts
@@ -271,7 +265,7 @@ requirement U1
         assert list(map(key, report.of(name, "I"))) == list(map(key, expected.of(name, "I")))[-4:]
 
 
-def test_void_episodes_are_bounded_too(hasty):
+def test_void_episodes_are_bounded_too():
     """Episodes that were over before all that is owed had a value."""
     spec = rvmon.loads("""
 spec void
@@ -318,7 +312,7 @@ def test_what_is_no_count_is_refused(spec, keep):
         spec.monitor(keep=keep)
 
 
-def test_instances_and_captured_attempts_are_bounded(hasty):
+def test_instances_and_captured_attempts_are_bounded():
     """What has judges of its own, per key or per attempt, is bounded per requirement."""
     spec = rvmon.loads("""
 spec keys
