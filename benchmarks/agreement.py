@@ -2,7 +2,7 @@
 
 The formulas of a workload are judged at every row of its last rows, where the Timescales families
 are violated, and of traces that were damaged at random, so that both verdicts occur: ours by the
-engine that is measured, the peer by its own. Where the formula speaks of the past, the first
+monitor that is measured, the peer by its own. Where the formula speaks of the past, the first
 failure of the requirement that is timed has to be at the peer's first FALSE.
 
 rtamt is asked for the past by the stepping that is timed, for the future by its offline evaluation.
@@ -20,7 +20,7 @@ from benchmarks.ours import always_text, specification
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, RTAMT_STEPPED, Contest, ask_peer
 from benchmarks.peers.environment import Environment
-from benchmarks.peers.positions import Question, answers, ask_engine
+from benchmarks.peers.positions import Question, answers, ask_monitor
 from benchmarks.peers.ways import Cell
 from benchmarks.workload import Workload
 from tests.tools.common_fragment import UntranslatableError, names_in
@@ -47,9 +47,6 @@ RTAMT_BOUND = 300
 """The longest deadline of the future that its offline evaluation judges in reasonable time."""
 
 MOST_ROWS = 4000
-
-COMPILED = {"rvmon step, C": "c"}
-"""The forms of ours that are compared with generated Python, by their engines."""
 
 MOST_DAMAGED = 40
 """So many damaged traces are tried until ours is FALSE on one."""
@@ -129,7 +126,7 @@ class Referee:
         except RvmonError as error:
             remark = str(error).splitlines()[0]
             return [Agreement("rvmon", workload.name, workload.form, remark=remark)]
-        found = [_compare_compiled(workload, cases, *form) for form in COMPILED.items()]
+        found: list[Agreement] = []
         for label, peer in self._peers.items():
             if workload.form == "past" and label in STEPPED:
                 costs = [figure.median for figure in timed if figure.label == label]
@@ -215,49 +212,25 @@ def _cases(workload: Workload, traces: int) -> Iterator[_Case]:
 
 
 def _case(question: Question) -> _Case:
-    return _Case(question, answers(question, ask_engine), _first_failure(question))
+    return _Case(question, answers(question, ask_monitor), _first_failure(question))
 
 
 def _first_failure(question: Question) -> int | None:
     """The row at which the requirement `always φ` fails, as it is timed."""
-    decided = (attempt for row in _stepped(question, "python") for attempt in row)
+    decided = (attempt for row in _stepped(question) for attempt in row)
     return next((one.decided for one in decided if one.verdict is Verdict.FAIL), None)
 
 
-def _stepped(question: Question, engine: str) -> Iterator[Sequence[Attempt]]:
+def _stepped(question: Question) -> Iterator[Sequence[Attempt]]:
     """What each row decides of the requirement `always φ`."""
     columns = {
         name: [cell for cell in column if cell is not None]
         for name, column in question.columns.items()
     }
     spec = loads(specification([always_text(question.formula)], columns))
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     for row in range(question.ticks):
         yield monitor.step_ns(row, {name: column[row] for name, column in columns.items()})
-
-
-def _compare_compiled(
-    workload: Workload, cases: Sequence[_Case], label: str, engine: str
-) -> Agreement:
-    """Whether the core decides at each row what generated Python does."""
-    count: Counter[str] = Counter()
-    try:
-        for case in cases:
-            rows = (_stepped(case.question, one) for one in ("python", engine))
-            for ours, compiled in zip(*(map(_outcomes, own) for own in rows), strict=True):
-                count["compared"] += 1
-                count["equal"] += ours == compiled
-                count["false"] += any(verdict is Verdict.FAIL for *_, verdict in ours)
-    except RvmonError as error:
-        remark = str(error).splitlines()[0]
-        return Agreement(label, workload.name, workload.form, remark=remark)
-    return Agreement(
-        label, workload.name, workload.form, count["equal"], count["compared"], count["false"]
-    )
-
-
-def _outcomes(attempts: Sequence[Attempt]) -> list[tuple[int, int, int | None, Verdict]]:
-    return [(a.number, a.triggered, a.decided, a.verdict) for a in attempts]
 
 
 def _bound(workload: Workload) -> int:

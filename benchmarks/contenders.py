@@ -98,20 +98,15 @@ class NativeReelay:
         """Nothing is held."""
 
 
-STEPS = (
-    ("rvmon table", "step", "automaton"),
-    ("rvmon step", "step", "python"),
-    ("rvmon step, changes", "changes", "python"),
-    ("rvmon step, C", "step", "c"),
-)
-COLUMNS = (("rvmon evaluate", "evaluate", "auto"), ("rvmon evaluate, C", "evaluate", "c"))
+STEPS = (("rvmon step", "step"), ("rvmon step, changes", "changes"))
+COLUMNS = (("rvmon evaluate", "evaluate"),)
 
 
 def contenders(environment: Environment, native: Native, section: str) -> Iterator[Contender]:
     """All that take part in a section, ours first: with columns in memory, or row by row."""
-    forms = {"batch": COLUMNS, "many": STEPS[1:], "bound": STEPS[1:]}.get(section, STEPS)
-    for label, kind, engine in forms:
-        yield our_worker(label, kind, engine)
+    forms = {"batch": COLUMNS}.get(section, STEPS)
+    for label, kind in forms:
+        yield our_worker(label, kind)
     peers: tuple[tuple[str, str, str, Request], ...] = (
         ("reelay", "reelay", "reelay", _up_to(100, _past(dialects.REELAY_DISCRETE))),
         ("rtamt", "rtamt", "rtamt", _up_to(10, _past(dialects.RTAMT_DISCRETE))),
@@ -125,12 +120,12 @@ def contenders(environment: Environment, native: Native, section: str) -> Iterat
         yield NativeReelay(native.binary)
 
 
-def our_worker(label: str, kind: str, engine: str) -> Worker:
+def our_worker(label: str, kind: str) -> Worker:
     """One of `STEPS` or `COLUMNS`."""
-    return Worker(label, Peer(Path(sys.executable), OURS), _ours(kind, engine))
+    return Worker(label, Peer(Path(sys.executable), OURS), _ours(kind))
 
 
-def _ours(kind: str, engine: str) -> Request:
+def _ours(kind: str) -> Request:
     def request(workload: Workload, rows: int) -> dict[str, Any]:
         texts = [always_text(scaled(f, workload.period)) for f in workload.formulas]
         columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
@@ -138,7 +133,6 @@ def _ours(kind: str, engine: str) -> Request:
         return {
             "spec": text,
             "kind": kind,
-            "engine": engine,
             "columns": columns,
             "rows": rows,
             "period": workload.period,

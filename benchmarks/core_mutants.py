@@ -7,7 +7,7 @@ the others, and judges the cases of `benchmarks.core_recording`, of which the la
 the same (core_replay.c): it is killed if it says anything else, crashes or hangs. What does not
 compile is not counted, nor what a compiler makes the same code of. With `--tests` those that
 survive go through tests/rvmon/core. Prints each that survives, and the counts of each file; exits 1
-if any does. Those listed in `EQUIVALENT` change no behaviour, and are not drawn.
+if any does.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.core_recording import recorded
-from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutants import draw
 from benchmarks.mutation_c import c_mutants
 
@@ -176,7 +175,7 @@ def main(words: list[str]) -> int:
             if options.files and path.name not in options.files:
                 continue
             found: Counter[str] = Counter()
-            possible = [one for one in c_mutants(path) if one.change not in EQUIVALENT]
+            possible = [*c_mutants(path)]
             for mutant in draw(possible, options):
                 outcome = trial.outcome(mutant)
                 found[outcome] += 1

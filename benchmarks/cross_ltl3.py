@@ -3,10 +3,10 @@
     python -m benchmarks.cross_ltl3 --formulas 1000 --words 20
     python -m benchmarks.cross_ltl3 --formulas 1000 --words 20 --timed
 
-After every position of random words, the verdict or the forecast of the engine is compared with
+After every position of random words, the verdict or the forecast of the monitor is compared with
 what the tableau of `tests.tools.ltl3` says that infinite continuations leave possible. With
 `--timed`, formulas have windows of a few ticks and are judged in held time; the tableau is given
-them with the windows unrolled, and a forecast that the engine does not give is counted as missed.
+them with the windows unrolled, and a forecast that the monitor does not give is counted as missed.
 Prints the counts and every disagreement; exits 1 if there is one.
 """
 
@@ -22,7 +22,6 @@ from collections.abc import Iterator, Sequence
 from tests.tools.generate_ltl import random_ltl, random_mtl
 from tests.tools.ltl3 import Letter, Tableau, unrolled
 
-from rvmon.monitor import compile_spec
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
@@ -42,7 +41,6 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--formulas", type=int, default=200)
     parser.add_argument("--words", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--engine", default="auto")
     parser.add_argument("--timed", action="store_true", help="windows of a few ticks, held time")
     options = parser.parse_args(argv)
     began = time.perf_counter()
@@ -53,10 +51,9 @@ def main(argv: Sequence[str]) -> int:
             break
         tally["formulas"] += 1
         spec = _spec(formula, TimeModel.HELD if options.timed else TimeModel.SAMPLED)
-        tally[f"judged by {_judged_by(spec, options.engine)}"] += 1
         for _ in range(options.words):
             word = _word(rng)
-            said = [*_said(spec, word, options.engine)]
+            said = [*_said(spec, word)]
             for length, ours in enumerate(said, 1):
                 possible = tableau.possible(word[:length])
                 wanted = next(iter(possible)) if len(possible) == 1 else None
@@ -68,9 +65,9 @@ def main(argv: Sequence[str]) -> int:
                     letters = " ".join("".join(sorted(x)) or "-" for x in word[:length])
                     found.append(
                         f"formula {number}: {format_formula(formula)} on {letters}: "
-                        f"tableau {_word_of(wanted)}, engine {_word_of(value)}"
+                        f"tableau {_word_of(wanted)}, monitor {_word_of(value)}"
                     )
-    print(f"seed {options.seed}, engine {options.engine}, {time.perf_counter() - began:.0f} s")
+    print(f"seed {options.seed}, {time.perf_counter() - began:.0f} s")
     for name, figure in sorted(tally.items()):
         print(f"  {name} {figure}")
     print(f"  disagreements {len(found)}")
@@ -100,14 +97,9 @@ def _spec(formula: Formula, time_model: TimeModel) -> Spec:
     return Spec(CheckedSpec("ltl", "", time_model, signals, {}, {"R": requirement}))
 
 
-def _judged_by(spec: Spec, engine: str) -> str:
-    """The engine that `auto` takes; else the one that was asked for."""
-    return compile_spec(spec.checked).requirements["R"].engine(engine)
-
-
-def _said(spec: Spec, word: Sequence[Letter], engine: str) -> Iterator[tuple[bool, bool | None]]:
+def _said(spec: Spec, word: Sequence[Letter]) -> Iterator[tuple[bool, bool | None]]:
     """After every position whether the attempt is decided, and its verdict or forecast."""
-    monitor = spec.monitor(engine=engine)
+    monitor = spec.monitor()
     decided: Verdict | None = None
     for t, letter in enumerate(word):
         for attempt in monitor.step_ns(t, {name: name in letter for name in BOOLS}):

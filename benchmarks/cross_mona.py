@@ -1,6 +1,6 @@
 """Ours against MONA, through ltlf2dfa, on LTL over finite traces.
 
-    python -m benchmarks.cross_mona --formulas 1000 --words 20 [--against oracle engine]
+    python -m benchmarks.cross_mona --formulas 1000 --words 20 [--against oracle monitor]
 
 LTL on a finite trace knows its end, a monitor does not. So the end is made visible: every word
 gets one more position where `alive` is false, and the formula speaks of positions with `alive`.
@@ -24,7 +24,7 @@ from pathlib import Path
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import LTLF, spelling, translate
 from benchmarks.peers.environment import prepare
-from benchmarks.peers.positions import Judge, ask_engine, ask_oracle
+from benchmarks.peers.positions import Judge, ask_monitor, ask_oracle
 from tests.tools.common_fragment import EVER, both, to_core
 from tests.tools.generate_ltl import random_ltl
 
@@ -48,7 +48,7 @@ from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
 
 LTLF2DFA = Path(__file__).parent / "peers" / "with_ltlf2dfa.py"
-JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
+JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "monitor": ask_monitor}
 ALIVE = SignalAtom("alive")
 Word = list[frozenset[str]]
 

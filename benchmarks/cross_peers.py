@@ -1,6 +1,6 @@
 """Ours against the peers on random formulas and traces, at every tick.
 
-    python -m benchmarks.cross_peers --pairs 10000 [--only rtamt-dense …] [--against engine …]
+    python -m benchmarks.cross_peers --pairs 10000 [--only rtamt-dense …] [--against monitor …]
 
 A peer's verdict is compared wherever it has one and ours is decided by the trace. Prints for each
 peer how much was compared and every disagreement, shrunk; exits 1 if there is one.
@@ -21,12 +21,12 @@ from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.contest import CONTESTS, Contest, ask_peer, random_question, shrink
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
-from benchmarks.peers.positions import Judge, Question, answers, ask_engine, ask_oracle
+from benchmarks.peers.positions import Judge, Question, answers, ask_monitor, ask_oracle
 
 from rvmon.errors import RvmonError
 from rvmon.spec.print.printer import format_formula
 
-JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "engine": ask_engine}
+JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "monitor": ask_monitor}
 
 
 @dataclass(slots=True)

@@ -1,8 +1,7 @@
-r"""Engines against the oracle on random specs and traces: verdicts and decision instants.
+r"""The core against the oracle on random specs and traces: verdicts and decision instants.
 
-    python -m benchmarks.differential --pairs 100000 --traces 8 --seed 1 --workers 2 \
-        --engine automaton network progression python --interrupt
-    python -m benchmarks.differential --pairs 100000 --from 100000 --traces 4 --engine c "c rows"
+    python -m benchmarks.differential --pairs 100000 --traces 8 --seed 1 --workers 2 --interrupt
+    python -m benchmarks.differential --pairs 100000 --from 100000 --traces 4 --form c "c rows"
 
 Prints what the pairs were, how the attempts were decided and every disagreement, shrunk; exits 1 if
 there is one. Ranges of seeds of one `--seed` hold different pairs: runs add up.
@@ -21,7 +20,6 @@ from typing import Any
 
 from tests.tools.differential import Campaign, Mix, campaign_of
 from tests.tools.features import Feature, possible
-from tests.tools.forms import EXPLAINING as ENGINES
 from tests.tools.forms import FORMS, Compiler
 from tests.tools.kinds import KINDS
 from tests.tools.ways import INTERRUPT, NEXT, Maker
@@ -34,7 +32,7 @@ from rvmon.testing.generate.trace import TraceProfile
 from rvmon.verdict.attempt import Decision
 
 MODELS = {"held": TimeModel.HELD, "sampled": TimeModel.SAMPLED, "clocked": TimeModel.CLOCKED}
-_ENGINES = f"""some of {", ".join(FORMS)}; those of `Spec.monitor` may be followed by
+_FORMS = f"""some of {", ".join(FORMS)}; `c` may be followed by
 +{NEXT} (samples come in portions, settled by the next stamp), +{INTERRUPT} (put away and taken up
 again at random points), or both"""
 FEATURES = ("numbers", "past", "mixed", "captures", "for_each", "policies", "stale", "ignoring")
@@ -45,7 +43,7 @@ def judging(
 ) -> Callable[[list[str]], Campaign]:
     """What judges the cases of some seeds; runs in a worker."""
     compiler = Compiler(next_law=options.outages > 0)
-    makers = {name: Maker(name, compiler) for name in options.engine}
+    makers = {name: Maker(name, compiler) for name in options.form}
     return lambda seeds: campaign_of(
         makers,
         seeds,
@@ -76,7 +74,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "--letters", type=int, default=0, help="per cent that speak of 17 propositions at once"
     )
     parser.add_argument("--time", choices=MODELS, help="default: all time models, in turn")
-    parser.add_argument("--engine", nargs="+", default=["auto"], metavar="ENGINE", help=_ENGINES)
+    parser.add_argument("--form", nargs="+", default=["c"], metavar="FORM", help=_FORMS)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--depth", type=int, default=4)
     parser.add_argument(
@@ -99,22 +97,20 @@ def parse(argv: list[str]) -> argparse.Namespace:
         type=int,
         default=0,
         metavar="PERCENT",
-        help="traces in which names are lost, by the law to come; of engines `c` and `c rows`",
+        help="traces in which names are lost, by the law to come",
     )
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
     parser.add_argument("--features", action="store_true", help="count what was generated")
-    parser.add_argument("--interrupt", action="store_true", help="each engine +interrupt as well")
-    parser.add_argument("--next", action="store_true", help="each engine +next as well")
+    parser.add_argument("--interrupt", action="store_true", help="`c+interrupt` as well")
+    parser.add_argument("--next", action="store_true", help="`c+next` as well")
     parser.add_argument("--fail-fast", action="store_true", help="stop soon, shrink nothing")
     options = parser.parse_args(argv)
-    plain = [name for name in options.engine if name in ENGINES]
-    for way in [way for way in (NEXT, INTERRUPT) if getattr(options, way)]:
-        options.engine += [f"{name}+{way}" for name in plain]
+    options.form += [f"c+{way}" for way in (NEXT, INTERRUPT) if getattr(options, way)]
     try:
-        for name in options.engine:
+        for name in options.form:
             Maker(name)
     except RvmonError as error:
         parser.error(str(error))

@@ -4,7 +4,7 @@
 
 Each recording is written as CSV, JSON lines and Parquet, and held as lists, arrays with masks, an
 Arrow table, pairs and, where these are installed, frames of pandas and polars. Prints how many
-agree with the first of these, and how many but for the position at which an engine noticed unknown
+agree with the first of these, and how many but for the position at which a monitor noticed unknown
 input; every other disagreement with its seed, and exits with 1 if there is one.
 """
 
@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.tools.differential import cases_of
-from tests.tools.doors import Content, bare, content_of, doors, in_pieces, whole
+from tests.tools.doors import Content, content_of, doors, in_pieces, whole
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
@@ -34,13 +34,11 @@ EACH = 5
 """Recordings of a specification."""
 
 
-def told(
-    spec: Spec, trace: object, arguments: dict[str, Any], engine: str, *, is_bare: bool
-) -> str:
-    """The report as JSON, or bare; or what was refused."""
+def told(spec: Spec, trace: object, arguments: dict[str, Any]) -> str:
+    """The report as JSON; or what was refused."""
     try:
-        report = spec.evaluate(trace, engine=engine, allow_missing=True, **arguments)
-        return str(bare(report)) if is_bare else replace(report, trace="").to_json()
+        report = spec.evaluate(trace, allow_missing=True, **arguments)
+        return replace(report, trace="").to_json()
     except RvmonError as error:
         return type(error).__name__
 
@@ -64,7 +62,6 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("recordings", type=int, nargs="?", default=2_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--samples", type=int, default=12, help="of a recording, at most")
-    parser.add_argument("--engine", default="auto")
     parser.add_argument("--pieces", type=int, metavar="BYTES", help="read files in such pieces")
     options = parser.parse_args(argv)
     with in_pieces(options.pieces) if options.pieces else nullcontext():
@@ -74,7 +71,6 @@ def main(argv: Sequence[str]) -> int:
 def judge_all(options: argparse.Namespace) -> int:
     """Judge so many recordings through every door."""
     ways = doors()
-    is_bare = options.engine == "c"
     agreeing, refused = Counter[str](), Counter[str]()
     found = contents(options.seed, options.samples)
     with tempfile.TemporaryDirectory() as name:
@@ -82,9 +78,9 @@ def judge_all(options: argparse.Namespace) -> int:
             expected = None
             for door, write in ways.items():
                 given = write(content, Path(name))
-                text = told(spec, *given, options.engine, is_bare=is_bare)
+                text = told(spec, *given)
                 if expected is None:
-                    expected = told(spec, *given, "auto", is_bare=True) if is_bare else text
+                    expected = text
                 agreeing[door] += text == expected
                 refused[door] += text.isidentifier()
                 if text != expected:

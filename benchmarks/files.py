@@ -101,14 +101,14 @@ def _tasks(rows: int, many: int, environment: Environment, folder: Path) -> Iter
     query = (str(environment.python), str(BY_DUCKDB), large)
     yield Task(what, "DuckDB", [query], _told, refusal=duckdb)
     yield Task(what, "rvmon run", [(*run, large)], _failures)
-    yield Task(what, "rvmon run -e c", [(*run, "--engine", "c", large)], _failures)
+    yield Task(what, "rvmon run", [(*run, large)], _failures)
     files = [str(written(folder / f"file{number:04}.csv", EACH, number)) for number in range(many)]
     what = f"{many:,} files of {EACH:,} rows"
     yield Task(what, "rvmon run", [(*run, *files)], _failures)
     yield Task(what, "rvmon run --jobs 2", [(*run, "--jobs", "2", *files)], _failures)
     tiny = str(written(folder / "tiny.csv", 10, 0))
     yield Task("10 rows", "rvmon run", [(*run, tiny)], _failures)
-    yield Task("10 rows", "rvmon run -e c", [(*run, "--engine", "c", tiny)], _failures)
+    yield Task("10 rows", "rvmon run", [(*run, tiny)], _failures)
     yield Task("10 rows", "rvmon check", [(*rvmon, "check", str(spec))], None)
 
 

@@ -272,7 +272,7 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "run, pages": [*run, trace, "--junit", str(folder / "j"), "--report", str(folder / "r")],
         "run, unknown": [*run, "--only", "no" + ids[0]],
         "run, options": [*run, "--no" + ids[0]],
-        "check": ["check", spec, "--engines"],
+        "check": ["check", spec],
         "check, none": ["check", spec + "none"],
         "format": ["format", "--check", spec],
         "explain": ["explain", spec, ids[0], "--runs", "10"],
@@ -294,7 +294,6 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "conform, labels": ["conform", model, trace, "--observe", ids[0]],
         "conform, time": ["conform", model, trace, "--time", ids[0]],
         "run, json": [*run, "--format", "json"],
-        "run, c, json": [*run, "--engine", "c", "--format", "json"],
         "compile, json": ["compile", spec, "--to", "json"],
     }
     texts = {name: _printed(lambda given=given: command(given)) for name, given in words.items()}

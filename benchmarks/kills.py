@@ -62,8 +62,8 @@ PARENTS = (
     Parent("rvmon run --jobs", (*RVMON, "run", "s.rv", *["t.csv"] * 6, "--jobs", "2")),
     Parent("rvmon run --report", (*RVMON, "run", "s.rv", "few.csv", "--report", "out")),
     Parent(
-        "rvmon run -e c",
-        (*RVMON, "run", "s.rv", "many.csv", "--engine", "c", "--format", "json"),
+        "rvmon run",
+        (*RVMON, "run", "s.rv", "many.csv", "--format", "json"),
     ),
     Parent(
         "handover run",

@@ -1,12 +1,11 @@
-"""What each kind of requirement that people write costs per sample, in each engine.
+"""What each kind of requirement that people write costs per sample.
 
     python -m benchmarks.kinds [--rows 4000] [--time sampled] [--events 5] [WORD …]
 
 Thirteen kinds, each demanded at every instant and upon an event that comes in 5 % of the samples,
 or in `--events` of them, over values that are drawn anew and cross at every row, a second apart.
-Processor time of `step`, all in, the least of three passes; `–` where the engine refuses the
-requirement. The verdicts and decision instants of all engines are compared. With words, only kinds
-that have one of them.
+Processor time of `step`, all in, the least of three passes. With words, only kinds that have
+one of them.
 """
 
 from __future__ import annotations
@@ -17,10 +16,8 @@ import statistics
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 
 from rvmon import loads
-from rvmon.errors import RvmonError
 from rvmon.session import Spec
 from rvmon.trace.sample import Value
 
@@ -65,38 +62,28 @@ def rows_of(count: int, events: float) -> list[dict[str, Value]]:
 
 def measured(
     spec: Spec,
-    engine: str,
     rows: Sequence[dict[str, Value]],
     seconds: float,
     only: Sequence[str] | None = None,
-) -> tuple[float, list[object]]:
-    """Nanoseconds per sample, and what was decided when.
-
-    Raises:
-        RvmonError: the engine refuses it.
-    """
+) -> float:
+    """Nanoseconds per sample."""
     best = float("inf")
-    decided: list[object] = []
     for _ in range(3):
-        monitor = spec.monitor(engine=engine, only=only)
+        monitor = spec.monitor(only=only)
         step = monitor.step_ns
-        made = []
         began = time.process_time_ns()
         for place, row in enumerate(rows):
-            found = step(place * SECOND, row)
-            if found:
-                made += found
+            step(place * SECOND, row)
         spent = time.process_time_ns() - began
         best = min(best, spent / len(rows))
-        decided = [(a.number, a.triggered, a.decided, a.verdict) for a in made]
         if spent > seconds * 1e9:
             break
-    return best, decided
+    return best
 
 
 def main(argv: Sequence[str]) -> int:
-    """Measure and print; 1 if two engines differ."""
-    parser = argparse.ArgumentParser(description="Kinds of requirements, by engine.")
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="Kinds of requirements.")
     parser.add_argument("--rows", type=int, default=4000)
     parser.add_argument("--time", choices=("held", "sampled"), default="held")
     parser.add_argument("--seconds", type=float, default=1.0, help="for more than one pass")
@@ -104,31 +91,16 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("words", nargs="*")
     options = parser.parse_args(argv)
     rows = rows_of(options.rows, options.events)
-    print("| kind | " + " | ".join(ENGINES) + " |\n|---|" + "---|" * len(ENGINES))
-    differ = 0
-    figures: dict[str, list[float]] = {engine: [] for engine in ENGINES}
+    print("| kind | ns a sample |\n|---|---|")
+    figures: list[float] = []
     for name, text in requirements():
         if options.words and not any(word in name for word in options.words):
             continue
         spec = loads(f"time {options.time}\nsignal x, y : real\nevent e\nrequirement R\n  {text}\n")
-        cells, found = [], []
-        for engine in ENGINES:
-            try:
-                cost, decided = measured(spec, engine, rows, options.seconds)
-            except RvmonError:
-                cells.append("–")
-                continue
-            figures[engine].append(cost)
-            found.append(decided)
-            own = f" ({spec.engines()['R'].online})" if engine == "auto" else ""
-            cells.append(f"{cost:,.0f} ns{own}")
-        differ += any(one != other for one, other in pairwise(found))
-        print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
-    for engine, own in figures.items():
-        if own:
-            print(f"{engine}: {len(own)} judged, median {statistics.median(own):,.0f} ns")
-    print(f"verdicts and instants that differ between engines: {differ}")
-    return 1 if differ else 0
+        figures.append(measured(spec, rows, options.seconds))
+        print(f"| {name} | {figures[-1]:,.0f} |", flush=True)
+    print(f"{len(figures)} kinds, median {statistics.median(figures):,.0f} ns")
+    return 0
 
 
 if __name__ == "__main__":

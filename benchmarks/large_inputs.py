@@ -143,20 +143,9 @@ def inputs(folder: Path) -> Iterator[tuple[str, Callable[[], list[str]]]]:
             lambda count=count: run(wide_spec(count), written("r.csv", wide_csv(count))),
         )
     for count in (11, 20):
-        for words in ([], ["--engine", "python"]):
-            yield (
-                f"{count} windowed conjuncts: run {' '.join(words)}",
-                lambda count=count, words=words: run(
-                    windowed(count), written("r.csv", wide_csv(count)), *words
-                ),
-            )
         yield (
-            f"{count} windowed conjuncts: check --engines",
-            lambda count=count: [
-                *rvmon("check"),
-                "--engines",
-                written("s.rv", windowed(count)),
-            ],
+            f"{count} windowed conjuncts: run",
+            lambda count=count: run(windowed(count), written("r.csv", wide_csv(count))),
         )
     yield (
         "100,000 terms: check",

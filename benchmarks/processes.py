@@ -75,7 +75,6 @@ def _ours(spec: Path, stem: Path, workload: Workload) -> Iterator[Program]:
     judged = (*run, str(csv), "--format", "json")
     few = str(_jsonl(stem.with_name("few"), columns, FEW))
     yield Program("rvmon run, csv", judged, _ours_violated, rows)
-    yield Program("rvmon run -e c, csv", (*judged, "--engine", "c"), _ours_violated, rows)
     yield Program(
         "rvmon run, jsonl", (*run, few, "--format", "json"), _ours_violated, min(rows, FEW)
     )

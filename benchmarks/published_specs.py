@@ -1,11 +1,10 @@
-"""Requirements that others have published: which engine takes each, and what it costs per sample.
+"""Requirements that others have published: what each costs per sample.
 
     python -m benchmarks.published_specs [--rows 2000] [FILE …]
 
 The files stand in `benchmarks/published`, each with its source. Samples come a second apart (at
 the ticks of a clocked specification), numbers are drawn near those that the file compares with and
-change at every row, conditions change in a third of the rows. Processor time of `step`, all in; the
-verdicts and decision instants of all engines are compared. `–` where an engine refuses.
+change at every row, conditions change in a third of the rows. Processor time of `step`, all in.
 """
 
 from __future__ import annotations
@@ -16,13 +15,11 @@ import re
 import statistics
 import sys
 from collections.abc import Sequence
-from itertools import pairwise
 from pathlib import Path
 
 from benchmarks.kinds import measured
 
 from rvmon import load
-from rvmon.errors import RvmonError
 from rvmon.session import Spec
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind
@@ -49,41 +46,25 @@ def rows_of(spec: Spec, text: str, count: int) -> list[dict[str, Value]]:
 
 
 def main(argv: Sequence[str]) -> int:
-    """Measure and print; 1 if two engines differ."""
-    parser = argparse.ArgumentParser(description="Published requirements, by engine.")
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="Published requirements.")
     parser.add_argument("--rows", type=int, default=2000)
     parser.add_argument("--seconds", type=float, default=1.0, help="for more than one pass")
     parser.add_argument("files", nargs="*", type=Path, default=sorted(HERE.glob("*.rv")))
     options = parser.parse_args(argv)
-    print("| requirement | " + " | ".join(ENGINES) + " |\n|---|" + "---|" * len(ENGINES))
-    figures: dict[str, list[float]] = {engine: [] for engine in ENGINES}
-    count = differ = 0
+    print("| requirement | ns a sample |\n|---|---|")
+    figures: list[float] = []
     for file in options.files:
         spec = load(file)
         rows = rows_of(spec, file.read_text(), options.rows)
         for name in spec.requirements:
-            count += 1
-            cells, found = [], []
-            for engine in ENGINES:
-                try:
-                    cost, decided = measured(spec, engine, rows, options.seconds, only=[name])
-                except RvmonError:
-                    cells.append("–")
-                    continue
-                figures[engine].append(cost)
-                found.append(decided)
-                own = f" ({spec.engines(only=[name])[name].online})" if engine == "auto" else ""
-                cells.append(f"{cost:,.0f} ns{own}")
-            differ += any(one != other for one, other in pairwise(found))
-            print(f"| {file.stem} {name} | " + " | ".join(cells) + " |", flush=True)
-    for engine, own in figures.items():
-        if own:
-            print(
-                f"{engine}: {len(own)} of {count} judged, median {statistics.median(own):,.0f} ns, "
-                f"most {max(own):,.0f} ns"
-            )
-    print(f"verdicts and instants that differ between engines: {differ}")
-    return 1 if differ else 0
+            figures.append(measured(spec, rows, options.seconds, only=[name]))
+            print(f"| {file.stem} {name} | {figures[-1]:,.0f} |", flush=True)
+    print(
+        f"{len(figures)} requirements, median {statistics.median(figures):,.0f} ns, "
+        f"most {max(figures):,.0f} ns"
+    )
+    return 0
 
 
 if __name__ == "__main__":

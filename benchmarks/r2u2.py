@@ -25,7 +25,7 @@ from pathlib import Path
 from benchmarks.contenders import COLUMNS, STEPS, Contender, Pass, our_worker
 from benchmarks.measure import Plan, measure
 from benchmarks.peers.dialects import Dialect, spelling, translate
-from benchmarks.peers.positions import Question, answers, ask_engine
+from benchmarks.peers.positions import Question, answers, ask_monitor
 from benchmarks.render import ratio_text, time_text
 from benchmarks.workload import Workload
 
@@ -139,7 +139,7 @@ def compared(workload: Workload, made: Built, folder: Path) -> tuple[int, int, i
     equal = count = false = 0
     for formula, other in zip(workload.formulas, theirs, strict=True):
         question = Question(formula, columns, frozenset(), TimeModel.HELD)
-        for answer, verdict in zip(answers(question, ask_engine), other, strict=False):
+        for answer, verdict in zip(answers(question, ask_monitor), other, strict=False):
             if answer is not None:
                 count, equal, false = count + 1, equal + (answer is verdict), false + (not answer)
     return equal, count, false
@@ -150,9 +150,7 @@ def figures(workload: Workload, source: Path, plan: Plan, folder: Path) -> Itera
     made = built(workload, source, folder)
     equal, count, false = compared(workload, made, folder)
     contenders: list[Contender] = [
-        our_worker(label, kind, engine)
-        for label, kind, engine in (*STEPS, *COLUMNS)
-        if engine != "automaton" and kind != "changes"
+        our_worker(label, kind) for label, kind in (*STEPS, *COLUMNS) if kind != "changes"
     ]
     contenders.append(Memory(made, folder / "rows.bin"))
     result = measure(workload, contenders, plan)

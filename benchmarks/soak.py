@@ -1,7 +1,7 @@
 """A monitor that lives long: is its memory flat, are its steps short, are its verdicts right?
 
-    python -m benchmarks.soak --samples 100000000 --engine auto
-    python -m benchmarks.soak --samples 1000000000 --engine c
+    python -m benchmarks.soak --samples 100000000
+    python -m benchmarks.soak --samples 1000000000 --exported
 
 A sample per millisecond, in a pattern of a second: attempts that overlap, keys that come again,
 NaN, a signal that becomes stale. How many attempts pass and fail in each second is known, and
@@ -114,10 +114,10 @@ class Lived:
     longest: int
 
 
-def live_in_python(seconds: int, first: int, engine: str, only: Sequence[str]) -> tuple[Lived, str]:
+def live_in_python(seconds: int, first: int, only: Sequence[str]) -> tuple[Lived, str]:
     """Feed a monitor of Python; also what it said where it refused a sample."""
     spec = rvmon.loads(SPEC)
-    monitor = spec.monitor(engine=engine, keep=100, only=only)
+    monitor = spec.monitor(keep=100, only=only)
     rows, quiet, step, clock = pattern(), [{}] * TAIL, monitor.step_ns, time.perf_counter_ns
     bins = np.zeros(BINS, dtype=np.int64)
     resident, longest, t, said = [resident_kib()], 0, first, ""
@@ -221,26 +221,26 @@ def main(words: list[str]) -> int:
     """Feed, compare, print, and return 1 if a verdict is wrong."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--samples", type=int, default=1_000_000)
-    parser.add_argument("--engine", choices=("auto", "python", "c"), default="auto")
+    parser.add_argument("--exported", action="store_true", help="the core as C, without Python")
     parser.add_argument("--only", nargs="+", choices=KNOWN, default=list(KNOWN))
     options = parser.parse_args(words)
     seconds = max(10, options.samples // ROWS)
     names = [one for one in KNOWN if one in options.only]
-    if options.engine == "c":
+    if options.exported:
         names = [one for one in names if not KNOWN[one][2]]
     with tempfile.TemporaryDirectory() as folder:
-        built = program(Path(folder), names) if options.engine == "c" else None
+        built = program(Path(folder), names) if options.exported else None
 
         def live(span: int, first: int) -> tuple[Lived, str]:
             if built is not None:
                 return live_in_c(built, span, first, names)
-            return live_in_python(span, first, options.engine, names)
+            return live_in_python(span, first, names)
 
         began = time.perf_counter()
         lived, _ = live(seconds, 0)
         spent = time.perf_counter() - began
         last, said = live(2, TIME_LIMIT - 1500 * STEP_NS)
-    print(f"{options.engine}: {lived.taken:,} samples in {spent:.0f} s")
+    print(f"{lived.taken:,} samples in {spent:.0f} s")
     print("memory, MiB: " + " ".join(f"{kib / 1024:.1f}" for kib in lived.resident))
     times = [quantile(lived.bins, share) / 1000 for share in (0.5, 0.999)]
     longest = lived.longest / 1000

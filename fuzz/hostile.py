@@ -1,6 +1,6 @@
 """Recordings that are wrong here and there, judged by Python, by columns and by the core.
 
-    python -m fuzz.hostile --inputs 100000 --seed 1 [--engine python auto c]
+    python -m fuzz.hostile --inputs 100000 --seed 1
 
 Each is a few rows or lines whose values, stamps, commas and ends are seldom what they should be: so
 that, unlike most that a fuzzer makes of bytes, many are judged. Prints by whom; at the first on
@@ -118,19 +118,13 @@ def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--inputs", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument(
-        "--engine",
-        nargs="+",
-        default=["python", "auto", "c"],
-        help="of python, auto and c; what any judges, the first has to judge",
-    )
     options = parser.parse_args(words)
     ends: Counter[str] = Counter()
     began = time.process_time()
     for number in range(options.inputs):
         data = made(random.Random(f"{options.seed}/{number}"))
         try:
-            ends[recording(data, options.engine)] += 1
+            ends[recording(data)] += 1
         except Exception as error:  # noqa: BLE001 - this is what is looked for
             kept = Path(f"hostile-{options.seed}-{number}")
             kept.write_bytes(data)

@@ -1,7 +1,7 @@
 """What is fuzzed: each target takes bytes and raises only if something stumbles over them.
 
-Bad input is to be refused by an `RvmonError`, which a target takes for an answer. A target of
-recordings also compares what our engines say of what they judge.
+Bad input is to be refused by an `RvmonError`, which a target takes for an answer. Recordings are
+judged by columns and by samples, and what both say is compared.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ import hashlib
 import json
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from tests.tools.bags import SHOP
 from tests.tools.timed_damage import survives
@@ -20,7 +21,9 @@ from tests.tools.timed_damage import survives
 import rvmon
 from rvmon.diagnostics.render import render_full
 from rvmon.errors import ModelError, RvmonError, SnapshotError, SpecError
+from rvmon.readers.source import Source
 from rvmon.spec.print.formatter import format_text
+from rvmon.trace.sample import Sample
 
 ANSWERS: Counter[str] = Counter()
 """How inputs ended, by target."""
@@ -193,27 +196,28 @@ def _recorded(time: str) -> rvmon.Spec:
     return rvmon.loads(RECORDED.format(time=time))
 
 
-def recording(data: bytes, engines: Sequence[str] = ("python", "auto", "c")) -> str:
-    """A CSV file or JSON lines: Python, columns and the core say the same.
+def recording(data: bytes) -> str:
+    """A CSV file or JSON lines: columns and samples say the same.
 
-    The first byte says which form and time model; the rest is the file. Of the engines the first
-    judges all that others do.
+    The first byte says which form and time model; the rest is the file.
     """
     if not data:
         return "nothing"
     ending, time = ENDS[data[0] % 2], TIMES[data[0] // 2 % 3]
     path = _file(f"r{ending}", data[1:])
-    found = {name: _told_by_engine(time, path, name) for name in engines}
-    judged = {name: one for name, one in found.items() if one is not None}
-    for name, one in judged.items():
-        first = found[engines[0]]
-        assert one == first, f"{name} says\n{one}\nand {engines[0]}\n{first}"
-    return "judged by " + (", ".join(judged) or "none")
+    found = [_told(time, path, read) for read in (iter, _sample_by_sample)]
+    assert found[0] == found[1], f"columns say\n{found[0]}\nand samples\n{found[1]}"
+    return "judged" if found[0] is not None else "refused"
 
 
-def _told_by_engine(time: str, path: Path, engine: str) -> object:
+def _sample_by_sample(recording: Any) -> Iterator[Sample]:
+    return iter(recording)
+
+
+def _told(time: str, path: Path, read: Callable[[Any], Iterator[Sample]]) -> object:
     try:
-        report = _recorded(time).evaluate(path, allow_missing=True)
+        spec = _recorded(time)
+        report = spec.judge(Source(spec.recording(path), read=read))
     except RvmonError:
         return None
     attempts: dict[str, list[object]] = {name: [] for name in report.verdicts}

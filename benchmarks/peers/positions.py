@@ -60,8 +60,8 @@ def ask_oracle(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report
     return evaluate(spec, samples, advances=(end,))
 
 
-def ask_engine(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report:
-    """Judge by the engine that `auto` takes."""
+def ask_monitor(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Report:
+    """Judge by a monitor."""
     from rvmon.session import Spec
 
     monitor = Spec(spec).monitor()

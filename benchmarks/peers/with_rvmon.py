@@ -18,7 +18,6 @@ class Peer:
         self._spec: Any = None
         self._text = ""
         self._kind = ""
-        self._engine = "auto"
         self._columns: dict[str, list[Any]] = {}
         self._rows: list[tuple[int, dict[str, Any]]] = []
         self._times: Any = None
@@ -31,7 +30,6 @@ class Peer:
         columns: dict[str, list[Any]],
         rows: int,
         period: int = 1,
-        engine: str = "auto",
     ) -> dict[str, Any]:
         """Compile the specification and lay the rows out.
 
@@ -41,18 +39,17 @@ class Peer:
             columns: by name the value at each row.
             rows: their number.
             period: ticks from row to row.
-            engine: by name.
         """
         if spec != self._text:
             self._spec, self._text = rvmon.loads(spec), spec
-        self._kind, self._engine, self._period = kind, engine, period
+        self._kind, self._period = kind, period
         if kind == "evaluate":
             import numpy as np
 
             self._columns = {"t_ns": np.arange(rows, dtype=np.int64) * period}
             self._columns |= {name: np.array(column[:rows]) for name, column in columns.items()}
             few = {name: column[:2] for name, column in self._columns.items()}
-            self._spec.evaluate(few, time="t_ns", engine=engine)
+            self._spec.evaluate(few, time="t_ns")
             return {"rows": rows}
         names = list(columns)
         cells = zip(*(columns[name][:rows] for name in names), strict=True)
@@ -63,17 +60,17 @@ class Peer:
                 (t, {n: v for n, v in row.items() if i == 0 or whole[i - 1][n] != v})
                 for i, (t, row) in enumerate(self._rows)
             ]
-        self._spec.monitor(engine=engine)
+        self._spec.monitor()
         return {"rows": rows}
 
     def run(self) -> dict[str, Any]:
         """One pass over the rows; the first row at which each requirement had failed."""
         if self._kind == "evaluate":
             began = time.process_time_ns()
-            report = self._spec.evaluate(self._columns, time="t_ns", engine=self._engine)
+            report = self._spec.evaluate(self._columns, time="t_ns")
             spent = time.process_time_ns() - began
             return {"cpu_ns": spent, "violated": self._violated(report.attempts)}
-        monitor = self._spec.monitor(engine=self._engine)
+        monitor = self._spec.monitor()
         step = monitor.step_ns
         failed: list[Any] = []
         began = time.process_time_ns()

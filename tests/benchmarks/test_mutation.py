@@ -2,9 +2,6 @@
 
 import ast
 
-import pytest
-from benchmarks.engines import ENGINES, files_of
-from benchmarks.equivalent import EQUIVALENT
 from benchmarks.mutants import KINDS
 from benchmarks.mutation_c import c_mutants
 
@@ -88,19 +85,3 @@ def test_c_changes(tmp_path):
         (8, "dropped statement"),
     }
     assert all(one.source.count("\n") == C.count("\n") for one in found)
-
-
-def test_engines_have_files():
-    """Every file that is named for an engine is there."""
-    assert files_of(engine)
-
-
-@pytest.mark.slow
-def test_what_is_equivalent_can_still_be_changed():
-    """A change that is listed as equivalent, and can no longer be made, has to go from the list."""
-    possible = set()
-    for file in {file for engine in ENGINES for file in files_of(engine)}:
-        source = file.read_text(encoding="utf-8")
-        made = mutants(file, lines(source), KINDS) if file.suffix == ".py" else c_mutants(file)
-        possible |= {one.change for one in made}
-    assert EQUIVALENT.keys() - possible == set()

@@ -51,8 +51,8 @@ class Monitor:
             the time is not later, or an `advance` ruled it out; `TraceError` for a
             name or a value that the specification does not know, or a time that is no whole number;
             `OverlapError` if another call is under way. In all cases the monitor is as it was.
-            It is a function of the core: samples other than plain values in a `dict`, and those that
-            are refused, are given back to Python for a closer look.
+            It is a function of the core, which gives samples back to Python for a closer look that
+            are no plain values in a `dict`, or refused.
     """
 
     step: Callable[[float, Mapping[str, Any]], Sequence[Attempt]]

@@ -209,8 +209,8 @@ def test_a_torn_run_is_told_in_every_output() -> None:
     spec = rvmon.loads(_SPEC)
     for _ in range(2):
         places = _Strike()
-        _struck(_begun(spec, "network"), places)
-    monitor = _begun(spec, "network")
+        _struck(_begun(spec), places)
+    monitor = _begun(spec)
     with pytest.raises(KeyboardInterrupt):
         _struck(monitor, _Strike(list(places.passed)[len(places.passed) // 2]))
     report = monitor.finish_ns(4 * _S)

@@ -213,7 +213,7 @@ def test_the_compile_report_says_what_became_of_a_requirement():
         compile_report(one)
         for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
     ]
-    assert report.judge == "network"
+    assert report.judge == "windows"
     assert "more than" in report.why
     windows = rvmon.loads(
         "signal p : bool\nevent e\nrequirement R\n  upon e then within 5 s for 3 s p"

@@ -117,7 +117,7 @@ def test_a_call_within_another_is_refused() -> None:
 @pytest.mark.usefixtures("quick_turns")
 def test_two_threads_break_no_compiled_monitor() -> None:
     """Steps in C are taken whole beside calls of which Python does a part; those are refused."""
-    monitor = _monitor("c")
+    monitor = _monitor()
     clock = count(1)
     found = _stepped_by_two(monitor, 600, clock, odd=True)
     assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
@@ -222,19 +222,6 @@ def test_a_monitor_is_handed_from_thread_to_thread() -> None:
     for number in range(1, 801):
         alone.step_ns(number, _row(number))
     assert monitor.finish_ns(900).attempts == alone.finish_ns(900).attempts
-
-
-def test_without_a_global_lock_every_step_takes_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In a Python whose threads run at once, steps are let in by a lock and judge alike."""
-    monkeypatch.setattr(sys, "_is_gil_enabled", lambda: True, raising=False)
-    usual = _monitor()
-    monkeypatch.setattr(sys, "_is_gil_enabled", lambda: False, raising=False)
-    locked = _monitor()
-    assert getattr(usual.step_ns, "__self__", None) is not usual
-    assert getattr(locked.step_ns, "__self__", None) is locked
-    for number in range(1, 100):
-        assert locked.step_ns(number, _row(number)) == usual.step_ns(number, _row(number))
-    assert locked.finish_ns(100).attempts == usual.finish_ns(100).attempts
 
 
 def test_a_restored_monitor_is_open() -> None:
