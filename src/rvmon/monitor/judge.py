@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rvmon.monitor.build import build_monitor
 from rvmon.monitor.core.planned import planned_core
 
 if TYPE_CHECKING:
@@ -49,8 +50,6 @@ def judge_source(compiled: CompiledSpec, source: Source, asked: Asked) -> Report
 
 
 def _judge_samples(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
-    from rvmon.monitor.build import build_monitor
-
     spec, names = compiled.checked, source.names
     if names is not None:
         names = names & {*spec.signals, *spec.events}
