@@ -38,18 +38,11 @@ GOALS = (
     Goal("online, one step from Python", "online", "rvmon step", "reelay", "past", 5),
     Goal("online, one step from Python", "online", "rvmon step", "rtamt", "past", 200),
     Goal("online, one step from Python", "online", "rvmon step", "mstlo", "future", 5),
-    Goal("online, one step, the core", "online", "rvmon step, C", "reelay", "past", 5),
-    Goal("online, one step, the core", "online", "rvmon step, C", "rtamt", "past", 200),
-    Goal("online, one step, the core", "online", "rvmon step, C", "mstlo", "future", 5),
     Goal("online, only what changed", "online", "rvmon step, changes", "reelay", "past", 5),
-    Goal("values that change at every row", "unsteady", "rvmon step", "sentil", "future", 0.8),
-    Goal("values that change at every row, C", "unsteady", "rvmon step, C", "sentil", "future", 4),
+    Goal("values that change at every row", "unsteady", "rvmon step", "sentil", "future", 4),
     Goal("values that change at every row", "unsteady", "rvmon step", "mstlo", "future", 5),
-    Goal("values that change at every row, C", "unsteady", "rvmon step, C", "mstlo", "future", 5),
     Goal("robot, 20 Hz and 1 kHz", "robot", "rvmon step", "reelay", "past", 5),
     Goal("robot, 20 Hz and 1 kHz", "robot", "rvmon step", "mstlo", "future", 5),
-    Goal("robot, the core", "robot", "rvmon step, C", "reelay", "past", 5),
-    Goal("robot, the core", "robot", "rvmon step, C", "mstlo", "future", 5),
     Goal(
         "100 monitors on one stream", "many", "rvmon step", "reelay", "past", 50, ("100 monitors",)
     ),
@@ -62,29 +55,10 @@ GOALS = (
         50,
         ("100 monitors",),
     ),
-    Goal(
-        "100 monitors, the core",
-        "many",
-        "rvmon step, C",
-        "reelay",
-        "past",
-        50,
-        ("100 monitors",),
-    ),
-    Goal("10 to 1,000 monitors", "many", "rvmon step, C", "sentil", "future", 3),
-    Goal(
-        "batch in memory, no compiler, at most 10 % of rows change",
-        "batch",
-        "rvmon evaluate",
-        "reelay C++",
-        "past",
-        1,
-        changing=0.1,
-    ),
-    Goal("batch in memory, no compiler", "batch", "rvmon evaluate", "reelay", "past", 30),
-    Goal("batch in memory, the core", "batch", "rvmon evaluate, C", "reelay C++", "past", 10),
+    Goal("10 to 1,000 monitors", "many", "rvmon step", "sentil", "future", 3),
+    Goal("batch in memory", "batch", "rvmon evaluate", "reelay", "past", 30),
+    Goal("batch in memory", "batch", "rvmon evaluate", "reelay C++", "past", 10),
     Goal("whole process, CSV", "process", "rvmon run, csv", "reelay C++, csv", "past", 0.5),
-    Goal("whole process, CSV", "process", "rvmon run -e c, csv", "reelay C++, csv", "past", 0.5),
     Goal("whole process, Parquet", "process", "rvmon run, parquet", "reelay, parquet", "past", 5),
 )
 """Mstlo has no factor in the design; it is given reelay's."""
@@ -114,9 +88,8 @@ class Quoted:
 
 
 QUOTED = (
-    Quoted("batch in memory", "batch", "rvmon evaluate, C", "R2U2 C", (37, 195), 10),
+    Quoted("batch in memory", "batch", "rvmon evaluate", "R2U2 C", (37, 195), 10),
     Quoted("whole process, CSV", "process", "rvmon run, csv", "R2U2 C", (107, 179), 0.5),
-    Quoted("whole process, CSV", "process", "rvmon run -e c, csv", "R2U2 C", (107, 179), 0.5),
     Quoted("whole process, JSONL", "process", "rvmon run, jsonl", "reelay", (128, 164), 2),
 )
 """Measured on another machine on these families; R2U2 is not on the package index."""

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from benchmarks.agreement import COMPILED, Agreement
+from benchmarks.agreement import Agreement
 from benchmarks.findings import ATTEMPT_BYTES, FLATNESS, GOALS, QUOTED, Findings, Goal
 from benchmarks.measure import Figure, Result
 
@@ -121,12 +121,11 @@ def _alike(agreements: Sequence[Agreement], result: Result, ours: Figure, peer: 
     """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
     here = [a for a in agreements if a.form == result.form and a.name == result.name and a.compared]
     name = peer.label.split()[0].rstrip(",")
-    sides = [name, ours.label] if ours.label in COMPILED else [name]
-    checked = [[a for a in here if a.label == side] for side in sides]
+    checked = [a for a in here if a.label == name]
     whole = ours.rows == peer.rows == result.rows
     if whole and result.form == "past" and ours.violated != peer.violated:
         return False
-    return all(checked) and all(a.equal == a.compared for side in checked for a in side)
+    return bool(checked) and all(a.equal == a.compared for a in checked)
 
 
 def _goals(findings: Findings) -> Iterator[str]:

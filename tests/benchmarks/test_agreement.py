@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from benchmarks.agreement import COMPILED, Agreement, Referee
+from benchmarks.agreement import Agreement, Referee
 from benchmarks.measure import Figure
 from benchmarks.peers.client import Peer
 from benchmarks.workload import Workload
@@ -45,9 +45,7 @@ def check(peer: Played, ns_per_row: float) -> tuple[Agreement, list[str]]:
     timed = Figure("rtamt", ROWS, ns_per_row, ns_per_row, ns_per_row, (None,))
     said: list[str] = []
     with Referee({"rtamt": peer}, 2, SECONDS, said.append) as referee:
-        *compiled, found = referee.check(workload, [timed])
-    assert [one.label for one in compiled] == list(COMPILED)
-    assert all(one.equal == one.compared > 0 or one.remark for one in compiled)
+        (found,) = referee.check(workload, [timed])
     return found, said
 
 

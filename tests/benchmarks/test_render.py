@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from benchmarks.agreement import COMPILED, Agreement
+from benchmarks.agreement import Agreement
 from benchmarks.attempts import OpenAttempts
 from benchmarks.findings import Findings
 from benchmarks.measure import Figure, Result
@@ -43,20 +43,6 @@ def test_no_ratio_without_agreement() -> None:
     for agreements in ((), (replace(ALIKE, equal=299),)):
         page = render(replace(FINDINGS, agreements=agreements))
         assert "not measured" in line(page, STEP)
-
-
-def test_the_core_has_to_agree_with_the_others_too() -> None:
-    """The ratio of the core wants that it was compared with ours, and was the same."""
-    [label] = COMPILED
-    compiled = replace(RESULT, figures=(replace(OURS, label=label), REELAY))
-    own = replace(ALIKE, label=label)
-    start = f"| online, one step, the core | {label} |"
-    for agreements in ((ALIKE,), (ALIKE, replace(own, equal=299))):
-        page = render(replace(FINDINGS, results=(compiled,), agreements=agreements))
-        assert "not measured" in line(page, start)
-    page = render(replace(FINDINGS, results=(compiled,), agreements=(ALIKE, own)))
-    assert "| 9.0× (9.0× to 9.0×) | ≥ " in line(page, start)
-    assert line(page, start).endswith(" yes |")
 
 
 def test_no_ratio_with_other_violation() -> None:
