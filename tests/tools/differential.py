@@ -28,7 +28,6 @@ from tests.tools.kinds import kinds_of
 from tests.tools.letters import random_letters
 from tests.tools.online import (
     differences_after_end,
-    explains,
     is_online,
     is_silent,
     online_differences,
@@ -192,7 +191,7 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
         if is_online(monitor):
             found += frame_differences(expected, actual)
             found += differences_after_end(case, monitor, actual)
-        if is_online(monitor) and explains(monitor) and not case.outages:
+        if is_online(monitor) and not case.outages:
             provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)
             found += judgement.seen.differences(actual) if not found else ()

@@ -29,11 +29,6 @@ def is_silent(monitor: Monitored) -> bool:
     return getattr(type(monitor), "silent", False)
 
 
-def explains(monitor: Monitored) -> bool:
-    """Whether it says what an attempt owes, and what was wrong with its inputs."""
-    return getattr(type(monitor), "explains", True)
-
-
 def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
     """What is wrong with what a monitor says at each action of a case; empty if all is right.
 
@@ -61,7 +56,7 @@ def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
         if is_online(monitor):
             found += _early(attempts, due, action, settle) if count > 1 else ()
             open_ = monitor.open
-            found += _open(waiting, open_, told=explains(monitor))
+            found += _open(waiting, open_)
             found += _unforeseen(decided, forecast)
             forecast |= {key_of(a): a.forecast for a in open_ if a.forecast}
             due = monitor.next_due
@@ -114,13 +109,13 @@ def _returned(
             yield f"returned {attempt}, expected {wanted}"
 
 
-def _open(waiting: Mapping[Key, Waiting], found: Sequence[Attempt], *, told: bool) -> Iterator[str]:
+def _open(waiting: Mapping[Key, Waiting], found: Sequence[Attempt]) -> Iterator[str]:
     wanted = {(*key, one.triggered) for key, one in waiting.items()}
     got = {(*key_of(a), a.triggered) for a in found}
     if got != wanted or len(found) != len(got):
         yield f"leaves open {sorted(wanted)}, shown are {sorted(got)}"
         return
-    for attempt in found if told else ():
+    for attempt in found:
         one = waiting[key_of(attempt)]
         for part in one.misnamed(attempt.owed):
             yield f"{attempt} is said to owe {part}, which waits for nothing"

@@ -25,9 +25,6 @@ from rvmon.dataflow.piecewise import FAR, Piece
 Noted = Sequence[tuple[int, Sequence[bool]]]
 """Positions with their letters."""
 
-MOST_NOTED = 256
-"""So many positions are noted at most before they are worked out."""
-
 FOREVER = 1 << 200
 """Behind all stamps."""
 

@@ -122,14 +122,6 @@ def up_to(pieces: Pieces, limit: int) -> Pieces:
     return found
 
 
-def as_past(pieces: Pieces) -> list[Piece]:
-    """The same, as known before."""
-    found: list[Piece] = []
-    for left, right, _, _ in pieces:
-        append(found, left, right, PAST, 0)
-    return found
-
-
 def not_before(pieces: Pieces, at: int, slope: int) -> Pieces:
     """With stamps of at least `at + slope * i`."""
     return latest(pieces, ((-FAR, FAR, at, slope),))

@@ -72,15 +72,6 @@ def last_up_to(ranges: Ranges, integer: int) -> int:
     return min(ranges[index][1], integer) if index >= 0 else -FAR - 1
 
 
-def next_in(ranges: Ranges, integer: int) -> int:
-    """The first integer in some ranges from one on; `FAR` if there is none."""
-    if not ranges or ranges[-1][1] < integer:
-        return FAR
-    if around(ranges, integer) is not None:
-        return integer
-    return ranges[bisect_right(ranges, (integer, FAR))][0]
-
-
 def overlapping(ranges: Ranges, left: int, right: int) -> Sequence[Range]:
     """Those that have an integer from `left` to `right`, whole."""
     if not ranges or ranges[-1][1] < left or left > right:

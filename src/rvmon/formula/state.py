@@ -72,10 +72,6 @@ class StateOp(Enum):
     start, or not; TRUE at the others of a stretch behind the first of these; else FALSE."""
 
 
-COMBINING = (StateOp.AND, StateOp.OR, StateOp.NOT, StateOp.SURE)
-"""What remembers nothing."""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
     """A state formula, made by `Factory`: equal ones are the same object.

@@ -184,21 +184,6 @@ class Plan:
         """The rules, then those that judge the attempts in doubt of some of them."""
         return tuple(rule for _, rule in self.judges)
 
-    @property
-    def hidden_of(self) -> tuple[int, ...]:
-        """For each of the latter, whose attempts in doubt it judges: the place of that rule."""
-        return tuple(owner for owner, _ in self.judges[len(self.rules) :])
-
-    @property
-    def fillable(self) -> frozenset[str]:
-        """The names of which only the present value matters, not whether there was an update."""
-        if self.units:
-            return frozenset()
-        spec = self.spec
-        counted = {name for name, use in self.uses.items() if use.marked or use.history}
-        stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
-        return frozenset({*spec.signals, *spec.events} - counted - stale)
-
     def readers(self, name: str) -> tuple[int, ...]:
         """The leaves that depend on the value of a signal or event."""
         nodes = self.graph.nodes
@@ -206,13 +191,6 @@ class Plan:
             place
             for place in self.graph.by_name.get(name, ())
             if not asks_knowledge(nodes[place].leaf)
-        )
-
-    def knowers(self, name: str) -> tuple[int, ...]:
-        """The leaves that depend on whether the value of a signal is known, and nothing else."""
-        nodes = self.graph.nodes
-        return tuple(
-            place for place in self.graph.by_name.get(name, ()) if asks_knowledge(nodes[place].leaf)
         )
 
 

@@ -5,12 +5,9 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterator
 from functools import partial
-from pathlib import Path
 from typing import TextIO
 
 from rvmon.errors import TraceError
-from rvmon.readers.batch import NotPlainError
-from rvmon.readers.places import opened
 
 BLOCK = 1 << 20
 """Bytes of a piece."""
@@ -41,42 +38,6 @@ def is_long_celled(body: bytes) -> bool:
     stretch = max(csv.field_size_limit() // 2, 1)
     starts = range(0, len(body) - stretch, stretch)
     return any(body.find(b"\n", start, start + stretch) < 0 for start in starts)
-
-
-def whole_lines(path: str | Path, size: int) -> Iterator[bytes]:
-    r"""A file in pieces of whole ASCII lines, each of which ends with `\n`; `\r\n` counts as that.
-
-    Args:
-        path: of the file.
-        size: bytes of a piece, about.
-
-    Raises:
-        NotPlainError: it cannot be read, has very long lines, or other characters or ends of lines.
-    """
-    rest = b""
-    try:
-        with opened(path) as (file, _):
-            while piece := file.read(size):
-                whole, newline, tail = piece.rpartition(b"\n")
-                if newline:
-                    yield _plain(rest + whole + newline)
-                    rest = tail
-                else:
-                    rest += piece
-                    if len(rest) > 4 * size:
-                        raise NotPlainError("it has very long lines")
-    except (OSError, TraceError):  # whoever reads rows says why
-        raise NotPlainError("it cannot be read") from None
-    if rest:
-        yield _plain(rest + b"\n")
-
-
-def _plain(text: bytes) -> bytes:
-    if b"\r" in text:
-        text = text.replace(b"\r\n", b"\n")
-    if not text.isascii() or b"\r" in text:
-        raise NotPlainError("it has odd characters")
-    return text
 
 
 def is_short_of_memory() -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 
 import msgspec
@@ -14,9 +13,6 @@ _ALWAYS = frozenset({"number", "triggered", "decided", "verdict", "decision", "r
 """Keys that every attempt has in JSON; the others are left out where they are empty."""
 
 _NAMES = tuple(one.name for one in fields(Attempt) if one.name != "requirement")
-
-_DIFFERING = ("number", "triggered", "decided", "deadline", "triggered_s", "decided_s")
-"""What attempts that are alike differ in, beside places in the reason."""
 
 
 def record(attempt: Attempt) -> dict[str, object]:
@@ -50,50 +46,3 @@ def attempt_text(attempt: Attempt, origin: int) -> str:
 def encoded(value: object) -> str:
     """A value as JSON text."""
     return msgspec.json.encode(value).decode()
-
-
-def numbers_texts(numbers: list[float]) -> list[str]:
-    """The JSON text of each number."""
-    found = encoded(numbers)[1:-1]
-    return found.split(",") if found else []
-
-
-class Pattern:
-    """The JSON text of attempts that are alike.
-
-    Args:
-        attempt: one of them.
-        reason: its reason in parts; `None` where the others may have another text.
-    """
-
-    def __init__(self, attempt: Attempt, reason: Sequence[str | None]) -> None:
-        parts = []
-        self._slots: list[str] = []
-        for name, value in timed_record(attempt, 0).items():
-            if name == "reason":
-                text = "".join("%s" if part is None else _plain(part)[1:-1] for part in reason)
-                parts.append(f'"reason":"{text}"')
-                self._slots += ["reason"] * reason.count(None)
-            elif name in _DIFFERING and value is not None:
-                parts.append(f'"{name}":%s')
-                self._slots.append(name)
-            else:
-                parts.append(f'"{name}":{_plain(value)}')
-        self._template = "{" + ",".join(parts) + "}"
-
-    def texts(
-        self, columns: Mapping[str, Iterable[object]], places: Iterable[Iterable[str]]
-    ) -> list[str]:
-        """The texts of some of the attempts.
-
-        Args:
-            columns: by key of the record what they differ in, for each; numbers or their JSON text.
-            places: for each `None` of the reason the texts that stand there, for each.
-        """
-        texts = iter(places)
-        found = [next(texts) if slot == "reason" else columns[slot] for slot in self._slots]
-        return list(map(self._template.__mod__, zip(*found, strict=True)))
-
-
-def _plain(value: object) -> str:
-    return encoded(value).replace("%", "%%")

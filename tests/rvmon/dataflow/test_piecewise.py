@@ -9,7 +9,6 @@ from rvmon.dataflow.piecewise import (
     PAST,
     all_of_window,
     append,
-    as_past,
     clip,
     latest,
     shift,
@@ -58,7 +57,6 @@ def test_points(seed):
         assert at(shift(one, offset), i) == at(one, i + offset)
         assert at(clip(one, first, last), i) == (at(one, i) if first <= i <= last else NEVER)
         assert at(up_to(one, 15), i) == (at(one, i) if at(one, i) <= 15 else NEVER)
-        assert at(as_past(one), i) == (PAST if at(one, i) < NEVER else NEVER)
 
 
 @pytest.mark.parametrize("seed", CASES)

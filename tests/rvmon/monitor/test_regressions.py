@@ -264,20 +264,6 @@ def test_what_is_owed_is_open(form, time, requirement, samples):
     assert not disagreements(case, Maker(form), online=True)
 
 
-@pytest.mark.slow
-def test_what_cannot_be_judged_within_bounds_says_so():
-    """Progression ends in a message, not in a hang, where the network goes on."""
-    spec = rvmon.loads(
-        "spec s\nsignal a : bool\nevent b\nrequirement R1\n  always (a -> F[2 s, 5 s] b)\n"
-    )
-    monitor = spec.monitor()
-    monitor.step(0, {"a": True})
-    with pytest.raises(
-        rvmon.RvmonError, match="an attempt of R1 has more than 256 open obligations"
-    ):
-        monitor.step(1, {"a": False})
-
-
 def test_a_value_that_comes_again_after_it_was_stale_is_known():
     """Samples that hold all names: time passes before it is seen what is new."""
     spec = rvmon.loads(

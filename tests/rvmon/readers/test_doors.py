@@ -13,6 +13,7 @@ from tests.tools.doors import bare, content_of, doors, in_pieces, whole
 
 import rvmon
 from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
+from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
@@ -47,7 +48,7 @@ def told(spec, trace, **arguments) -> str:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_the_core_tells_of_every_door_what_all_engines_do(seed, tmp_path):
+def test_every_door_is_judged_as_its_samples_are(seed, tmp_path):
     """Verdicts, records, input health: of files as they are, and read in pieces of few rows."""
     traces = TraceProfile(12, 48, advances=False)
     spec = None
@@ -57,7 +58,9 @@ def test_the_core_tells_of_every_door_what_all_engines_do(seed, tmp_path):
         content = whole(content) if part == 1 else content
         for door, write in doors().items() if content.rows else ():
             trace, arguments = write(content, tmp_path)
-            expected = bare(judged(spec, trace, **arguments))
+            recording = spec.recording(trace, allow_missing=True, **arguments)
+            one_by_one = Source(recording, read=lambda samples: (one for one in samples))
+            expected = bare(spec.judge(one_by_one))
             found = [bare(judged(spec, trace, **arguments))]
             with in_pieces(200):
                 found.append(bare(judged(spec, trace, **arguments)))

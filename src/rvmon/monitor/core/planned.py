@@ -30,9 +30,6 @@ DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OP
 _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
 """In the order of `module_intake.h`."""
 
-_TOLD = ("requirement", "number", "triggered", "decided", "verdict", "decision", "in_doubt")
-"""The fields of an attempt that the core tells."""
-
 Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | None]
 """What an attempt keeps: captured values, its note, how all stood then, letters but for the last
 piece of them, that; see `module_notes.h`."""
