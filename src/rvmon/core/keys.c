@@ -200,6 +200,9 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         /* What came since the last tick of a clock belongs to the next one. */
         made->over = h->root->over;
         made->at.gathered = h->root->at.gathered;
+        if ((made->standing != NULL) && made->at.started) {
+            made->standing->begun = made->at.position; /* what it would have seen before is lost */
+        }
         if (made->at.started && (made->at.presence == ARE_THERE)) {
             vary(made, made->at.position, made->at.gathered);
         }

@@ -1,0 +1,177 @@
+"""Instances of a `for each` that are over are let go of, and nothing can tell."""
+
+import random
+import re
+from collections import Counter
+
+import pytest
+from tests.tools.differential import disagreements
+from tests.tools.ways import Maker
+
+import rvmon
+from rvmon.testing.case import Case
+from rvmon.trace.sample import Sample
+
+HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
+OWED = {
+    "another event with the key": "upon order\n  then within 3 s done.id == k",
+    "a signal": "upon order\n  then within 3 s ok",
+    "what was before": "upon order and once[1 s, 3 s] ok\n  then for 2 s not done",
+    "its own past": "upon order and not once[1 s, 4 s] order\n  then within 3 s ok",
+    "a past that knows the key": (
+        "upon order and not once[1 s, 9 s] done.id == k\n  then within 2 s ok"
+    ),
+    "stretches": "whenever order and ok\n  then within 2 s done.id == k",
+    "any time": "upon order or ok\n  then within 3 s done.id == k",
+    "a captured value": (
+        "upon order\n  then within 3 s (done.id == k and done.id == i)\n  let i = order.id"
+    ),
+    "the end": "upon end\n  then ok",
+}
+
+
+def text_of(owed, time=""):
+    return f"spec many\n{time}{HEAD}requirement R1\n  {owed}\n  for each k in order.id\n"
+
+
+def samples(rng, count):
+    """Many keys, most of which come once or twice; now and then one that is not known."""
+    t = 0
+    for number in range(count):
+        t += rng.choice([1, 5, 10, 25])
+        keys = [rng.choice([number, number - 1, number - 2, rng.randrange(6)]) for _ in "ab"]
+        values = {}
+        if rng.random() < 0.6:
+            orders = [{"id": None if rng.random() < 0.03 else key} for key in keys]
+            values["order"] = tuple(orders[: rng.choice([1, 1, 2])])
+        if rng.random() < 0.5:
+            values["done"] = {"id": rng.choice(keys)}
+        if rng.random() < 0.3:
+            values["ok"] = rng.choice([True, False, None])
+        yield Sample(t, values)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
+@pytest.mark.parametrize("name", OWED)
+@pytest.mark.parametrize("form", ["c", "c rows", "c+interrupt"])
+def test_what_is_over_changes_no_record(name, time, form):
+    """With many keys that come and go and come again, every record is that of the law."""
+    text = re.sub(r"(\d) s\b", r"\g<1>0 ns", text_of(OWED[name], time))
+    checked = rvmon.loads(text).checked
+    actions = tuple(samples(random.Random(f"{name}/{time}/{form}"), 14))
+    assert disagreements(Case(checked, actions, None), Maker(form)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 10 ms\n"])
+@pytest.mark.parametrize(
+    "name", ["another event with the key", "a signal", "what was before", "stretches"]
+)
+def test_what_is_over_takes_no_room(name, time):
+    """However many keys go by, what is kept of those that are over is bounded."""
+    monitor = rvmon.loads(text_of(OWED[name], time)).monitor(keep=5)
+    sizes = []
+    for number in range(30_000):
+        monitor.step(number, {"order": {"id": number}, "ok": number % 7 != 0})
+        if number % 1000 == 999:
+            assert len(monitor.open) < 12
+            sizes.append(len(monitor.snapshot()))
+    assert sizes[0] < sizes[9]
+    assert max(sizes[15:]) <= 1.01 * max(sizes[:15])
+
+
+def test_a_value_that_comes_again_goes_on_being_numbered():
+    """A key that was let go of is ranked as it was, before those that came later."""
+    monitor = rvmon.loads(text_of(OWED["a signal"])).monitor()
+    for t, key in enumerate([7, 8, 9]):
+        monitor.step(10 * t, {"order": {"id": key}})
+    monitor.step(100, {"order": ({"id": 9}, {"id": 7})})
+    report = monitor.finish(200)
+    assert [one.captured["k"] for one in report.attempts] == [7, 8, 9, 7, 9]
+
+
+def test_a_reason_says_from_when_on_it_knows():
+    """What an instance saw before it was let go of is not told of as if it had not been."""
+    monitor = rvmon.loads(text_of(OWED["another event with the key"])).monitor()
+    monitor.step(-5, {"ok": True})
+    monitor.step(0, {"order": {"id": 7}})
+    monitor.step(1, {"done": {"id": 7}})
+    monitor.step(50, {"order": {"id": 8}})
+    monitor.step(100, {"order": {"id": 7}})
+    *_, last = monitor.finish(200).attempts
+    assert last.reason.endswith("it had not been true since 1.000000001 s")
+
+
+@pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
+def test_a_reason_never_denies_what_was(time):
+    """Nothing had "never" been true that was, nor since an instant behind which it was."""
+    spec, told = rvmon.loads(text_of(OWED["another event with the key"], time)), Counter()
+    for seed in range(100):
+        rng, t, done = random.Random(seed), 0, []
+        monitor = spec.monitor()
+        for _ in range(rng.randint(3, 25)):
+            t += rng.choice([1, 1, 2, 4, 9])
+            values = {"order": {"id": rng.randrange(4)}} if rng.random() < 0.5 else {}
+            if rng.random() < 0.4:
+                values["done"] = {"id": rng.randrange(4)}
+                done.append((t, values["done"]["id"]))
+            monitor.step(t, values)
+        for one in monitor.finish(t + 20).attempts:
+            before = [
+                at for at, key in done if key == one.captured["k"] and at * 10**9 < one.decided
+            ]
+            claim = re.search(r"(never been true|since|last been true at) ?([0-9.]*)", one.reason)
+            if one.verdict != "F":
+                continue
+            words, instant = claim.groups()
+            told[words] += 1
+            if words == "never been true":
+                assert not before, one.reason
+            elif words == "since":
+                assert all(at <= float(instant) for at in before), one.reason
+            else:
+                assert max(before) == float(instant), one.reason
+    assert min(told[words] for words in ("never been true", "since", "last been true at")) > 5
+
+
+def test_of_attempts_that_are_sure_at_once_the_one_that_began_first_has_the_lower_number():
+    """Value 1 is triggered or not from 27 on, as `p` is not known, and −1 anew at 32 only."""
+    spec = rvmon.loads(
+        "time sampled\nsignal p : bool stale after 3 ns\nevent g(k : int)\n"
+        "requirement R\n  whenever p or g.k == n\n  then eventually[1 ns, 1 ns] true\n"
+        "  for each n in g.k\n"
+    )
+    monitor = spec.monitor()
+    for t, values in ((0, {"p": False}), (1, {"g": {"k": -1}}), (16, {"g": {"k": 1}})):
+        monitor.step_ns(t, values)
+    monitor.step_ns(27, {"g": {"k": -1}})
+    monitor.step_ns(32, {"p": True})
+    attempts = monitor.finish_ns().attempts
+    found = {one.number: (one.triggered, one.captured["n"]) for one in attempts}
+    assert found[4] == (27, 1)
+    assert found[5] == (32, -1)
+
+
+def test_an_instance_looks_back_to_the_first_position_of_the_run():
+    """Where nothing started yet: what is owed speaks of the position before its event."""
+    spec = rvmon.loads(
+        "time sampled\nevent g(k : int)\n"
+        "requirement R\n  upon g\n  then (previous (next true))\n  for each n in g.k\n"
+    )
+    monitor = spec.monitor()
+    monitor.step_ns(0, {})
+    (attempt,) = monitor.step_ns(1, {"g": {"k": 0}})
+    assert attempt.verdict == "P"
+
+
+def test_a_value_that_occurs_after_the_last_tick_of_a_clock_tells_nothing():
+    """Of what has no value yet the trigger is unknown, and no other occurs at any position."""
+    spec = rvmon.loads(
+        "time sampled every 2 ns\nsignal y : int\nevent g(k : int)\n"
+        "requirement R\n  upon y != n\n  then true\n  for each n in g.k\n"
+    )
+    monitor = spec.monitor()
+    monitor.step_ns(0, {"y": 0})
+    monitor.step_ns(3, {"g": {"k": 0}})
+    assert monitor.finish_ns().verdicts["R"] == "I"
