@@ -107,10 +107,9 @@ def cells_of_array(
     known = np.True_ if found != "f" else values == values
     looked_at = known if given is None else known & given
     whole = np.where(looked_at, values, 0)
-    most = 1 if kind is Kind.BOOL else _EXACT
-    made = whole.astype(np.int64)
-    least = 0 if kind is Kind.BOOL else -_EXACT
-    if not ((made == whole) & (least <= whole) & (whole <= most)).all():
+    least, most = (0, 1) if kind is Kind.BOOL else (-_EXACT, _EXACT)
+    is_within = ((least <= whole) & (whole <= most)).all()  # NumPy warns of a cast of what is not
+    if not is_within or ((made := whole.astype(np.int64)) != whole).any():
         raise NotPlainError("a column holds other values than were declared")
     if not known.all():
         says = np.full(len(values), YES, np.uint8) if says is None else says

@@ -25,10 +25,10 @@ class Conflicts:
         return self._seen
 
     def health(self) -> list[Health]:
-        """One entry per signal."""
+        """One entry per signal, the earliest first, whether rows or columns were looked through."""
         return [
             Health(HealthKind.CONFLICT, name, count, first, remark="two values at one stamp")
-            for name, (count, first) in self._seen.items()
+            for first, name, count in sorted((t, name, n) for name, (n, t) in self._seen.items())
         ]
 
 
