@@ -186,7 +186,8 @@ class Spec:
         Args:
             source: the recording.
             only: as for `evaluate`; so are the errors.
-            decided: called with each attempt as it is decided, where samples are judged one by one.
+            decided: called with the attempts that were decided before a fault of the recording, at
+                once or in parts.
             robustness: whether each attempt is to have its robustness.
         """
         from rvmon.monitor.judge import Asked, judge_source

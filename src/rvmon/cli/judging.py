@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -118,16 +117,9 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             read=iter if beside.is_idle else beside.reading,
             shown=partial(shown_while_reading, recording) if is_alone else iter,
         )
-        try:
-            report = spec.judge(
-                source,
-                only=options.only,
-                decided=before.extend,
-                robustness=options.robustness,
-            )
-        except TraceError:
-            before = before or _judged_before(spec, trace, options)
-            raise
+        report = spec.judge(
+            source, only=options.only, decided=before.extend, robustness=options.robustness
+        )
         report = beside.finished(report)
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to evaluate")
@@ -141,19 +133,6 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     report = replace(report, trace=trace, health=health)
     seconds = time.monotonic() - began
     return Judged(trace, report, missing=missing, hits=beside.hits, seconds=seconds)
-
-
-def _judged_before(spec: Spec, trace: str, options: Options) -> list[Attempt]:
-    """What is decided up to the place where a recording breaks off that can be read again."""
-    found: list[Attempt] = []
-    if not can_be_read_again(trace):
-        return found
-    with suppress(TraceError):
-        recording = opened(spec, trace)
-        monitor = spec.monitor(only=options.only, sources=recording.names)
-        for sample in recording:
-            found.extend(monitor.step_ns(sample.t, sample.values))
-    return found
 
 
 def _refuse_mismatch(recording: FileRecording, spec: Spec) -> None:

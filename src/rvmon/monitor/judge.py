@@ -22,7 +22,8 @@ class Asked:
 
     Attributes:
         only: ids of the requirements; `None`: all.
-        decided: called with the attempts as they are decided, where samples are judged one by one.
+        decided: called with all attempts that were decided before a fault of the recording; in
+            parts as they are decided, where samples are put in order first.
     """
 
     only: tuple[str, ...] | None = None
@@ -46,7 +47,7 @@ def judge_source(compiled: CompiledSpec, source: Source, asked: Asked) -> Report
     from rvmon.monitor.core.recording import judge_recording
 
     planned = planned_core(compiled, asked.only)
-    return judge_recording(compiled.checked, planned, source)
+    return judge_recording(compiled.checked, planned, source, asked.decided)
 
 
 def _judge_samples(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:

@@ -247,6 +247,31 @@ def test_a_broken_recording_keeps_what_was_judged(files, capsys):
     assert "Traceback" not in told
 
 
+@pytest.mark.parametrize("delay", ["", "max delay 1 s\n"])
+def test_what_was_judged_of_a_broken_stream_is_told(files, capsys, monkeypatch, delay):
+    """Standard input cannot be read again: the run itself says what it had decided."""
+    head, _, rest = SPEC.strip().partition("\n")
+    (files / "late.rv").write_text(f"{head}\n{delay}{rest}\n")
+    rows = [{"t": 0, "closed": True}, {"t": 1, "knock": True}, {"t": 5}, {"t": 6}]
+    lines = [*map(json.dumps, rows), '{"t": 7, "closed": "maybe"}']
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO("\n".join(lines).encode())))
+    assert main(["run", "late.rv", "-"]) == 2
+    told = capsys.readouterr().err
+    assert "line 5: field `closed`: `maybe`" in told
+    assert "decided before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
+
+
+@pytest.mark.slow
+def test_what_was_judged_in_columns_before_a_fault_is_told(files, capsys):
+    """Rows that were looked at together count, too."""
+    rows = "".join(f"{t},1,{t == 1:d}\n" for t in range(200_000))
+    (files / "cut.csv").write_text(f"t,closed,knock\n{rows}200000,maybe,0\n")
+    assert main(["run", "door.rv", "cut.csv"]) == 2
+    told = capsys.readouterr().err
+    assert "cut.csv: line 200002: column `closed`: `maybe`" in told
+    assert "decided before that: D1  1 F; attempt 1 failed at 3.000000001 s: `closed`" in told
+
+
 def test_a_recording_that_is_refused_has_nothing_judged_before(files, capsys):
     """What lacks a name is not judged up to its end."""
     (files / "lacks.csv").write_text("t,knock\n0,1\n5,1\n")

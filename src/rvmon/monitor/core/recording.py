@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rvmon.errors import TimeOrderError
+from rvmon.errors import TimeOrderError, TraceError
 from rvmon.monitor.core.findings import Findings
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recorded import report_of_run
@@ -20,6 +20,7 @@ from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks, whole_ticks
+from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
@@ -31,13 +32,19 @@ _LAYOUTS: Mapping[Kind, int] = {Kind.REAL: 0, Kind.INT: 1, Kind.BOOL: 2, Kind.LA
 """The numbers of layouts of values in `core.h`."""
 
 
-def judge_recording(checked: CheckedSpec, planned: PlannedCore, source: Source) -> Report:
+def judge_recording(
+    checked: CheckedSpec,
+    planned: PlannedCore,
+    source: Source,
+    decided: Callable[[Sequence[Attempt]], object],
+) -> Report:
     """Judge a recording.
 
     Args:
         checked: the specification.
         planned: the plan of its requirements.
         source: the recording, in order.
+        decided: called with what was decided before a fault of the recording.
 
     Raises:
         TimeOrderError: an instant is before the one above it.
@@ -45,8 +52,12 @@ def judge_recording(checked: CheckedSpec, planned: PlannedCore, source: Source) 
             payloads of one event of which one can be judged.
     """
     judge = RecordingRun(checked, planned, source, finds=True)
-    for piece in source.pieces():
-        judge.take(piece)
+    try:
+        for piece in source.pieces():
+            judge.take(piece)
+    except TraceError:
+        decided(judge.core.flush())
+        raise
     return judge.report()
 
 
