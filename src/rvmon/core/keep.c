@@ -161,6 +161,13 @@ static void drop_laid(run *r, int32_t index)
         }
         give_back(h, at);
     }
+    if (j->noting != NULL) { /* what was noted for those that went may go, too */
+        int32_t at;
+        j->noting->moot_since = NEVER;
+        for (at = j->moot; at >= 0; at = attempt_at(h, at)->next) {
+            note_moot(r, index, attempt_at(h, at)->triggered);
+        }
+    }
 }
 
 /* Drop the oldest of the attempts of a home that stay open for good; so many are left. */

@@ -228,35 +228,32 @@ static void drop_truths(truths *ring, int32_t words, int64_t oldest)
     }
 }
 
+/* Make room for as many entries again; false: memory is short. */
+static bool grow_truths(rv_monitor *m, truths *ring, int32_t words)
+{
+    const int32_t room = (ring->room > 0) ? 2 * ring->room : 4;
+    const size_t each = ((size_t)words + 1U) * sizeof *ring->words;
+    int64_t *made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * each) : NULL;
+    int32_t i;
+    if (made == NULL) {
+        m->spoilt = true;
+        return false;
+    }
+    for (i = 0; i < ring->count; i++) {
+        (void)memcpy(&made[(int64_t)i * (words + 1)], entry_of(ring, i, words), each);
+    }
+    arena_give(&m->memory, ring->words, (size_t)ring->room * each);
+    ring->words = made;
+    ring->room = room;
+    ring->head = 0;
+    return true;
+}
+
 /* Add an entry; NULL: memory is short. */
 int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words)
 {
-    int64_t *made;
-    if (2 * (int64_t)ring->count > (int64_t)ring->room) { /* else it would be full again soon */
-        const int32_t room = 2 * ring->room;
-        const size_t each = ((size_t)words + 1U) * sizeof *made;
-        int32_t i;
-        made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * each) : NULL;
-        if (made == NULL) {
-            m->spoilt = true;
-            return NULL;
-        }
-        for (i = 0; i < ring->count; i++) {
-            (void)memcpy(&made[(int64_t)i * (words + 1)], entry_of(ring, i, words), each);
-        }
-        arena_give(&m->memory, ring->words, (size_t)ring->room * each);
-        ring->words = made;
-        ring->room = room;
-        ring->head = 0;
-    } else if (ring->room == 0) {
-        ring->words = arena_take(&m->memory, 4U * ((size_t)words + 1U) * sizeof *made);
-        if (ring->words == NULL) {
-            m->spoilt = true;
-            return NULL;
-        }
-        ring->room = 4;
-    } else {
-        /* There is room. */
+    if ((ring->count == ring->room) && !grow_truths(m, ring, words)) {
+        return NULL;
     }
     ring->count++;
     return entry_of(ring, ring->count - 1, words);
@@ -268,6 +265,10 @@ static int64_t *add_truths(rv_monitor *m, truths *ring, int32_t words, int64_t t
     int64_t *made;
     if (ring->count == ring->room) {
         drop_truths(ring, words, oldest);
+        if ((2 * (int64_t)ring->count > ring->room) /* else it would be full again soon */
+            && !grow_truths(m, ring, words)) {
+            return NULL;
+        }
     }
     made = next_truths(m, ring, words);
     if (made != NULL) {

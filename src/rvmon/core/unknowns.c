@@ -87,14 +87,14 @@ void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
     }
     if (h->unknown_count == h->unknown_room) {
         drop_unknowns(h);
-    }
-    if (2 * (int64_t)h->unknown_count > h->unknown_room) { /* else it would be full again soon */
-        made = grown(h->monitor, h->unknowns, &h->unknown_room, (int64_t)h->unknown_room + 1,
-                     sizeof *made);
-        if (made == NULL) {
-            return;
+        if (2 * (int64_t)h->unknown_count >= h->unknown_room) { /* else it would be full again soon */
+            made = grown(h->monitor, h->unknowns, &h->unknown_room, (int64_t)h->unknown_room + 1,
+                         sizeof *made);
+            if (made == NULL) {
+                return;
+            }
+            h->unknowns = made;
         }
-        h->unknowns = made;
     }
     made = &h->unknowns[h->unknown_count];
     made->since = t;

@@ -305,6 +305,18 @@ def test_a_snapshot_carries_the_counts(spec):
     assert expected.dropped
 
 
+@pytest.mark.parametrize("only", [None, ["L1"], ["U1"], ["Y1"], ["B1"]], ids=str)
+def test_a_run_that_keeps_few_records_does_not_grow(spec, only):
+    """Nor does what is noted for reasons: a snapshot is as long after hours as after a while."""
+    monitor = spec.monitor(only=only, keep=3)
+    sizes = []
+    for index, (t, values) in enumerate(samples(24_000)):
+        monitor.step_ns(t, values)
+        if index % 500 == 499:
+            sizes.append(len(monitor.snapshot()))
+    assert max(sizes[24:]) <= 1.1 * max(sizes[:24])
+
+
 @pytest.mark.parametrize("keep", [-1, 2.0, True, "3"])
 def test_what_is_no_count_is_refused(spec, keep):
     """The error says what is expected."""
