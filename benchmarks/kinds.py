@@ -21,7 +21,6 @@ from rvmon import loads
 from rvmon.session import Spec
 from rvmon.trace.sample import Value
 
-ENGINES = ("auto", "automaton", "network", "c")
 SECOND = 10**9
 
 KINDS = {

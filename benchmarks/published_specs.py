@@ -25,7 +25,6 @@ from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind
 
 HERE = Path(__file__).with_name("published")
-ENGINES = ("auto", "automaton", "network", "c")
 _COMPARED = re.compile(r"[<>=]=? (\d+(?:\.\d+)?)(?! m?s)")
 
 

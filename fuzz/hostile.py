@@ -1,10 +1,10 @@
-"""Recordings that are wrong here and there, judged by Python, by columns and by the core.
+"""Recordings that are wrong here and there, judged by columns and by samples.
 
     python -m fuzz.hostile --inputs 100000 --seed 1
 
 Each is a few rows or lines whose values, stamps, commas and ends are seldom what they should be: so
-that, unlike most that a fuzzer makes of bytes, many are judged. Prints by whom; at the first on
-which they disagree it ends, with the file.
+that, unlike most that a fuzzer makes of bytes, many are judged. Prints how many; at the first on
+which both disagree it ends, with the file.
 """
 
 from __future__ import annotations

@@ -29,7 +29,6 @@ BUDGETS = {
     "tests/rvmon/cdv": 62,
     "tests/rvmon/cli": 40,
     "tests/rvmon/clipping": 50,
-    "tests/rvmon/codegen": 16,
     "tests/rvmon/core": 50,
     "tests/rvmon/native": 15,
     "tests/rvmon/coverage": 25,

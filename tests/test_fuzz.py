@@ -21,9 +21,9 @@ def test_kept_inputs_are_read_or_refused(name):
 
 @pytest.mark.slow
 def test_kept_recordings_are_judged_alike():
-    """By Python, columns and the core."""
+    """By columns and by samples; some are judged, not only refused."""
     ends = {run("recording", path.read_bytes()) for path in (CORPUS / "recording").iterdir()}
-    assert "judged by python, auto, c" in ends
+    assert "judged" in ends
 
 
 def test_the_corpus_stays_small():

@@ -24,4 +24,4 @@ def test_what_is_written_reads_back_as_names(documents, writer):
 def test_every_command_shows_names_and_obeys_none(capsys):
     """Also in what it refuses."""
     assert main(["--names", "40", "--through-commands", "40"]) == 0
-    assert "run, c, json             40 names, 0 documents wrong" in capsys.readouterr().out
+    assert "run, json                40 names, 0 documents wrong" in capsys.readouterr().out

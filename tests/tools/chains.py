@@ -1,4 +1,4 @@
-"""Random requirements of windows within windows, which generated code follows."""
+"""Random requirements of windows within windows, which the core follows as chains."""
 
 from __future__ import annotations
 

@@ -1,10 +1,8 @@
-"""Progression on the fly: the machine whose locations are made when they are needed."""
+"""Progression on the fly: a machine whose locations are made when they are needed, for tests."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
-from functools import cached_property
-from typing import Any
 
 from rvmon.automaton.location import NOW, Location, Token, location_of, normalise
 from rvmon.errors import RvmonError
@@ -48,8 +46,6 @@ class Progression:
             in more than `MOST_CLAUSES` ways.
     """
 
-    moves = None
-
     def __init__(self, owed: Temporal, alphabet: Alphabet, name: str = "a formula") -> None:
         self.alphabet = alphabet
         self._name = name
@@ -69,45 +65,8 @@ class Progression:
             self._locations.append(location_of(residual))
         return index
 
-    def table(self) -> list[list[list[list[int]]]]:
-        """The residuals of its locations: clauses of pairs of a formula's number and a clock."""
-        return [
-            sorted(sorted([node.id, clock] for node, clock in clause) for clause in one.residual)
-            for one in self._locations
-        ]
-
-    def learn(self, table: list[list[list[list[int]]]]) -> list[int]:
-        """Its own locations for those of another machine for the same formula.
-
-        Args:
-            table: of the other one.
-        """
-        return [
-            self._location(
-                frozenset(
-                    frozenset((self._nodes[number], clock) for number, clock in clause)
-                    for clause in residual
-                )
-            )
-            for residual in table
-        ]
-
-    @cached_property
-    def _nodes(self) -> dict[int, Any]:
-        """The formula and its parts by their numbers."""
-        found: dict[int, Any] = {}
-        stack: list[Any] = [self._owed]
-        while stack:
-            node = stack.pop()
-            if node.id not in found:
-                found[node.id] = node
-                parts = [getattr(node, name, None) for name in ("left", "right", "operand")]
-                parts += [getattr(node, "opened", None), *getattr(node, "args", ())]
-                stack += [part for part in parts if part is not None]
-        return found
-
     def step(self, token: Token, t: int, letter: int) -> Token:
-        """See `Machine`."""
+        """The token after a position at `t`."""
         index, anchors = token
         cuts = self._locations[index].cuts
         regions = tuple(
@@ -132,8 +91,7 @@ class Progression:
             reached = step(self._locations[index].residual, ages, read, MOST_CLAUSES)
         except TooManyClausesError:
             raise TooManyObligationsError(
-                f"an attempt of {self._name} can be fulfilled in more than {MOST_CLAUSES} ways: "
-                "use the engine `auto` or `network`"
+                f"an attempt of {self._name} can be fulfilled in more than {MOST_CLAUSES} ways"
             ) from None
         residual, sources = normalise(reached, len(ages))
         if len(sources) > MOST_CLOCKS:
@@ -145,18 +103,18 @@ class Progression:
         return self._location(residual), sources
 
     def stays(self, _: Token, __: int, ___: int) -> bool:
-        """See `Machine`; no edge is worked out before it is taken."""
+        """No: no edge is worked out before it is taken."""
         return False
 
     def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
-        """See `Machine`."""
+        """For each clock of a location the ages from which on it acts differently."""
         return self._locations[location].cuts
 
     def time_value(self, token: Token, t: int) -> int:
-        """See `Machine`."""
+        """The truth once time has come to `t` and no position came."""
         index, anchors = token
         return value(after(self._locations[index].residual, [t - anchor for anchor in anchors]))
 
     def residual(self, location: int) -> Residual:
-        """See `Machine`."""
+        """What is owed at a location."""
         return self._locations[location].residual
