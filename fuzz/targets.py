@@ -161,12 +161,13 @@ def parquet(data: bytes) -> str:
 
 
 @cache
-def _whole_snapshot() -> Mapping[str, object]:
+def _sealed() -> tuple[bytes, Mapping[str, object]]:
+    """The kind of a snapshot, and what of it says to which specification and plan it belongs."""
     monitor = _recorded(TIMES[0]).monitor()
     monitor.step(0, {"speed": 1.0, "mode": "idle", "door": True, "parts": 1})
-    monitor.step(0.1, {"halt": True, "pick": {"id": 3, "force": 5.0}, "door": False})
-    document = json.loads(monitor.snapshot().partition(b"\n")[2])
-    return {name: document[name] for name in ("rvmon", "spec", "machines")}
+    head, _, body = monitor.snapshot().partition(b"\n")
+    document = json.loads(body)
+    return head.rpartition(b" ")[0], {name: document[name] for name in ("rvmon", "spec", "plan")}
 
 
 def snapshot(data: bytes) -> str:
@@ -177,8 +178,9 @@ def snapshot(data: bytes) -> str:
         return "no JSON"
     if not isinstance(said, dict):
         return "no document"
-    body = json.dumps({**_whole_snapshot(), **said}).encode()
-    seal = b"rvmon snapshot 2 " + hashlib.sha256(body).hexdigest().encode()
+    kind, belongs = _sealed()
+    body = json.dumps({**belongs, **said}).encode()
+    seal = b"%s %s" % (kind, hashlib.sha256(body).hexdigest().encode())
     try:
         monitor = _recorded(TIMES[0]).restore(seal + b"\n" + body)
     except SnapshotError:

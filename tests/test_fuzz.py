@@ -26,6 +26,13 @@ def test_kept_recordings_are_judged_alike():
     assert "judged" in ends
 
 
+@pytest.mark.slow
+def test_kept_snapshots_are_of_this_form():
+    """What is changed by fuzzing is a run that can be taken up, else it is refused at the door."""
+    found = {run("snapshot", path.read_bytes()) for path in (CORPUS / "snapshot").iterdir()}
+    assert "restored" in found
+
+
 def test_the_corpus_stays_small():
     """It is a beginning, not what was found in hours."""
     assert sum(path.stat().st_size for path in CORPUS.rglob("*")) < MOST_BYTES
