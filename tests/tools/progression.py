@@ -14,13 +14,13 @@ from rvmon.formula.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClau
 _CACHE_LIMIT = 20_000
 """Edges that are kept; with more, all are forgotten (they can be made again)."""
 
-MOST_CLOCKS = 256
+MOST_CLOCKS = 16
 """Obligations with an age of their own that one attempt may owe at once.
 
 A window above 0 that is started anew at every tick of held time would need one for every tick.
 """
 
-MOST_CLAUSES = 4_096
+MOST_CLAUSES = 32
 """Ways to fulfil what one attempt owes that may be weighed at once, before they are reduced."""
 
 Edge = tuple[int, tuple[int, ...]]
