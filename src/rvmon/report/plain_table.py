@@ -13,7 +13,7 @@ def plain_table(rows: Sequence[Sequence[str]]) -> str:
 
     >>> print(plain_table([("", "verdict"), ("R1", "P")]), end="")
         verdict
-    R1  python
+    R1  P
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = (
