@@ -42,7 +42,7 @@ def judging(
     options: argparse.Namespace, profile: Profile, traces: TraceProfile
 ) -> Callable[[list[str]], Campaign]:
     """What judges the cases of some seeds; runs in a worker."""
-    compiler = Compiler(next_law=options.outages > 0)
+    compiler = Compiler()
     makers = {name: Maker(name, compiler) for name in options.form}
     return lambda seeds: campaign_of(
         makers,
@@ -54,7 +54,6 @@ def judging(
         shrunk=0 if options.fail_fast else options.show,
         windows=options.windows,
         letters=options.letters,
-        next_law=options.outages > 0,
     )
 
 
@@ -97,7 +96,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         type=int,
         default=0,
         metavar="PERCENT",
-        help="traces in which names are lost, by the law to come",
+        help="traces in which names are lost",
     )
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")

@@ -4,8 +4,7 @@ r"""Green never hides a failure: what was lost is filled in, and no verdict may 
     python -m benchmarks.soundness --runs 20000 --outages --time sampled
 
 A run's P or NT that becomes F, or its F that becomes anything else, is printed; exits 1 if there is
-one. With outages it is the law to come that is tried, and every other run lost nothing else: those
-may ask what is known, too.
+one. With outages every other run lost nothing else: those may ask what is known, too.
 """
 
 from __future__ import annotations
@@ -46,7 +45,7 @@ def try_seed(
         seed: of the case and of the fillings.
         fillings: so many are tried.
         profile: of the specification.
-        outages: whether stretches of time are lost, under the law to come.
+        outages: whether stretches of time are lost.
         alone: whether nothing else is.
         about: what the specification has to hold, as text.
         samples: at most so many.
@@ -58,8 +57,7 @@ def try_seed(
     if about not in show_spec(case.spec) or not (alone or is_spoken_of(case.spec)):
         return None
     rng = random.Random(seed)
-    asked = partial(judge, next_law=outages)
-    return case, overturned(rng, case, fillings, asked, whole=not alone)
+    return case, overturned(rng, case, fillings, judge, whole=not alone)
 
 
 def run_part(options: argparse.Namespace, seeds: Iterable[str]) -> tuple[Counter[str], list[str]]:

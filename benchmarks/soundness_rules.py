@@ -67,8 +67,8 @@ def _signals(change: Callable[[Any, SignalState], SignalState]) -> Callable[[Any
     """Another state of the signals that lost something."""
 
     def without(law: Callable[..., SignalState]) -> Callable[..., SignalState]:
-        def signal(told: Any, declared: Any, next_law: bool) -> SignalState:
-            state = law(told, declared, next_law)
+        def signal(told: Any, declared: Any) -> SignalState:
+            state = law(told, declared)
             return change(told, state) if told.has_source and told.outages else state
 
         return signal
@@ -139,8 +139,8 @@ def _events(falls: Callable[[Any], bool], *, told_only: bool = False) -> Callabl
     """Events that are false, or not said to be there, where they may have been lost."""
 
     def without(law: Callable[..., Any]) -> Callable[..., Any]:
-        def event(told: Any, declared: Any, next_law: bool) -> Any:
-            state = law(told, declared, next_law)
+        def event(told: Any, declared: Any) -> Any:
+            state = law(told, declared)
             if not told.has_source or not told.is_touched or not falls(told):
                 return state
             sure = tuple(one for one in state.occurrences if one.truth is Truth.TRUE)

@@ -69,11 +69,11 @@ class Found:
     bad: tuple[Path, ...]
 
 
-def _plan(rng: random.Random, profile: Profile, which: int, *, next_law: bool) -> Plan:
+def _plan(rng: random.Random, profile: Profile, which: int) -> Plan:
     """A plan that judges, or one by which formulas are watched, or bins."""
     if which > 5:
         return Bins(with_random_coverage(rng, profile)).plan
-    compiled = compile_spec(random_spec(rng, profile), next_law=next_law)
+    compiled = compile_spec(random_spec(rng, profile))
     if which > 3:
         return truths_plan(compiled)
     traced = [name for name, one in compiled.requirements.items() if is_small(one.automaton)]
@@ -90,10 +90,9 @@ def plans(seed: object, *, most: int, limit: int | None = None) -> Iterator[byte
         profile = Profile(
             requirements=1 if limit else 3, depth=rng.randint(1, 3), wide=10, **limits
         )
-        next_law = made % 2 == 1  # names can be lost
         try:
-            plan = _plan(rng, profile, made % 8, next_law=next_law)
-            data = pack(plan, next_law=next_law).data
+            plan = _plan(rng, profile, made % 8)
+            data = pack(plan).data
         except RvmonError:
             continue
         if limit is None or len(data) <= limit:
@@ -106,14 +105,13 @@ def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
     rng = random.Random("snapshots")
     made = 0
     while made < most:
-        next_law = made % 2 == 1
         profile = Profile(requirements=1 + made % 3, depth=rng.randint(1, 3))
         try:
-            compiled_spec = compile_spec(random_spec(rng, profile), next_law=next_law)
+            compiled_spec = compile_spec(random_spec(rng, profile))
         except RvmonError:
             continue
         planned = planned_core(compiled_spec)
-        case = random_trace(rng, compiled_spec.checked, TraceProfile(outages=next_law))
+        case = random_trace(rng, compiled_spec.checked, TraceProfile(outages=made % 2))
         twins = Twins(planned, frozenset())
         for action in [*actions_of(case)][: rng.randint(1, 12)]:
             twins.tell(action)

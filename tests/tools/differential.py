@@ -165,18 +165,15 @@ def case_of(seed: object, profile: Profile, traces: TraceProfile) -> Case:
     return next(cases_of(seed, profile, traces))
 
 
-def disagreements(
-    case: Case, make: MakeMonitor, *, online: bool = False, next_law: bool = False
-) -> list[str]:
+def disagreements(case: Case, make: MakeMonitor, *, online: bool = False) -> list[str]:
     """How a monitor departs from the oracle on a case; empty if it does not.
 
     Args:
         case: what to judge.
         make: gives a fresh monitor.
         online: whether to check as well what it says at each action.
-        next_law: whether by the law to come.
     """
-    return _found(Judgement(case, next_law=next_law), make, online) or []
+    return _found(Judgement(case), make, online) or []
 
 
 def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] | None:
@@ -232,7 +229,6 @@ def campaign_of(
     shrunk: int = 3,
     windows: int = 0,
     letters: int = 0,
-    next_law: bool = False,
 ) -> Campaign:
     """Judge the cases of each seed with the oracle, once, and with some engines.
 
@@ -247,7 +243,6 @@ def campaign_of(
         shrunk: so many disagreements of an engine are shrunk and shown, the others only named.
         windows: see `cases_of`.
         letters: see there, too.
-        next_law: whether by the law to come, which the engines were made for.
     """
     campaign = Campaign(Mix(), {name: Tally() for name in engines})
     cases = (
@@ -257,7 +252,7 @@ def campaign_of(
     )
     for index, (seed, case) in enumerate(cases):
         asked = online_every > 0 and index % online_every == 0
-        judgement = Judgement(case, next_law=next_law)
+        judgement = Judgement(case)
         campaign.mix.count(judgement)
         for name, make in engines.items():
             tally = campaign.tallies[name]
@@ -267,13 +262,13 @@ def campaign_of(
             if found:
                 lines = [f"{name} seed {seed}".lstrip(), *found]
                 if len(tally.disagreements) < shrunk:
-                    lines.append(_shrunk(case, make, asked, next_law))
+                    lines.append(_shrunk(case, make, asked))
                 tally.disagreements.append("\n".join(lines))
     return campaign
 
 
-def _shrunk(case: Case, make: MakeMonitor, online: bool, next_law: bool) -> str:
-    judged = partial(disagreements, make=make, online=online, next_law=next_law)
+def _shrunk(case: Case, make: MakeMonitor, online: bool) -> str:
+    judged = partial(disagreements, make=make, online=online)
 
     def disagree(smaller: Case) -> bool:
         try:

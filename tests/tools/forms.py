@@ -14,14 +14,9 @@ FORMS = ("c", "c rows")
 
 
 class Compiler:
-    """Compiles specifications; that of one case serves the next case and all makers too.
+    """Compiles specifications; that of one case serves the next case and all makers too."""
 
-    Args:
-        next_law: whether for the law to come.
-    """
-
-    def __init__(self, *, next_law: bool = False) -> None:
-        self._next_law = next_law
+    def __init__(self) -> None:
         self._spec: CheckedSpec | None = None
         self._compiled: CompiledSpec | None = None
 
@@ -32,7 +27,7 @@ class Compiler:
             RvmonError: it cannot be monitored.
         """
         if self._compiled is None or spec is not self._spec:
-            self._compiled = compile_spec(spec, next_law=self._next_law)
+            self._compiled = compile_spec(spec)
             self._spec = spec
         return self._compiled
 

@@ -26,7 +26,6 @@ class Judgement:
 
     Args:
         case: what to judge.
-        next_law: whether by the law to come.
 
     Attributes:
         case: the same.
@@ -34,9 +33,9 @@ class Judgement:
         followings: by requirement, its attempts as the prefix alone decides them.
     """
 
-    def __init__(self, case: Case, *, next_law: bool = False) -> None:
+    def __init__(self, case: Case) -> None:
         self.case = case
-        self.word = word(case, next_law=next_law)
+        self.word = word(case)
         self.followings: Mapping[str, Followings] = judge_views(case.spec, self.word, case.samples)
 
     @cached_property

@@ -9,7 +9,7 @@ from rvmon.testing.oracle import evaluate
 from rvmon.verdict.report import Report
 
 
-def judge(case: Case, *, next_law: bool = False) -> Report:
+def judge(case: Case) -> Report:
     """The oracle's report on a case."""
     return evaluate(
         case.spec,
@@ -18,11 +18,10 @@ def judge(case: Case, *, next_law: bool = False) -> Report:
         advances=case.advances,
         names=case.names,
         outages=case.outages,
-        next_law=next_law,
     )
 
 
-def word(case: Case, *, next_law: bool = False) -> Word:
+def word(case: Case) -> Word:
     """The trace of a case, position by position."""
     return word_of(
         case.spec,
@@ -31,5 +30,4 @@ def word(case: Case, *, next_law: bool = False) -> Word:
         advances=case.advances,
         names=case.names,
         outages=case.outages,
-        next_law=next_law,
     )

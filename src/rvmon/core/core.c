@@ -381,8 +381,7 @@ int rv_finish(rv_monitor *m, int64_t t)
     }
     m->finished = true;
     if ((end != RV_NO_TIME) && !m->spoilt) {
-        const int64_t least_reached = ((m->plan.header->flags & PLAN_NEXT_LAW) != 0) ? end + 1 : end;
-        const int64_t reached = (m->reached > end) ? m->reached : least_reached;
+        const int64_t reached = (m->reached > end) ? m->reached : end + 1;
         for (i = 0; i < m->plan.part_count; i++) {
             home_close(&m->homes[i], end, reached);
         }

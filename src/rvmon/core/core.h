@@ -98,9 +98,8 @@ enum {
     RV_TOO_EARLY = 3,          /* the sample is not later than all before */
     RV_OUT_OF_RANGE = 4,       /* an instant beyond 2^62 */
     RV_FINISHED = 5,
-    RV_OTHER_LAW = 6,          /* the plan is of a law by which nothing is lost */
-    RV_BAD_SNAPSHOT = 7,       /* the bytes are none of this plan, or damaged */
-    RV_NOT_FRESH = 8           /* a run has begun */
+    RV_BAD_SNAPSHOT = 6,       /* the bytes are none of this plan, or damaged */
+    RV_NOT_FRESH = 7           /* a run has begun */
 };
 
 /* Check a plan: the place of the first section found wrong, -1 if all is well. The bytes are not

@@ -273,12 +273,12 @@ static rv_number of_two(int32_t op, const rv_number *a, const rv_number *b)
     }
 }
 
-/* By the law to come a quotient is of reals, and so is what has a real in it: only comparisons are exact
+/* A quotient is of reals, and so is what has a real in it: only comparisons are exact
  * between the two. */
-static rv_number of_two_by(bool next_law, int32_t op, const rv_number *a, const rv_number *b)
+static rv_number of_two_by(int32_t op, const rv_number *a, const rv_number *b)
 {
     const bool known = (a->kind != RV_UNKNOWN) && (b->kind != RV_UNKNOWN);
-    if (next_law && known && ((op == CODE_DIV) || (a->kind != b->kind))) {
+    if (known && ((op == CODE_DIV) || (a->kind != b->kind))) {
         const rv_number x = real(as_double(a));
         const rv_number y = real(as_double(b));
         return of_two(op, &x, &y);
@@ -299,7 +299,7 @@ static rv_number of_one(int32_t op, const rv_number *a)
 }
 
 /* What is asked of the last two updates of a signal; `now` is its value. */
-static rv_number of_updates(bool next_law, int32_t op, const history *h, const rv_number *now)
+static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
 {
     rv_number found = UNKNOWN_NUMBER;
     if ((h->updates == 2) && (now->kind != RV_UNKNOWN)) {
@@ -308,10 +308,10 @@ static rv_number of_updates(bool next_law, int32_t op, const history *h, const r
     if ((op != CODE_PREV) && (found.kind != RV_UNKNOWN)) {
         found = subtracted(now, &found);
         if ((op == CODE_RATE) && (found.kind != RV_UNKNOWN)) {
-            const rv_number second = next_law ? real(1e9) : whole(INT64_C(1000000000));
+            const rv_number second = real(1e9);
             const rv_number distance = whole(h->at - h->before_at);
-            found = of_two_by(next_law, CODE_MUL, &found, &second);
-            found = of_two_by(next_law, CODE_DIV, &found, &distance);
+            found = of_two_by(CODE_MUL, &found, &second);
+            found = of_two_by(CODE_DIV, &found, &distance);
         }
     }
     return found;
@@ -332,7 +332,6 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at)
 {
     rv_number stack[PROGRAM_DEPTH];
     const plan *p = PLAN(r);
-    const bool next_law = (p->header->flags & PLAN_NEXT_LAW) != 0;
     const int32_t *word = &p->code[place];
     int32_t n = 0;
     for (; (*word & 255) != CODE_END; word++) {
@@ -355,13 +354,13 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at)
             break;
         case CODE_PREV:
         case CODE_DELTA:
-        case CODE_RATE: stack[n++] = of_updates(next_law, op, &r->history[arg], &r->value[arg]); break;
+        case CODE_RATE: stack[n++] = of_updates(op, &r->history[arg], &r->value[arg]); break;
         case CODE_NEG:
         case CODE_ABS:
         case CODE_SQRT: stack[n - 1] = of_one(op, &stack[n - 1]); break;
         default:
             n--;
-            stack[n - 1] = of_two_by(next_law, op, &stack[n - 1], &stack[n]);
+            stack[n - 1] = of_two_by(op, &stack[n - 1], &stack[n]);
             break;
         }
     }

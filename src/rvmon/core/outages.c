@@ -13,8 +13,7 @@
 
 int32_t names_to_lose(const run *r)
 {
-    const part_plan *p = r->part->plan;
-    return ((PLAN(r)->header->flags & PLAN_NEXT_LAW) != 0) ? p->signals.count + p->events.count : 0;
+    return r->part->plan->signals.count + r->part->plan->events.count;
 }
 
 void begin_unlost(run *r)
@@ -331,9 +330,6 @@ static int tell_loss(rv_monitor *m, int64_t t, const int32_t *names, int32_t cou
     rv_update *updates;
     int32_t i;
     int code;
-    if ((m->plan.header->flags & PLAN_NEXT_LAW) == 0) {
-        return RV_OTHER_LAW;
-    }
     if (!m->finished && !m->spoilt && (t > -LIMIT) && (t <= m->after)) {
         return RV_TOO_EARLY;
     }

@@ -48,11 +48,8 @@ typedef struct {
     int32_t fields;
     int32_t requirements;
     int32_t captured;          /* the most values that an attempt has */
-    int32_t flags;
+    int32_t filling;           /* 0 */
 } plan_header;
-
-/* Of a plan: NEXT_LAW, names can be lost, and the end of a trace is known at once. */
-enum { PLAN_NEXT_LAW = 1 };
 
 typedef struct {
     int64_t offset;            /* from the begin of the plan, a multiple of 8 */

@@ -9,12 +9,11 @@ from rvmon.core.sections import Section, Sections
 from rvmon.plan.plan import Plan
 
 
-def pack(plan: Plan, *, next_law: bool = False) -> Packed:
+def pack(plan: Plan) -> Packed:
     """Pack a plan: all requirements without captured values together, each of the others apart.
 
     Args:
         plan: of the requirements.
-        next_law: whether they are judged by the law to come.
 
     Raises:
         RvmonError: an expression is beyond the core.
@@ -36,7 +35,7 @@ def pack(plan: Plan, *, next_law: bool = False) -> Packed:
         max((len(rule.captured) for rule in plan.asked), default=0),
     )
     ids = tuple(rule.requirement.id for rule in plan.asked)
-    return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes, next_law=next_law))
+    return packed(plan.spec, ids, sections.data(plan.gap or 0, sizes))
 
 
 def _subscribe(sections: Sections, plan: Plan, parts: list[Part]) -> None:

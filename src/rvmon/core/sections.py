@@ -116,13 +116,12 @@ class Sections:
         """A list of indices."""
         return self.run(Section.LISTS, places), len(places)
 
-    def data(self, gap: int, sizes: Sequence[int], *, next_law: bool) -> bytes:
+    def data(self, gap: int, sizes: Sequence[int]) -> bytes:
         """All of it.
 
         Args:
             gap: ticks between two positions; 0 if only samples are positions.
             sizes: the numbers of signals, events, fields, requirements, captured values.
-            next_law: whether the law to come holds.
         """
         padded = [bytes(data) + bytes(-len(data) % 8) for data in self._bytes.values()]
         begin = HEADER.size + len(padded) * _ENTRY.size
@@ -133,9 +132,7 @@ class Sections:
         ]
         body = b"".join([*entries, *padded])
         size = HEADER.size + len(body)
-        header = HEADER.pack(
-            *(MAGIC, ORDER, len(padded), size, hash_of(body), gap), *sizes, next_law
-        )
+        header = HEADER.pack(*(MAGIC, ORDER, len(padded), size, hash_of(body), gap), *sizes, 0)
         return header + body
 
 

@@ -98,8 +98,7 @@ static void carry_records(carrier *c, rv_monitor *m)
 static void carry_times(carrier *c, rv_monitor *m)
 {
     const int32_t names = m->plan.header->signals + m->plan.header->events;
-    const bool loses = (m->plan.header->flags & PLAN_NEXT_LAW) != 0;
-    const bool sparse = loses && (m->plan.header->gap == 0);
+    const bool sparse = m->plan.header->gap == 0;
     int32_t i;
     carry_instant_or(c, &m->began, RV_NO_TIME);
     carry_instant_or(c, &m->last, RV_NO_TIME);
@@ -111,7 +110,6 @@ static void carry_times(carrier *c, rv_monitor *m)
     carry_bytes(c, m->late, m->plan.header->requirements, 1);
     demand(c, (m->began != RV_NO_TIME) == (m->last != RV_NO_TIME));
     demand(c, (m->last <= m->reached) && (m->heard <= m->reached) && (m->began <= m->last));
-    demand(c, loses || (m->heard == RV_NO_TIME));
     demand(c, (m->reached == RV_NO_TIME) ? (m->after == -LIMIT) : (m->after >= m->reached - 1));
     demand(c, (m->after <= m->reached) || (m->reached == RV_NO_TIME));
     if (sparse) {

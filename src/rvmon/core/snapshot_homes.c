@@ -7,14 +7,13 @@
 static void carry_kept(carrier *c, home *h, past_update *one)
 {
     const part_plan *p = h->part->plan;
-    const bool loses = (h->monitor->plan.header->flags & PLAN_NEXT_LAW) != 0;
     int32_t fields;
     int32_t i;
     bool given = one->fields != NULL;
     carry_instant(c, &one->t);
     carry_flag(c, &one->event);
     carry_int(c, &one->local, -1, one->event ? p->events.count : p->signals.count);
-    carry_int(c, &one->says, RV_SAYS_NO, loses ? SAYS_SPARSE + 1 : RV_SAYS_YES + 1);
+    carry_int(c, &one->says, RV_SAYS_NO, SAYS_SPARSE + 1);
     carry_flag(c, &one->last);
     if (!one->event && (one->says == RV_SAYS_YES)) {
         carry_number(c, &one->value);

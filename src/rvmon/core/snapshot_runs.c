@@ -184,10 +184,6 @@ static bool is_in_time(const run *r)
     if (r->at.started && (r->at.presence == ARE_THERE) && !r->at.dense && (r->at.begun == NEVER)) {
         return false;
     }
-    if (((r->at.presence != ARE_THERE) || r->at.dense)
-        && ((PLAN(r)->header->flags & PLAN_NEXT_LAW) == 0)) {
-        return false;
-    }
     if ((r->at.presence == ARE_THERE_NEXT) && !r->at.started) {
         return false;
     }

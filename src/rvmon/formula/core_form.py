@@ -31,7 +31,6 @@ class Lowering:
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         favour: whether what is not born counts in favour of what is owed.
         measured: see `rvmon.formula.four.Reader`.
-        next_law: see there.
         sampled: whether only samples are positions.
         opened: whether the windows of all that has to be kept up open at once.
 
@@ -46,15 +45,13 @@ class Lowering:
         favour: bool,
         *,
         measured: bool = False,
-        next_law: bool = False,
         sampled: bool = False,
         opened: bool = False,
     ) -> None:
         self.factory = factory
-        self.reader = Reader(factory, period, measured=measured, next_law=next_law)
+        self.reader = Reader(factory, period, measured=measured)
         self.favour = favour
-        self._looks_back_at_blanks = next_law
-        self._meets_blanks = next_law and sampled
+        self._meets_blanks = sampled
         self._opened = opened
         self.origins: dict[Core, Origin] = {}
         self._made_up: dict[int, Formula] = {}
@@ -150,7 +147,7 @@ class Lowering:
 
     def _behind(self, operand: Core) -> Core:
         """The same of what is asked of earlier ones."""
-        return self._if_there(operand) if self._looks_back_at_blanks else operand
+        return self._if_there(operand)
 
     def _if_there(self, operand: Core) -> Core:
         """A formula that is unknown where there may be no position, as a proposition is anyway."""

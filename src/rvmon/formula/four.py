@@ -98,7 +98,6 @@ class Reader(Reading[Four]):
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         measured: whether what is made has the robustness that the formula has, and not its truth
             alone, which takes more formulas.
-        next_law: whether for the law to come: what was lost may not be born either.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
@@ -109,12 +108,10 @@ class Reader(Reading[Four]):
         period: int | None,
         *,
         measured: bool = False,
-        next_law: bool = False,
     ) -> None:
         self.factory = factory
         self.period = period
         self.measured = measured
-        self.next_law = next_law
         self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
 
     def literal(self, formula: Formula, unborn: int) -> State:
@@ -259,14 +256,13 @@ class Reader(Reading[Four]):
         if high is not None and low > high:
             return self.constant(False)
         value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
-        if self.next_law and (low > 0 or right.mortal):
+        if low > 0 or right.mortal:
             value = self._or_lost(value, left, right, low, high)
         if not right.mortal:
             return Four(factory, _same(value), mortal=False)
         if right.fades and low == 0:
-            unborn = right.unborn
-            if self.next_law:  # in an outage before the first sample it may be, or not
-                unborn = factory.state_all([unborn, factory.sure(factory.negation(value))])
+            # In an outage before the first sample it may be born, or not.
+            unborn = factory.state_all([right.unborn, factory.sure(factory.negation(value))])
         else:
             born = factory.since(factory.state_true, factory.negation(right.unborn), low, high)
             some = factory.since(factory.state_true, factory.state_true, low, high)

@@ -12,15 +12,12 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.four import Four
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.obligation import Obligation, UnmonitorableError
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Lapsed, State, StateOp, Unborn
+from rvmon.formula.state import FALSE, TRUE, Lapsed, State, Unborn
 from rvmon.spec.checked.formula import (
     Bound,
     BoundAtom,
     Compare,
-    Constant,
     Formula,
-    Probe,
-    ProbeAtom,
     SignalAtom,
 )
 from rvmon.spec.checked.specification import Mode, Requirement
@@ -33,7 +30,6 @@ def lower(
     period: int | None = None,
     *,
     measured: bool = False,
-    next_law: bool = False,
     sampled: bool = False,
 ) -> Obligation:
     """Bring a requirement into core form.
@@ -43,16 +39,13 @@ def lower(
         factory: where its formulas are made; shared by the requirements of a spec.
         period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
         measured: see `rvmon.formula.four.Reader`.
-        next_law: whether for the law to come, by which anything may be lost.
         sampled: whether only samples are positions.
 
     Raises:
         UnmonitorableError: the trigger speaks of the future.
     """
     favour = requirement.mode is Mode.WHENEVER and not requirement.pulse
-    begin = partial(
-        Lowering, factory, period, favour, measured=measured, next_law=next_law, sampled=sampled
-    )
+    begin = partial(Lowering, factory, period, favour, measured=measured, sampled=sampled)
     lowering = begin()
     match requirement.trigger:
         case BoundAtom(bound=Bound.END):
@@ -61,8 +54,7 @@ def lower(
             raise UnmonitorableError("its trigger speaks of the future")
     four = lowering.reader.four(requirement.trigger)
     trigger = four.read(FALSE)
-    may_be_lost = next_law or _may_be_unknown(trigger)
-    determined = _determined(four, factory, next_law=next_law)
+    determined = _determined(four, factory)
     if requirement.mode is Mode.WHENEVER:
         parts = flattened(requirement.consequent, True, False)
         running = _running(trigger, requirement, factory)
@@ -92,7 +84,7 @@ def lower(
         owed,
         lowering.origins,
         determined=determined,
-        hidden=hidden(False) if may_be_lost else None,
+        hidden=hidden(False),
         doubted=hidden(True) if requirement.for_each is not None else None,
     )
 
@@ -103,25 +95,11 @@ def _running(trigger: State, requirement: Requirement, factory: Factory) -> Stat
     return factory.state_all([trigger, factory.negation(factory.leaf(Lapsed()))])
 
 
-def _determined(trigger: Four, factory: Factory, *, next_law: bool) -> State | None:
-    """TRUE as soon as a trigger was TRUE or FALSE; `None` if it is from the first position on."""
-    if not (next_law or _may_be_unknown(trigger.read(UNKNOWN))):
-        return None
+def _determined(trigger: Four, factory: Factory) -> State:
+    """TRUE as soon as a trigger was TRUE or FALSE."""
     is_false = factory.sure(factory.negation(trigger.read(TRUE)))
     known = factory.state_any([factory.sure(trigger.read(FALSE)), is_false])
     return factory.since(factory.state_true, known, 0, None)
-
-
-def _may_be_unknown(state: State) -> bool:
-    match state.leaf:
-        case None:
-            return state.op is not StateOp.SURE and any(map(_may_be_unknown, state.args))
-        case Constant() | BoundAtom() | Elapsed() | Unborn() | Lapsed():
-            return False
-        case ProbeAtom(probe=probe):
-            return probe is not Probe.KNOWN
-        case _:
-            return True
 
 
 def _unborn(consequent: Formula, factory: Factory) -> State | None:

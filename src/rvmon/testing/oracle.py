@@ -41,7 +41,6 @@ def evaluate(
     advances: Sequence[int] = (),
     names: frozenset[str] | None = None,
     outages: Iterable[Outage] = (),
-    next_law: bool = False,
 ) -> Report:
     """Judge a trace by the definitions.
 
@@ -52,8 +51,6 @@ def evaluate(
         advances: the instants given to `advance`, ticks, in whatever order fits the samples.
         names: the names that have a source; default the trace's own, else all.
         outages: what was lost, in any order.
-        next_law: whether `finish(t)` is `advance(t + 1 tick)` and then the end, whole numbers are
-            int64 throughout and reals binary64.
 
     Returns:
         The report, without reasons.
@@ -80,7 +77,6 @@ def evaluate(
         advances=advances,
         names=names,
         outages=tuple(outages),
-        next_law=next_law,
     )
     followings = judge_views(checked, word, listed)
     return report_on(checked, followings, origin=listed[0].t if listed else 0, end=word.end)

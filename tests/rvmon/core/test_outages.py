@@ -31,10 +31,10 @@ event g(k: int)
 """
 
 
-def planned(requirements: str, time: str = "held", *, next_law: bool = True) -> PlannedCore:
+def planned(requirements: str, time: str = "held") -> PlannedCore:
     """The plan of some requirements over the names above."""
     spec = rvmon.loads(f'spec some "thing"\ntime {time}\n{NAMES}\n{requirements}')
-    compiled: CompiledSpec = compile_spec(spec.checked, next_law=next_law)
+    compiled: CompiledSpec = compile_spec(spec.checked)
     return planned_core(compiled)
 
 
@@ -285,13 +285,6 @@ def test_the_end_is_an_advance_to_the_tick_behind_it():
     assert Run(text.format("within 2 ns p")).sample(0, p=False).said(2) == ["0 F 3"]
 
 
-def test_a_plan_of_the_law_of_today_loses_nothing():
-    """The law is one flag of the plan."""
-    run = planned("requirement R\n  always p", next_law=False).monitor(frozenset())
-    with pytest.raises(ValueError, match="refused"):
-        run.lose([0], 0)
-
-
 @pytest.mark.parametrize("names", [[99], [-1]])
 def test_what_is_no_name_cannot_be_lost(names):
     """Names are told by their numbers in the plan."""
@@ -449,12 +442,12 @@ def test_random_samples_too_late_leave_what_the_law_leaves():
             continue
         late = rng.choice(case.samples[:-1])
         kept = replace(case, actions=tuple(one for one in case.samples if one is not late))
-        compiled = compile_spec(case.spec, next_law=True)
+        compiled = compile_spec(case.spec)
         plan = planned_core(compiled)
         run = plan.monitor(frozenset())
         for sample in kept.samples:
             assert run.judge(sample.t, plan.plain(sample.t, sample.values), True)
-        without = judge(kept, next_law=True).verdicts
+        without = judge(kept).verdicts
         assert run.late([plan.numbers[name] for name in late.values], late.t)
         verdicts = report_of_run(plan, run, 0, run.finish(kept.end)).verdicts
         expected = after_late(case.spec, without, kept.samples, [late])
@@ -473,9 +466,9 @@ def test_random_outages_are_judged_as_the_law_has_it(time):
     """Step by step and by rows; what looks back at the future is tried elsewhere."""
     seeds = [f"outages/{time.name}/{number}" for number in range(20)]
     profile = Profile(time=time, crowded=5, mixed=False)
-    compiler = Compiler(next_law=True)
+    compiler = Compiler()
     makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
     traces = TraceProfile(sparse=10, outages=80)
-    found = campaign_of(makers, seeds, profile, traces, each=5, next_law=True)
+    found = campaign_of(makers, seeds, profile, traces, each=5)
     assert not found.disagreements, found.disagreements[0]
     assert found.mix.kinds["outage"] > 60

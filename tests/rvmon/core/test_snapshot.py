@@ -41,19 +41,19 @@ requirement R4
 """
 
 
-def case(number: int, time: TimeModel, *, next_law: bool) -> Case:
+def case(number: int, time: TimeModel, *, outages: bool) -> Case:
     """A random case of some requirements, with keys and captured values; names may be lost."""
     profile = Profile(requirements=1 + number % 4, time=time)
-    return case_of(f"away/{time}/{number}", profile, TraceProfile(outages=next_law))
+    return case_of(f"away/{time}/{number}", profile, TraceProfile(outages=outages))
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("next_law", [False, True])
+@pytest.mark.parametrize("outages", [False, True])
 @pytest.mark.parametrize("time", [TimeModel.HELD, TimeModel.SAMPLED, TimeModel.CLOCKED])
-def test_a_run_taken_up_again_goes_on_alike(time, next_law):
+def test_a_run_taken_up_again_goes_on_alike(time, outages):
     """Put away behind each call, and at the end, it says the same, and is the same bytes again."""
-    compile_ = Compiler(next_law=next_law)
-    cases = (case(number, time, next_law=next_law) for number in range(100))
+    compile_ = Compiler()
+    cases = (case(number, time, outages=outages) for number in range(100))
     assert sum(put_away(compile_(one.spec), one) for one in cases) > 700
 
 
@@ -63,9 +63,9 @@ def test_chains_of_windows_taken_up_again_go_on_alike():
     taken = 0
     for number in range(60):
         rng = random.Random(f"chain/{number}")
-        spec, next_law = random_chain(rng, untils=number % 3 == 0), number % 2 == 1
-        one = random_trace(rng, spec, TraceProfile(outages=next_law))
-        taken += put_away(compile_spec(spec, next_law=next_law), one)
+        spec = random_chain(rng, untils=number % 3 == 0)
+        one = random_trace(rng, spec, TraceProfile(outages=number % 2))
+        taken += put_away(compile_spec(spec), one)
     assert taken > 400
 
 

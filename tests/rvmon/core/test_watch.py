@@ -242,7 +242,7 @@ def test_what_comes_too_late_is_not_counted():
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 ns"])
 def test_what_is_lost_hits_nothing_and_ends_nothing(time):
     """Behind an outage it is not known when an occasion came, nor that a stretch had ended."""
-    made, planned = bins(f"time {time}\n{BINS}", next_law=True)
+    made, planned = bins(f"time {time}\n{BINS}")
     run = planned.monitor(frozenset())
     assert run.judge(0, {"p": True, "q": False}, True)
     assert run.lose([0, 1], 5)

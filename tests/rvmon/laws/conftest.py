@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -61,7 +60,7 @@ ALL = Profile()
 
 SUBJECTS = {
     "oracle": Subject(oracle, ALL, 15),
-    "law to come": Subject(partial(oracle, next_law=True), ALL, 15, TraceProfile(outages=70)),
+    "oracle, outages": Subject(oracle, ALL, 15, TraceProfile(outages=70)),
     "c": Subject(Form("c"), ALL, 12),
     "c rows": Subject(Form("c rows"), ALL, 6),
 }
@@ -69,7 +68,7 @@ SUBJECTS = {
 
 @pytest.fixture(scope="session", params=SUBJECTS)
 def subject(request: pytest.FixtureRequest) -> Subject:
-    """The oracle, of today and to come, then every form."""
+    """The oracle, then every form."""
     return SUBJECTS[request.param]
 
 

@@ -1,4 +1,4 @@
-"""By the law to come `finish(t)` is `advance(t + 1 tick)`, and then the end."""
+"""`finish(t)` is `advance(t + 1 tick)`, and then the end."""
 
 from __future__ import annotations
 
@@ -23,6 +23,6 @@ def test_an_advance_behind_the_end_says_no_more(data: st.DataObject) -> None:
     if end is None:
         return
     told = replace(case, actions=(*case.actions, end + 1), end=end)
-    expected = judge(case, next_law=True)
+    expected = judge(case)
     assert differences(expected, judge(told)) == []
-    assert differences(expected, judge(told, next_law=True)) == []
+    assert differences(expected, judge(told)) == []

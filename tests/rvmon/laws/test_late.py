@@ -38,8 +38,8 @@ def late_cases(draw: st.DrawFn, profile: Profile) -> tuple[Case, Case, Sample]:
 def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
     """What is P or NT is so with the late sample in its place too; what is F stays."""
     whole, judged, late = cases_
-    verdicts = judge(judged, next_law=True).verdicts
-    with_late = judge(whole, next_law=True).verdicts
+    verdicts = judge(judged).verdicts
+    with_late = judge(whole).verdicts
     found = after_late(judged.spec, verdicts, judged.samples, [late])
     for name, verdict in found.items():
         if verdict in (Verdict.PASS, Verdict.NOT_TRIGGERED):
@@ -56,7 +56,7 @@ def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None
     touched = {
         name: is_touched(spec, one, judged.samples, late) for name, one in spec.requirements.items()
     }
-    with_late, without = (outcomes(judge(one, next_law=True)) for one in (whole, judged))
+    with_late, without = (outcomes(judge(one)) for one in (whole, judged))
     kept = [{k: v for k, v in one.items() if not touched[k[0]]} for one in (with_late, without)]
     assert kept[0] == kept[1]
 
@@ -98,7 +98,7 @@ def test_attempts_behind_the_stretch(cases_: tuple[Case, Case, Sample]) -> None:
     last = max([late.t, *(end for end in ends if end is not None)]) + (spec.period or 1)
 
     def behind(case: Case) -> list[Outcome]:
-        found = outcomes(judge(case, next_law=True)).items()
+        found = outcomes(judge(case)).items()
         return [one for (_, in_doubt, _), one in found if one.triggered > last and not in_doubt]
 
     assert behind(whole) == behind(judged)
@@ -116,7 +116,7 @@ def test_by_hand(time: TimeModel) -> None:
         period=1 if time is TimeModel.CLOCKED else None,
     )
     judged = timeline(p="1.1.0.1", q="1")
-    verdicts = judge(Case(spec, judged), next_law=True).verdicts
+    verdicts = judge(Case(spec, judged)).verdicts
     assert "".join(verdict.value for verdict in verdicts.values()) == "FPIP"
     for late, expected in (
         (Sample(3, {"p": False}), "FPII"),

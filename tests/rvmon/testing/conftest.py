@@ -41,7 +41,6 @@ def judge(
     advances: Sequence[int] = (),
     names: frozenset[str] | None = None,
     lost: Sequence[tuple[str, int, int]] = (),
-    next_law: bool = False,
     **rows: str,
 ) -> list[str]:
     """All attempts in the order of the report; a formula stands for `upon start then` it.
@@ -57,7 +56,6 @@ def judge(
         advances=advances,
         names=names,
         outages=[Outage(frozenset(names.split()), *stretch) for names, *stretch in lost],
-        next_law=next_law,
     )
     return [brief(attempt) for attempt in report.attempts]
 

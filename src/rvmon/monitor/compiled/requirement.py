@@ -232,14 +232,11 @@ class CompiledRequirement:
         return graph_of(self._own)
 
 
-def compiled_requirements(
-    checked: CheckedSpec, *, next_law: bool = False
-) -> Mapping[str, CompiledRequirement]:
+def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:
     """The requirements of a specification, compiled, by id.
 
     Args:
         checked: as checked.
-        next_law: see `CompiledSpec`.
 
     Raises:
         RvmonError: one cannot be monitored; which one and why is in the message.
@@ -252,7 +249,6 @@ def compiled_requirements(
                 requirement,
                 factory,
                 checked.period,
-                next_law=next_law,
                 sampled=checked.gap is None,
             )
         except UnmonitorableError as error:
@@ -267,7 +263,6 @@ def compiled_requirements(
             factory,
             checked.period,
             measured=True,
-            next_law=next_law,
             sampled=checked.gap is None,
         )
         given = (rank, checked, requirement, obligation, factory, shapes)

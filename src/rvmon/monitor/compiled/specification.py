@@ -17,16 +17,12 @@ class CompiledSpec:
     Attributes:
         checked: as checked.
         is_kept: whether what is dear to make of it is kept in the user's cache folder.
-        next_law: whether it is judged by the law to come: outages, and its reading of `since`.
         forms: what was generated for its monitors, by what it depends on.
     """
 
-    def __init__(
-        self, checked: CheckedSpec, *, is_kept: bool = False, next_law: bool = False
-    ) -> None:
+    def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
         self.checked = checked
         self.is_kept = is_kept
-        self.next_law = next_law
         self.forms: dict[object, object] = {}
 
     @cached_property
@@ -39,7 +35,7 @@ class CompiledSpec:
         # What compiles them is imported now: some recordings are judged without it.
         from rvmon.monitor.compiled.requirement import compiled_requirements
 
-        return compiled_requirements(self.checked, next_law=self.next_law)
+        return compiled_requirements(self.checked)
 
     def chosen(self, only: Collection[str] | None) -> Sequence[CompiledRequirement]:
         """Some requirements in the order of the file."""
@@ -48,20 +44,19 @@ class CompiledSpec:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Compiled again elsewhere: what was generated here, and tables in hand, stay here.
-        again = partial(CompiledSpec, is_kept=self.is_kept, next_law=self.next_law)
+        again = partial(CompiledSpec, is_kept=self.is_kept)
         return again, (self.checked,)
 
 
-def compile_spec(checked: CheckedSpec, *, next_law: bool = False) -> CompiledSpec:
+def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     """Compile a specification, once for all its monitors.
 
     Args:
         checked: as checked.
-        next_law: whether for the law to come, which only the core knows.
 
     Raises:
         RvmonError: a requirement cannot be monitored; which one and why is in the message.
     """
-    compiled = CompiledSpec(checked, next_law=next_law)
+    compiled = CompiledSpec(checked)
     _ = compiled.requirements
     return compiled

@@ -40,18 +40,15 @@ class Place:
     Args:
         spec: the specification.
         ids: of the requirements.
-        next_law: see `rvmon.monitor.compiled.specification.CompiledSpec`.
         measured: whether attempts are measured as well.
     """
 
-    def __init__(
-        self, spec: CheckedSpec, ids: tuple[str, ...], *, next_law: bool, measured: bool
-    ) -> None:
+    def __init__(self, spec: CheckedSpec, ids: tuple[str, ...], *, measured: bool) -> None:
         folder = cache_folder()
         if folder is None:
             self._path = None
             return
-        how = (ids, next_law, measured)
+        how = (ids, measured)
         content = json.dumps([*file_stamps(str(_HERE)), told_apart(spec), *how])
         self._key = hashlib.sha256(content.encode()).hexdigest()
         self._path = folder / f"plan-{self._key}.bin"

@@ -181,8 +181,7 @@ def planned_core(
     key = "core", ids, measured
     found = compiled.forms.get(key)
     if not isinstance(found, PlannedCore):
-        how = {"next_law": compiled.next_law, "measured": measured}
-        place = Place(spec, ids, **how) if compiled.is_kept else None
+        place = Place(spec, ids, measured=measured) if compiled.is_kept else None
         found = None if place is None else _checked(compiled, ids, place.read())
         if found is None:
             made = _made(compiled, ids, measured=measured)
@@ -202,7 +201,7 @@ def _made(compiled: CompiledSpec, ids: tuple[str, ...], *, measured: bool) -> Ke
     plan = plan_alone(compiled, ids, measured=measured)
     chosen = compiled.chosen(ids)
     single = frozenset().union(*(one.single_payloads for one in chosen))
-    return Kept(pack(plan, next_law=compiled.next_law).data, single, readers_of(chosen))
+    return Kept(pack(plan).data, single, readers_of(chosen))
 
 
 def _checked(

@@ -150,9 +150,7 @@ class View:
         }
         captured: dict[str, Scalar] = dict(self.captured)
         for capture in self.requirement.captures:
-            captured[capture.name] = number(
-                capture.value, letter, payloads, captured, next_law=self.word.next_law
-            )
+            captured[capture.name] = number(capture.value, letter, payloads, captured)
         return captured
 
     def is_unborn(self, position: int) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from itertools import product
 from typing import assert_never
 
@@ -32,8 +32,6 @@ def compare(
     comparison: Compare,
     letter: Letter,
     captured: Mapping[str, Scalar],
-    *,
-    next_law: bool = False,
 ) -> Truth:
     """The truth of a comparison; over fields of an event `e` it means `e and comparison`.
 
@@ -48,8 +46,8 @@ def compare(
     def holds(payloads: Mapping[str, Payload]) -> Truth:
         if not born:
             return Truth.UNBORN
-        left = number(comparison.left, letter, payloads, captured, next_law=next_law)
-        right = number(comparison.right, letter, payloads, captured, next_law=next_law)
+        left = number(comparison.left, letter, payloads, captured)
+        right = number(comparison.right, letter, payloads, captured)
         if left is None or right is None:
             return Truth.UNKNOWN
         return truth_of(_related(comparison.op, left, right))
@@ -99,14 +97,11 @@ def number(
     letter: Letter,
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
-    *,
-    next_law: bool = False,
 ) -> Scalar:
     """The value of an expression at a position; `None` if it is unknown.
 
     Source: SEMANTICS, sections 2 and 5; decision record 1 (Updates, Arithmetic).
     """
-    calculate = _calculate if next_law else _arithmetic
     match expression:
         case Literal(value=value):
             return value
@@ -117,32 +112,26 @@ def number(
         case Captured(name=name):
             return captured[name]
         case UpdateValue(function=function, name=name):
-            return _of_updates(function, name, letter, calculate)
+            return _of_updates(function, name, letter)
         case Arithmetic(op=op, args=args):
-            values = (number(arg, letter, payloads, captured, next_law=next_law) for arg in args)
-            return calculate(op, list(values))
+            values = (number(arg, letter, payloads, captured) for arg in args)
+            return _calculate(op, list(values))
         case _:
             assert_never(expression)
 
 
-Calculate = Callable[[NumericOp, list[Scalar]], Scalar]
-
-
-def _of_updates(
-    function: UpdateFunction, name: str, letter: Letter, calculate: Calculate
-) -> Scalar:
+def _of_updates(function: UpdateFunction, name: str, letter: Letter) -> Scalar:
     state = letter.signals[name]
     last, before = state.last, state.before
     if state.value is None or last is None or before is None or before.value is None:
         return None
     if function is UpdateFunction.PREV:
         return before.value
-    delta = calculate(NumericOp.SUB, [last.value, before.value])
+    delta = _calculate(NumericOp.SUB, [last.value, before.value])
     if function is UpdateFunction.DELTA:
         return delta
-    per_second = TICKS_PER_SECOND if calculate is _arithmetic else float(TICKS_PER_SECOND)
-    scaled = calculate(NumericOp.MUL, [delta, per_second])
-    return calculate(NumericOp.DIV, [scaled, last.t - before.t])
+    scaled = _calculate(NumericOp.MUL, [delta, float(TICKS_PER_SECOND)])
+    return _calculate(NumericOp.DIV, [scaled, last.t - before.t])
 
 
 _OF_REALS = (NumericOp.DIV, NumericOp.SQRT, NumericOp.HYPOT)
@@ -188,17 +177,6 @@ def at_edge(value: Scalar, kind: Kind) -> Scalar:
         except OverflowError:
             return None
     return value
-
-
-def _arithmetic(op: NumericOp, args: list[Scalar]) -> Scalar:
-    known = [arg for arg in args if arg is not None and not isinstance(arg, str)]
-    if len(known) < len(args):
-        return None
-    try:
-        result = _result(op, known)
-        return result if math.isfinite(result) else None
-    except (ArithmeticError, ValueError):
-        return None
 
 
 def _result(op: NumericOp, args: list[int | float]) -> int | float:

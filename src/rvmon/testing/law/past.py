@@ -41,15 +41,15 @@ def since(
     i: int,
     interval: Interval,
     *,
-    next_law: bool = False,
+    mortal: bool = False,
 ) -> Truth:
     """Some position of the window had `right`, and all after it, up to `i`, have `left`.
 
     Positions at which an operand is not born are passed over; if `right` is at none of the
-    window, the whole is not. By the law to come, if it is nowhere TRUE or FALSE there, the whole
+    window, the whole is not. If `mortal`, and it is nowhere TRUE or FALSE there, the whole
     is unknown, though `left` be FALSE: what an outage swallowed may not be born either.
     """
-    shows_birth = {Truth.TRUE, Truth.FALSE} if next_law else {*Truth} - {Truth.UNBORN}
+    shows_birth = {Truth.TRUE, Truth.FALSE} if mortal else {*Truth} - {Truth.UNBORN}
     now = letters[i].instant
     value, so_far = Truth.FALSE, Truth.TRUE
     seen: set[Truth] = set()

@@ -26,7 +26,6 @@ def word_of(
     advances: Sequence[int] = (),
     names: frozenset[str] | None = None,
     outages: Sequence[Outage] = (),
-    next_law: bool = False,
 ) -> Word:
     """Lay a trace out position by position.
 
@@ -37,8 +36,6 @@ def word_of(
         advances: what `advance` was given, ticks; the samples are taken to fit.
         names: the names that have a source; `None`: all.
         outages: what was lost, in any order.
-        next_law: whether `finish(t)` is `advance(t + 1 tick)` and then the end, and numbers are
-            rounded at the edge.
 
     Raises:
         TimeOrderError: the times do not increase.
@@ -60,8 +57,7 @@ def word_of(
     # In sampled time `advance` says only what will not come; else it settles all ticks before.
     settled = [] if spec.time is TimeModel.SAMPLED else [t - 1 for t in advances]
     known_to = max([*heard_of, *settled, *_given(end)])
-    if next_law:
-        reached = max(reached, known_to + 1)
+    reached = max(reached, known_to + 1)
     if reached - first > MOST_TICKS:
         raise TraceError(
             f"the trace spans {reached - first} ns, and the oracle walks every one of them: "
@@ -77,10 +73,10 @@ def word_of(
         if _is_sure(spec, instant, begun, outages):
             before = instants[index - 1] if index else None
             told = {name: one.by(before, instant) for name, one in said.items()}
-            letters.append(_letter(spec, instant, told, next_law=next_law))
+            letters.append(_letter(spec, instant, told))
         else:
             letters.append(_blank(spec, instant))
-    return Word(tuple(letters), known_to, reached, next_law)
+    return Word(tuple(letters), known_to, reached)
 
 
 def heard(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
@@ -239,24 +235,21 @@ def _said_of(
     return _Told(entries, of_name, None, last, has_source)
 
 
-def _letter(
-    spec: CheckedSpec, instant: int, told: Mapping[str, _Told], *, next_law: bool
-) -> Letter:
+def _letter(spec: CheckedSpec, instant: int, told: Mapping[str, _Told]) -> Letter:
     return Letter(
         instant,
-        {name: _signal(told[name], one, next_law) for name, one in spec.signals.items()},
-        {name: _event(told[name], one, next_law) for name, one in spec.events.items()},
+        {name: _signal(told[name], one) for name, one in spec.signals.items()},
+        {name: _event(told[name], one) for name, one in spec.events.items()},
     )
 
 
-def _event(told: _Told, event: Event, next_law: bool) -> EventState:
+def _event(told: _Told, event: Event) -> EventState:
     if not told.has_source or told.is_within:
         return _UNKNOWN_EVENT
     new = [entry for entry in told.entries if told.is_new(entry)]
-    found = tuple(one for entry in new for one in _occurrences(entry.value))
-    if next_law:
-        found = tuple(replace(one, payload=_at_edge(one.payload, event)) for one in found)
-    return EventState(_updated(told), found)
+    told_of = (one for entry in new for one in _occurrences(entry.value))
+    found = (replace(one, payload=_at_edge(one.payload, event)) for one in told_of)
+    return EventState(_updated(told), tuple(found))
 
 
 def _at_edge(payload: Payload, event: Event) -> Payload:
@@ -266,14 +259,13 @@ def _at_edge(payload: Payload, event: Event) -> Payload:
     }
 
 
-def _signal(told: _Told, signal: Signal, next_law: bool) -> SignalState:
+def _signal(told: _Told, signal: Signal) -> SignalState:
     if not told.has_source:
         return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN)
     if not told.entries:
         return SignalState()
-    updates = [_update(entry.t, entry.value) for entry in told.entries]
-    if next_law:
-        updates = [replace(one, value=at_edge(one.value, signal.type.kind)) for one in updates]
+    said = (_update(entry.t, entry.value) for entry in told.entries)
+    updates = [replace(one, value=at_edge(one.value, signal.type.kind)) for one in said]
     last, within = updates[-1], told.is_within
     stale = signal.stale_after is not None and told.instant > last.t + signal.stale_after
     # What was lost may have been the first value, and the update behind it.

@@ -92,7 +92,6 @@ class Truths:
         favour: bool = False,
     ) -> None:
         self._letters = word.letters
-        self._next_law = word.next_law
         self._end = word.end
         self._captured = captured
         self._rest = rest
@@ -176,7 +175,7 @@ class Truths:
             case EventAtom(name=name):
                 return disjunction(o.truth for o in letter.events[name].occurrences)
             case Compare():
-                return compare(formula, letter, self._captured, next_law=self._next_law)
+                return compare(formula, letter, self._captured)
             case ProbeAtom(probe=probe, name=name):
                 return _probe(probe, name, letter)
             case BoundAtom(bound=bound):
@@ -301,8 +300,8 @@ class Truths:
                 )
             case BinaryOp.SINCE:
                 lasting = unless_constant(formula.left, left, Truth.TRUE)
-                next_law = self._next_law and not speaks_of_future(formula)
-                return since(self._letters, lasting, right, i, interval, next_law=next_law)
+                mortal = not speaks_of_future(formula)
+                return since(self._letters, lasting, right, i, interval, mortal=mortal)
             case _:
                 assert_never(formula.op)
 

@@ -84,10 +84,8 @@ class Word:
         letters: one per position; instants increase strictly.
         end: the last instant whose letter is known; `None` before the first sample.
         reached: an instant that time is known to have come to.
-        next_law: whether numbers are those of the law to come.
     """
 
     letters: tuple[Letter, ...]
     end: int | None
     reached: int
-    next_law: bool = False

@@ -1,4 +1,4 @@
-"""Numbers of the law to come, worked out by hand from SEMANTICS 5."""
+"""Numbers of the law, worked out by hand from SEMANTICS 5."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def of(op: str, *args: Numeric | float) -> Numeric:
     )
 
 
-def told(*values: dict[str, Any], next_law: bool = True) -> Any:
+def told(*values: dict[str, Any]) -> Any:
     samples = [Sample(t, one) for t, one in enumerate(values)]
-    return word_of(spec_of(), samples, next_law=next_law).letters[-1]
+    return word_of(spec_of(), samples).letters[-1]
 
 
 def value(expression: Numeric, *values: dict[str, Any]) -> Any:
-    return number(expression, told(*values), {}, {}, next_law=True)
+    return number(expression, told(*values), {}, {})
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_comparisons_are_exact() -> None:
     """A whole number beside a real is not rounded."""
     letter = told({"x": 2.0**53, "y": ODD})
     for op, expected in ((">", Truth.FALSE), ("<", Truth.TRUE), ("==", Truth.FALSE)):
-        assert compare(compared(x, op, y), letter, {}, next_law=True) is expected
+        assert compare(compared(x, op, y), letter, {}) is expected
 
 
 def test_differences_and_rates() -> None:
@@ -89,14 +89,7 @@ def test_differences_and_rates() -> None:
     assert value(rate, {"y": LEAST}, {"y": MOST}) is None
 
 
-def test_numbers_of_today_have_no_bound() -> None:
-    """What engines give today: whole numbers of any size, rounded nowhere."""
-    letter = told({"x": ODD}, next_law=False)
-    assert number(x, letter, {}, {}) == ODD
-    assert number(of("+", MOST, 1), letter, {}, {}) == MOST + 1
-
-
 def test_a_signal_that_is_drawn() -> None:
     """Whole and real signals of drawn traces keep their kinds."""
-    [letter] = word_of(spec_of(), timeline(x="3", y="3"), next_law=True).letters
+    [letter] = word_of(spec_of(), timeline(x="3", y="3")).letters
     assert [type(letter.signals[name].value) for name in "xy"] == [float, int]
