@@ -103,7 +103,7 @@ def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: 
         ("strict", eventually(p), {"p": "0", "end": 5}, "0 I"),
         # weak: what is pending is true; strong: it is false.
         ("weak", eventually(p), {"p": "0", "end": 5}, "0 P 5 policy"),
-        ("weak", eventually(p, 0, 5), {"p": "0", "end": 5}, "0 P 5 policy"),
+        ("weak", eventually(p, 0, 5), {"p": "0", "end": 4}, "0 P 4 policy"),
         ("weak", always(p), {"p": "1", "end": 5}, "0 P 5 policy"),
         ("weak", always(p, 9), {"p": "1", "end": 5}, "0 P 5 policy"),
         ("weak", no(eventually(p)), {"p": "0", "end": 5}, "0 P 5 policy"),
@@ -111,7 +111,7 @@ def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: 
         ("weak", following(p), {"p": "0", **SAMPLED}, "0 P 0 policy"),
         ("strong", eventually(p), {"p": "0", "end": 5}, "0 F 5 policy"),
         ("strong", always(p), {"p": "1", "end": 5}, "0 F 5 policy"),
-        ("strong", always(p, 0, 5), {"p": "1", "end": 5}, "0 F 5 policy"),
+        ("strong", always(p, 0, 5), {"p": "1", "end": 4}, "0 F 4 policy"),
         ("strong", no(eventually(p)), {"p": "0", "end": 5}, "0 F 5 policy"),
         ("strong", following(p), {"p": "0", **SAMPLED}, "0 F 0 policy"),
         ("strong", following(no(p)), {"p": "0", **SAMPLED}, "0 F 0 policy"),
@@ -128,6 +128,8 @@ def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: 
         ("fail", always(p), {"p": "1", "end": 5}, "0 F 5 policy"),
         # What the prefix decided stays.
         ("weak", eventually(p, 0, 3), {"p": "0", "end": 5}, "0 F 4"),
+        ("weak", eventually(p, 0, 3), {"p": "0", "end": 3}, "0 F 4"),
+        ("strong", always(p, 0, 3), {"p": "1", "end": 3}, "0 P 4"),
         ("pass", always(p), {"p": "1..0"}, "0 F 3"),
         ("fail", eventually(p), {"p": "1"}, "0 P 0"),
         ("strict", eventually(p), {"p": "1"}, "0 P 0"),
@@ -195,9 +197,11 @@ def test_policies_and_unknown_input(
         ("fail", {"p": "1", "q": "1uuu1", "end": 5}, "0 I"),
         # Episode over, the deadline of its last instant open.
         ("default", {"p": "1..0", "q": "1..0"}, "0 P 3"),
-        ("default", {"p": "1..0", "q": "10"}, "0 I"),
-        ("weak", {"p": "1..0", "q": "10"}, "0 P 3 policy"),
-        ("strong", {"p": "1..0", "q": "10"}, "0 F 3 policy"),
+        ("default", {"p": "1.0", "q": "10"}, "0 I"),
+        ("weak", {"p": "1.0", "q": "10"}, "0 P 2 policy"),
+        ("strong", {"p": "1.0", "q": "10"}, "0 F 2 policy"),
+        # The first instant at which it was not met in time is 1, known at 4.
+        ("weak", {"p": "1..0", "q": "10"}, "0 F 4"),
     ],
 )
 def test_policies_of_episodes(judge: Any, policy: str, rows: Any, expected: str) -> None:

@@ -23,9 +23,9 @@ EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
         # The last instant of the window still counts; the tick after it decides.
         (eventually(p, 0, 3), {"p": "0..1"}, "0 P 3"),
         (eventually(p, 0, 3), {"p": "0...1"}, "0 F 4"),
-        # A trace that ends exactly at the deadline leaves it open; one tick more does not.
-        (eventually(p, 0, 3), {"p": "0", "end": 3}, "0 I"),
-        (eventually(p, 0, 3), {"p": "0", "end": 4}, "0 F 4"),
+        # A trace that ends at the deadline has missed it; one that ends before leaves it open.
+        (eventually(p, 0, 3), {"p": "0", "end": 3}, "0 F 4"),
+        (eventually(p, 0, 3), {"p": "0", "end": 2}, "0 I"),
         # A timer decides as well as a message, and at the same instant.
         (eventually(p, 0, 3), {"p": "0", "advances": [3]}, "0 I"),
         (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
@@ -39,7 +39,7 @@ EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
         (eventually(p, 2, 3), {"p": "10.1"}, "0 P 3"),
         # A window of one point.
         (eventually(p, 0, 0), {"p": "1"}, "0 P 0"),
-        (eventually(p, 0, 0), {"p": "0", "end": 0}, "0 I"),
+        (eventually(p, 0, 0), {"p": "0", "end": 0}, "0 F 1"),
         (eventually(p, 0, 0), {"p": "01"}, "0 F 1"),
         (eventually(p, 3, 3), {"p": "0.1.0"}, "0 P 3"),
         (eventually(p, 3, 3), {"p": "0.10", "end": 4}, "0 F 4"),
@@ -61,14 +61,14 @@ def test_eventually(judge: Any, formula: Formula, told: dict[str, Any], expected
 @pytest.mark.parametrize(
     ("formula", "told", "expected"),
     [
-        (always(p, 0, 3), {"p": "1", "end": 3}, "0 I"),
-        (always(p, 0, 3), {"p": "1", "end": 4}, "0 P 4"),
+        (always(p, 0, 3), {"p": "1", "end": 3}, "0 P 4"),
+        (always(p, 0, 3), {"p": "1", "end": 2}, "0 I"),
         (always(p, 0, 3), {"p": "1", "advances": [4]}, "0 P 4"),
         (always(p, 0, 3), {"p": "1..0"}, "0 F 3"),
         (always(p, 0, 3), {"p": "1...0"}, "0 P 4"),
         (always(p, 2, 3), {"p": "0.1", "end": 4}, "0 P 4"),
         (always(p, 2, 3), {"p": "0..1"}, "0 F 2"),
-        (always(p, 0, 0), {"p": "1"}, "0 I"),
+        (always(p, 0, 0), {"p": "1"}, "0 P 1"),
         (always(p, 0, 0), {"p": "10"}, "0 P 1"),
         (always(p, 0, 3), {"p": "1u1", "end": 9}, "0 I"),
         (always(p, 0, 3), {"p": "1u0", "end": 9}, "0 F 2"),
@@ -94,7 +94,8 @@ def test_always(judge: Any, formula: Formula, told: dict[str, Any], expected: st
         # The bound itself, the tick after it, the end at the bound.
         ({"p": "1", "q": "0...1"}, "0 P 4"),
         ({"p": "1", "q": "0....1"}, "0 F 5"),
-        ({"p": "1", "q": "0", "end": 4}, "0 I"),
+        ({"p": "1", "q": "0", "end": 3}, "0 I"),
+        ({"p": "1", "q": "0", "end": 4}, "0 F 5"),
         # An unknown left operand leaves it open, a false one behind it does not.
         ({"p": "1u1", "q": "0..1", "end": 9}, "0 I"),
         ({"p": "1u0", "q": "0"}, "0 F 2"),
@@ -125,8 +126,8 @@ def test_until_without_bound(judge: Any, told: dict[str, Any], expected: str) ->
 @pytest.mark.parametrize(
     ("low", "told", "expected"),
     [
-        (0, {"p": "0", "q": "1", "end": 4}, "0 P 4"),
-        (0, {"p": "0", "q": "1", "end": 3}, "0 I"),
+        (0, {"p": "0", "q": "1", "end": 3}, "0 P 4"),
+        (0, {"p": "0", "q": "1", "end": 2}, "0 I"),
         # p releases q behind itself, not where it stands.
         (0, {"p": "0.1", "q": "1..0"}, "0 P 2"),
         (0, {"p": "0..1", "q": "1..0"}, "0 F 3"),
@@ -148,8 +149,8 @@ def test_release(judge: Any, low: int, told: dict[str, Any], expected: str) -> N
 @pytest.mark.parametrize(
     ("told", "expected"),
     [
-        ({"p": "1", "q": "0", "end": 4}, "0 P 4"),
-        ({"p": "1", "q": "0", "end": 3}, "0 I"),
+        ({"p": "1", "q": "0", "end": 3}, "0 P 4"),
+        ({"p": "1", "q": "0", "end": 2}, "0 I"),
         ({"p": "1.0", "q": "0.1"}, "0 P 2"),
         ({"p": "1.0", "q": "0"}, "0 F 2"),
         ({"p": "10", "q": "0.1"}, "0 F 1"),
@@ -167,8 +168,8 @@ def test_weak_until(judge: Any, told: dict[str, Any], expected: str) -> None:
     [
         ({"p": "0.1", "q": "1"}, "0 P 2"),
         ({"p": "0.1", "q": "1.0"}, "0 F 2"),
-        ({"p": "0", "q": "1", "end": 4}, "0 F 4"),
-        ({"p": "0", "q": "1", "end": 3}, "0 I"),
+        ({"p": "0", "q": "1", "end": 3}, "0 F 4"),
+        ({"p": "0", "q": "1", "end": 2}, "0 I"),
         ({"p": "0..1", "q": "1"}, "0 P 3"),
         ({"p": "1", "q": "0"}, "0 F 0"),
     ],
@@ -184,8 +185,8 @@ def test_strong_release(judge: Any, told: dict[str, Any], expected: str) -> None
         # Bounds measure stamps; a missed deadline is decided at b + 1 though no sample is there.
         (eventually(p, 0, 3), {"p": "0..1"}, "0 P 3"),
         (eventually(p, 0, 3), {"p": "0....1"}, "0 F 4"),
-        (eventually(p, 0, 3), {"p": "0", "end": 3}, "0 I"),
-        (eventually(p, 0, 3), {"p": "0", "end": 4}, "0 F 4"),
+        (eventually(p, 0, 3), {"p": "0", "end": 2}, "0 I"),
+        (eventually(p, 0, 3), {"p": "0", "end": 3}, "0 F 4"),
         (eventually(p, 0, 3), {"p": "0", "advances": [3]}, "0 I"),
         (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
         # Between samples there is no position: over an empty window F is false and G true.
@@ -223,8 +224,8 @@ def test_sampled(judge: Any, formula: Formula, told: dict[str, Any], expected: s
         (eventually(p, 0, 3), {"p": ".0..10", "end": 7}, "3 F 7"),
         (eventually(p, 0, 3), {"p": ".0...1", "end": 6}, "3 P 6"),
         # The window [3,7] holds 3 and 6, and is over at 8, between two ticks of the clock.
-        (eventually(p, 0, 4), {"p": ".0", "end": 7}, "3 I"),
-        (eventually(p, 0, 4), {"p": ".0", "end": 8}, "3 F 8"),
+        (eventually(p, 0, 4), {"p": ".0", "end": 6}, "3 I"),
+        (eventually(p, 0, 4), {"p": ".0", "end": 7}, "3 F 8"),
         (eventually(p, 1, 2), {"p": "1", "end": 9}, "0 F 3"),
         (following(p), {"p": "0.1", "end": 2}, "0 I"),
         (following(p), {"p": "0.1", "end": 3}, "0 P 3"),

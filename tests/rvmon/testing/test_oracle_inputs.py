@@ -336,7 +336,7 @@ def test_trace_brings_end_and_names() -> None:
     samples = (Sample(0, {"p": False}),)
     assert evaluate(spec, Trace(samples, end=4)).verdicts["R"] == "F"
     names = ALL - {"e"}
-    assert evaluate(spec, Trace(samples, names, 3)).verdicts["R"] == "I"
+    assert evaluate(spec, Trace(samples, names, 2)).verdicts["R"] == "I"
     assert evaluate(spec, Trace(samples, end=4), end=9).attempts[0].decided == 4
 
 

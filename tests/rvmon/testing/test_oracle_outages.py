@@ -65,7 +65,7 @@ def test_a_signal_that_becomes_stale_is_surely_unknown_then(judge: Any) -> None:
 def test_an_event(judge: Any) -> None:
     """It is unknown within, seen or not, and known again at once."""
     told = {"p": "1.....", "e": "..1", "lost": [("e", 1, 3)], "end": 5}
-    expected = ["F 1", "I", "I", "I", "F 5", "I"]
+    expected = ["F 1", "I", "I", "I", "F 5", "F 6"]
     assert [judge(at(t, e), **told)[0] for t in range(6)] == [f"0 {one}" for one in expected]
     assert judge(requirement(q, upon=e), **told) == ["1 I"]
 
