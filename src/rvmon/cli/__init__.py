@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: without the program's name; default `sys.argv[1:]`.
 
     >>> main(["--version"])
-    rvmon 0.1.0, law 2
+    rvmon 0.1.0, law 3
     0
     """
     words = sys.argv[1:] if arguments is None else list(arguments)

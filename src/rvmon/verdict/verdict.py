@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import StrEnum
 
-LAW = 2
+LAW = 3
 """Version of the law by which verdicts are judged; raised when the same run may get another one.
 
 It stands in reports, and in what a page or a command says of itself; the changes are complete in
