@@ -77,15 +77,14 @@ class Stepped:
     def lose(self, names: Iterable[str], since: int, /) -> bool:
         """Lose some names."""
         self._asked = False
-        return self._taken_up().core.lose(self._numbers(names), since)
+        self._taken_up().lose_ns(names, since)
+        return True
 
     def found(self, names: Iterable[str], at: int, /) -> bool:
         """Find them again."""
         self._asked = False
-        return self._taken_up().core.found(self._numbers(names), at)
-
-    def _numbers(self, names: Iterable[str]) -> list[int]:
-        return [self._monitor._planned.numbers[name] for name in names]
+        self._taken_up().found_ns(names, at)
+        return True
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         """End the trace."""

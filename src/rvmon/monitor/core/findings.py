@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from struct import iter_unpack
 from typing import TYPE_CHECKING
 
 from rvmon import native
 from rvmon.monitor.inputs.health import Arrivals, HealthLog
-from rvmon.monitor.inputs.intake import Intake
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.time import TIME_LIMIT
@@ -71,7 +70,7 @@ class Findings:
     def found(self, run: native.Monitor) -> tuple[Health, ...]:
         """All findings, once the run is finished."""
         arrivals = Arrivals(self._absent, self._first, _expired(self._planned, run))
-        return tuple(self._log.told(self._planned.readers, arrivals, None))
+        return tuple(self._log.told(self._planned.readers, arrivals))
 
 
 def _expired(planned: PlannedCore, run: native.Monitor) -> dict[str, tuple[int, int]]:
@@ -80,7 +79,7 @@ def _expired(planned: PlannedCore, run: native.Monitor) -> dict[str, tuple[int, 
 
 
 def health_of_run(
-    planned: PlannedCore, run: native.Monitor, absent: frozenset[str], intake: Intake | None
+    planned: PlannedCore, run: native.Monitor, absent: frozenset[str], further: Iterable[Health]
 ) -> tuple[Health, ...]:
     """The input health of a run that took samples.
 
@@ -88,7 +87,7 @@ def health_of_run(
         planned: the plan of its requirements.
         run: is finished.
         absent: the names without a source.
-        intake: held samples back; `None`: nothing did.
+        further: what was found of samples on their way.
     """
     log = HealthLog()
     log.began, _, _ = run.times()
@@ -102,4 +101,4 @@ def health_of_run(
         log.add_count(HealthKind.NONE, shown, name, none_count, none_first)
         log.add_count(HealthKind.NAN, shown, name, nan_count, nan_first)
     arrivals = Arrivals(absent, first, _expired(planned, run))
-    return tuple(log.told(planned.readers, arrivals, intake))
+    return tuple(log.told(planned.readers, arrivals, further))

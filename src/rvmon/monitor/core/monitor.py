@@ -5,35 +5,34 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from heapq import nsmallest
-from typing import Any, NoReturn
+from typing import Any, NoReturn, ParamSpec
 
 from rvmon import native
 from rvmon.errors import RvmonError, SnapshotError, TraceError
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.core.fed import FedMonitor
+from rvmon.monitor.core.feed import Feed
 from rvmon.monitor.core.findings import health_of_run
 from rvmon.monitor.core.listeners import Callback, Listeners
 from rvmon.monitor.core.one_call import OneCall, overlap
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
 from rvmon.monitor.core.snapshot import Options, put_back, written
 from rvmon.monitor.core.torn import capped, not_passed
-from rvmon.monitor.inputs.intake import Intake
-from rvmon.monitor.inputs.order import refuse_earlier
-from rvmon.monitor.inputs.validate import Validator
-from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
-Step = Callable[[int, Mapping[str, Any]], Sequence[Attempt]]
+P = ParamSpec("P")
 
 
-class Monitor:
+class Monitor(FedMonitor[Attempt]):
     """Judges a stream of samples; made by `rvmon.monitor.build`.
 
-    Times are seconds in `step`, `advance` and `finish`, integer ticks of a nanosecond in the
-    methods that end in `_ns`.
+    What takes one sample is a function of the core, which gives samples back to Python for a closer
+    look that are no plain values in a `dict`, or refused.
 
     Args:
         planned: the plan of the requirements.
@@ -43,20 +42,7 @@ class Monitor:
     Attributes:
         compiled: the specification.
         options: what was asked for.
-        step: a function that takes one sample: its time in seconds, and values by name; otherwise
-            as `step_ns`.
-        step_ns: the same at ticks, later than all samples before; it returns the attempts that the
-            sample decided. The values are what was updated or occurred: signals by value, `None` or
-            NaN if it became unknown; events `True`, or their payload. It raises `TimeOrderError` if
-            the time is not later, or an `advance` ruled it out; `TraceError` for a
-            name or a value that the specification does not know, or a time that is no whole number;
-            `OverlapError` if another call is under way. In all cases the monitor is as it was.
-            It is a function of the core, which gives samples back to Python for a closer look that
-            are no plain values in a `dict`, or refused.
     """
-
-    step: Callable[[float, Mapping[str, Any]], Sequence[Attempt]]
-    step_ns: Step
 
     def __init__(self, planned: PlannedCore, compiled: CompiledSpec, options: Options) -> None:
         checked, sources = compiled.checked, options.sources
@@ -68,7 +54,6 @@ class Monitor:
         self._core = planned.monitor(self._absent, self._take_at, self._look_closer)
         if options.keep is not None:
             self._core.keep(options.keep)
-        self._validator = Validator(checked, sources, planned.single_payloads)
         self._listeners = Listeners()
         self._one_call = OneCall(self)
         self._begin()
@@ -95,9 +80,8 @@ class Monitor:
         self._one_call(self._begin)
 
     def _begin(self) -> None:
-        delay = self.compiled.checked.max_delay or 0
-        holds_back = delay or self.options.settle == "next"
-        self._intake = Intake(delay, self.compiled.checked.events) if holds_back else None
+        checked, options = self.compiled.checked, self.options
+        self._feed = Feed(checked, self._planned, self._core, options.sources, options.settle)
         self._report: Report | None = None
         self._torn: int | None = None
         self._core.reset()
@@ -105,21 +89,15 @@ class Monitor:
         self._attend()
 
     def _attend(self) -> None:
-        """Let the core take samples itself, unless somebody listens or they are put in order."""
-        if self._intake is None and not self._listeners:
+        """Let the core take samples itself, unless somebody listens or there is more to do."""
+        if self._feed.is_direct and not self._listeners:
             self.step, self.step_ns = self._core.step, self._core.step_ns
         else:
             self.step, self.step_ns = self._take_at, self._take
 
-    def _take_at(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample at seconds."""
-        if type(values) is not dict and not isinstance(values, Mapping):
-            raise TraceError(f"sample at {t} s: expected values by name, found {values!r}")
-        return self.step_ns(ticks_of_seconds(t), values)
-
     def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample, and call who listens."""
-        if self._intake is None:
+        if self._feed.is_direct:
             decided = self._core.step_ns(t_ns, values)
         else:
             decided = self._one_call(self._step, t_ns, values)
@@ -132,12 +110,12 @@ class Monitor:
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         t_ns = self._taken_time(t_ns)
-        if self._intake is not None:
-            checked = self._one_call.spare(self._validator.check, t_ns, values)
-            ready = self._intake.take(t_ns, checked)
-            return self._settled(ready, self._intake.floor)
-        refuse_earlier(t_ns, self._last, self._reached)
-        self._judge(t_ns, self._one_call.spare(self._validator.check, t_ns, values))
+        checked = self._one_call.spare(self._feed.check, t_ns, values)
+        if self._feed.is_too_late(t_ns):
+            self._feed.losses.come_late(checked, t_ns, "left out")
+        else:
+            self._feed.take(t_ns, checked)
+            self._attend()
         return self._core.flush()
 
     def on_decided(self, callback: Callback) -> Callable[[], None]:
@@ -176,34 +154,18 @@ class Monitor:
         """Have a function called with each attempt that fails; otherwise as `on_decided`."""
         return self._listeners.add(callback, self._attend, failures_only=True)
 
-    def _judge(self, t: int, values: Mapping[str, Value]) -> None:
-        if not self._core.judge(t, self._planned.plain(t, values), True):
-            raise ValueError("the core does not take a sample that was checked")
-
-    def _settled(self, samples: Sequence[Sample], floor: int) -> Sequence[Attempt]:
-        """Judge samples that were held back, then let time come to `floor`."""
-        for sample in samples:
-            self._judge(sample.t, sample.values)
-        self._core.advance(floor)
-        return self._core.flush()
-
-    def advance(self, t: float) -> Sequence[Attempt]:
-        """Say that no sample before `t` (seconds) will come; see `advance_ns`."""
-        return self.advance_ns(ticks_of_seconds(t))
-
-    def advance_ns(self, t_ns: int) -> Sequence[Attempt]:
-        """Say that no sample before `t_ns` will come, and return the attempts that this decided.
-
-        A sample at `t_ns` stays legal. An instant that time has come to already changes nothing.
-        """
-        decided = self._one_call(self._advance, t_ns)
+    def _tell(
+        self, tell: Callable[P, None], *args: P.args, **kwargs: P.kwargs
+    ) -> Sequence[Attempt]:
+        """Make a call, and no other until it is over; who listens hears what it decided."""
+        decided = self._one_call(self._decided, partial(tell, *args, **kwargs))
         self._listeners.call(decided)
         return decided
 
-    def _advance(self, t_ns: int) -> Sequence[Attempt]:
-        t_ns = self._taken_time(t_ns)
-        held_back = () if self._intake is None else self._intake.settle(t_ns)
-        return self._settled(held_back, t_ns)
+    def _decided(self, tell: Callable[[], None]) -> Sequence[Attempt]:
+        tell()
+        self._attend()
+        return self._core.flush()
 
     def _taken_time(self, t: int) -> int:
         """A time that was given, as a plain integer."""
@@ -233,8 +195,7 @@ class Monitor:
             return self._report, ()
         if t_ns is not None:
             t_ns = self._taken_time(t_ns)
-        for sample in () if self._intake is None else self._intake.close():
-            self._judge(sample.t, sample.values)
+        self._feed.close()
         end = self._core.finish(t_ns)
         decided = self._core.flush()
         self._note_times()
@@ -247,7 +208,7 @@ class Monitor:
         from rvmon.monitor.core.recorded import report_of_run  # NumPy is needed at the end alone
 
         report = report_of_run(self._planned, self._core, self._began or 0, end)
-        health = health_of_run(self._planned, self._core, self._absent, self._intake)
+        health = health_of_run(self._planned, self._core, self._absent, self._feed.health())
         return replace(report, health=health)
 
     @property
@@ -276,10 +237,13 @@ class Monitor:
         if self._report is not None:
             return self._report.verdicts
         so_far = (Verdict.FAIL, Verdict.PASS)
-        found = {
-            name: fold(verdict for verdict in so_far if own[VERDICTS.index(verdict)])
-            for name, own in zip(self._planned.packed.ids, self._core.counts(), strict=True)
-        }
+        found = {}
+        for name, (*counts, determined) in zip(
+            self._planned.packed.ids, self._core.counts(), strict=True
+        ):
+            seen = [verdict for verdict in so_far if counts[VERDICTS.index(verdict)]]
+            # What has passed was triggered: it is undetermined only if something came too late.
+            found[name] = fold(seen, complete=bool(determined or not seen))
         return found if self._torn is None else not_passed(found)
 
     def snapshot(self) -> bytes:
@@ -307,8 +271,7 @@ class Monitor:
     def _put_away(self) -> bytes:
         if self._report is not None:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
-        held = None if self._intake is None else self._intake.state()
-        state = {"torn": self._torn, "intake": held}
+        state = {"torn": self._torn, **self._feed.state()}
         return written(self.compiled, self.options, self._planned, self._core, state)
 
     def take_up(self, document: Mapping[str, Any]) -> None:
@@ -321,12 +284,10 @@ class Monitor:
             SnapshotError: it fits no such monitor.
         """
         state = put_back(document, self._planned, self._core)
-        torn, intake = state["torn"], state["intake"]
-        if (intake is None) != (self._intake is None):
-            raise SnapshotError("the snapshot is damaged: it holds samples back that nobody awaits")
+        torn = state["torn"]
         self._torn = None if torn is None else whole_ticks(torn)
-        if self._intake is not None:
-            self._intake.take_up(intake, self._validator)
+        self._feed.take_up(state)
+        self._attend()
         self._note_times()
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -73,7 +73,10 @@ class HealthLog:
         self._seen[key] = (count + 1, first)
 
     def told(
-        self, readers: Mapping[str, tuple[str, ...]], arrivals: Arrivals, intake: Intake | None
+        self,
+        readers: Mapping[str, tuple[str, ...]],
+        arrivals: Arrivals,
+        further: Iterable[Health] = (),
     ) -> list[Health]:
         """All findings of the run, by name with the requirements that read it."""
         found = self._seen_by(readers)
@@ -82,10 +85,10 @@ class HealthLog:
             Health(HealthKind.STALE, name, count, first, readers.get(name, ()))
             for name, (count, first) in arrivals.expired.items()
         ]
-        if intake is not None:
-            found += [
-                replace(one, requirements=readers.get(one.name, ())) for one in of_intake(intake)
-            ]
+        found += [
+            one if one.requirements else replace(one, requirements=readers.get(one.name, ()))
+            for one in further
+        ]
         return sorted(found, key=by_name)
 
     def _seen_by(self, readers: Mapping[str, tuple[str, ...]]) -> list[Health]:
@@ -110,9 +113,6 @@ class HealthLog:
 def of_intake(intake: Intake) -> list[Health]:
     """What was found of samples that were held back, whoever reads them."""
     found = intake.conflicts.health()
-    if intake.late is not None:
-        count, first = intake.late
-        found.append(Health(HealthKind.LATE, "samples", count, first, remark="left out"))
     if intake.crowded is not None:
         count, first = intake.crowded
         early = f"evaluated before the delay was over: {MOST_HELD:,} samples were waiting"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import Any
 
 from rvmon.errors import TimeOrderError
-from rvmon.monitor.inputs.validate import Validator
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
@@ -17,6 +17,21 @@ WAYS_TO_SETTLE = ("now", "next")
 
 MOST_HELD = 65_536
 """So many samples at most wait for late ones; with more, the oldest are judged early."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """From an instant on names are lost, or behind it found again.
+
+    Attributes:
+        t: the instant, ticks.
+        names: the names.
+        lost: whether they are lost.
+    """
+
+    t: int
+    names: tuple[str, ...]
+    lost: bool
 
 
 class Intake:
@@ -29,8 +44,8 @@ class Intake:
     Attributes:
         floor: no sample before this instant is taken any more.
         conflicts: signals that got two values at one instant.
-        late: samples that came after their instant was settled: how many, and the first's instant.
-        crowded: samples judged early because too many waited: the same.
+        newest: the latest instant of a sample; `None`: none came.
+        crowded: samples judged early because too many waited: how many, and the first's instant.
     """
 
     def __init__(self, delay: int, events: Container[str]) -> None:
@@ -38,28 +53,29 @@ class Intake:
         self.events = events
         self.floor = -TIME_LIMIT
         self.conflicts = Conflicts()
-        self.late: tuple[int, int] | None = None
+        self.newest: int | None = None
         self.crowded: tuple[int, int] | None = None
-        self._held: list[tuple[int, int, Mapping[str, Value]]] = []
+        # What turns at an instant does so before the sample there.
+        self._held: list[tuple[int, bool, int, Mapping[str, Value] | Turn]] = []
         self._taken = 0
 
-    def take(self, t: int, values: Mapping[str, Value]) -> list[Sample]:
-        """Take a sample; returns those that are settled by it, in order.
+    def is_too_late(self, t: int) -> bool:
+        """Whether a sample at an instant comes later than it may be late."""
+        return self.delay > 0 and t < self.floor
+
+    def take(self, t: int, values: Mapping[str, Value]) -> list[Sample | Turn]:
+        """Take a sample; returns what is settled by it, in order.
 
         Raises:
-            TimeOrderError: it comes before the floor, and no delay is allowed; nothing changed.
+            TimeOrderError: it comes before the floor; nothing changed.
         """
         if t < self.floor:
-            if not self.delay:
-                raise TimeOrderError(
-                    f"sample at {format_ticks(t)}, but time has come to "
-                    f"{format_ticks(self.floor)}: sort the samples, or allow a `max delay`"
-                )
-            count, first = self.late or (0, t)
-            self.late = (count + 1, first)
-            return []
-        self._taken += 1
-        heappush(self._held, (t, self._taken, values))
+            raise TimeOrderError(
+                f"sample at {format_ticks(t)}, but time has come to "
+                f"{format_ticks(self.floor)}: sort the samples, or allow a `max delay`"
+            )
+        self.newest = t if self.newest is None else max(self.newest, t)
+        self._hold(t, values)
         ready = self.settle(t - self.delay)
         if self.delay and len(self._held) > MOST_HELD:
             oldest = self._held[0][0]
@@ -68,44 +84,81 @@ class Intake:
             ready += self.settle(oldest + 1)
         return ready
 
-    def settle(self, t: int) -> list[Sample]:
-        """Learn that no sample before `t` will come; returns those that are settled, in order."""
+    def turn(self, turns: Sequence[Turn]) -> None:
+        """Take what turns at the floor or later."""
+        for one in turns:
+            self._hold(one.t, one)
+
+    def _hold(self, t: int, what: Mapping[str, Value] | Turn) -> None:
+        self._taken += 1
+        heappush(self._held, (t, not isinstance(what, Turn), self._taken, what))
+
+    def settle(self, t: int) -> list[Sample | Turn]:
+        """Learn that no sample before `t` will come; returns what is settled, in order."""
         self.floor = max(self.floor, t)
-        ready = []
+        ready: list[Sample | Turn] = []
+        neighbours: list[Sample] = []
         while self._held and self._held[0][0] < self.floor:
-            instant, _, values = heappop(self._held)
-            ready.append(Sample(instant, values))
-        return list(coalesce(ready, self.events, self.conflicts))
+            instant, _, _, what = heappop(self._held)
+            if isinstance(what, Turn):
+                ready += coalesce(neighbours, self.events, self.conflicts)
+                ready.append(what)
+                neighbours = []
+            else:
+                neighbours.append(Sample(instant, what))
+        return [*ready, *coalesce(neighbours, self.events, self.conflicts)]
 
     def state(self) -> Mapping[str, Any]:
         """What is held, as JSON has it."""
-        held = [[t, place, dict(values)] for t, place, values in self._held]
+        held: list[list[Any]] = []
+        turns: list[list[Any]] = []
+        for t, _, place, what in self._held:
+            if isinstance(what, Turn):
+                turns.append([t, place, what.names, what.lost])
+            else:
+                held.append([t, place, dict(what)])
         return {
             "floor": self.floor,
-            "late": self.late,
+            "newest": self.newest,
             "crowded": self.crowded,
             "conflicts": self.conflicts.seen,
             "held": held,
+            "turns": turns,
         }
 
-    def take_up(self, state: Mapping[str, Any], validator: Validator) -> None:
+    def take_up(
+        self,
+        state: Mapping[str, Any],
+        check: Callable[[int, Any], Mapping[str, Value]],
+        known: Callable[[Iterable[Any]], set[str]],
+    ) -> None:
         """Hold what `state` gave.
+
+        Args:
+            state: as JSON has it.
+            check: of the values of a sample.
+            known: of the names that are lost or found.
 
         Raises:
             TraceError: a sample is none of the specification.
         """
-        self.floor = _integer(state["floor"])
-        self.late, self.crowded = map(_counted, (state["late"], state["crowded"]))
+        self.floor, self.crowded = _integer(state["floor"]), _counted(state["crowded"])
+        self.newest = None if state["newest"] is None else _integer(state["newest"])
         for name, found in state["conflicts"].items():
             count, first = _counted(found) or (0, 0)
             self.conflicts.add(str(name), first, count)
         for t, place, values in state["held"]:
-            checked = validator.check(whole_ticks(t), values)
-            heappush(self._held, (whole_ticks(t), _integer(place), checked))
-            self._taken = max(self._taken, place)
+            self._hold_again(whole_ticks(t), place, check(whole_ticks(t), values))
+        for t, place, names, lost in state["turns"]:
+            turn = Turn(whole_ticks(t), tuple(known(names)), lost is True)
+            self._hold_again(turn.t, place, turn)
 
-    def close(self) -> list[Sample]:
-        """Learn that no sample will come; returns all that are held, in order."""
+    def _hold_again(self, t: int, place: Any, what: Mapping[str, Value] | Turn) -> None:
+        heappush(self._held, (t, not isinstance(what, Turn), _integer(place), what))
+        self._taken = max(self._taken, place)
+
+    def close(self) -> list[Sample | Turn]:
+        """Learn that no sample will come; returns all that is held, in order."""
         return self.settle(TIME_LIMIT)
 
 
