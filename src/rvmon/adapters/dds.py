@@ -120,7 +120,7 @@ class DdsSource:
     def _lose(self, reader: Any, _: object) -> None:
         for known, topic in tuple(self._readers.values()):
             if known is reader:
-                self._feed.lose(topic.name, "DDS has lost some before it")
+                self._feed.lose(topic.name, "DDS has lost some before it", before=True)
 
     def _written(self, topic: str) -> Any:
         from cyclonedds.pub import DataWriter

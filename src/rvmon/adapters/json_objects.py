@@ -15,7 +15,7 @@ from rvmon.readers.jsonl_rows import decoded, read_object
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema
-from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
+from rvmon.trace.time import TICKS_PER_SECOND
 
 _log = logging.getLogger("rvmon.live.input")
 
@@ -27,7 +27,7 @@ class JsonObjects:
     """Offers what objects say, as recordings in JSON lines have them.
 
     Objects without a time are stamped as they arrive. Those with a time are judged at it. One that
-    cannot be read may have reported anything: all names are unknown from there on.
+    cannot be read may have reported anything: all names are lost there, between its neighbours.
 
     Args:
         driver: gets the samples.
@@ -35,6 +35,7 @@ class JsonObjects:
         clock: follows the stamps of the objects; `None`: the clock of the driver runs by itself.
 
     Attributes:
+        driver: gets the samples.
         ignored: the names that the specification does not declare, with how often they came.
         unread: so many objects could not be read.
     """
@@ -44,7 +45,7 @@ class JsonObjects:
     ) -> None:
         self.ignored: Counter[str] = Counter()
         self.unread = 0
-        self._driver = driver
+        self.driver = driver
         self._schema = schema
         self._clock = clock
         self._last: dict[str, int | None] = {}
@@ -65,11 +66,11 @@ class JsonObjects:
             now = self._clock.now_ns()
             if t_ns > now or t_ns < now - _JUMP_NS:
                 self._clock.set_ns(t_ns)
-        self._driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
+        self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
         self._last[robot] = t_ns
 
     def lose(self, where: str, why: Exception, robot: str | None) -> None:
-        """Have everything unknown that an unreadable object may have reported.
+        """Have everything lost that an unreadable object may have reported.
 
         Args:
             where: what it was, for the log.
@@ -78,12 +79,11 @@ class JsonObjects:
         """
         self.unread += 1
         _log.warning("%s is not taken: %s", where, why)
-        everything = dict.fromkeys((*self._schema.signals, *self._schema.events))
         for one in self._last if robot is None else [robot]:
-            last = self._last.get(one)
-            # What came before stays known.
-            t_ns = None if last is None else min(last + 1, TIME_LIMIT - 1)
-            self._driver.offer(everything, robot=one, t_ns=t_ns, wait=last is not None)
+            if self._last.get(one) is None:  # what has no time is stamped as it comes
+                self.driver.lose(robot=one, is_over=True, why=f"{where}: {why}")
+            else:
+                self.driver.miss(robot=one, why=f"{where}: {why}")
 
 
 def decoded_object(text: bytes) -> Any:

@@ -12,6 +12,7 @@ from rvmon.live.driver import Driver
 from rvmon.readers.messages.match import matched
 from rvmon.readers.messages.rows import MessageReaders
 from rvmon.readers.messages.topic import Topic
+from rvmon.trace.binding import Clock
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
@@ -27,7 +28,7 @@ _NOW = 1 - TIME_LIMIT
 class MessageFeed:
     """Offers what messages say of the declared names, by the binding of the schema or by name.
 
-    A message that cannot be read has unknown what its topic feeds.
+    Where a message cannot be read, what its topic feeds is lost.
 
     Args:
         driver: gets the samples.
@@ -55,6 +56,9 @@ class MessageFeed:
         self._robot = robot
         self._readers: dict[str, MessageReaders] = {}
         self._fed: dict[str, tuple[str, ...]] = {}
+        self._stamped: set[str] = set()
+        self._began = driver.now_ns
+        self._heard: dict[str, int] = {}
 
     def topics(self) -> Iterator[str]:
         """The topics that may feed something: those of the binding, and those that names name.
@@ -88,6 +92,7 @@ class MessageFeed:
             for t, values in readers.take(topic, _NOW, content):
                 t_ns = None if t == _NOW else t
                 self._driver.offer(values, robot=self._robot, t_ns=t_ns)
+                self._heard[topic.name] = self._driver.now_ns if t_ns is None else t_ns
         except TraceError as error:
             self.lose(topic.name, str(error))
 
@@ -101,15 +106,30 @@ class MessageFeed:
         self._fed.setdefault(topic.name, ())
         bounds = matched(self._schema, {topic.name: topic}).bounds
         self._fed[topic.name] = tuple(bounds)
+        clock = self._schema.binding.clock
+        if any((bound.clock or clock) is Clock.HEADER for bound in bounds.values()):
+            self._stamped.add(topic.name)
         made = self._readers[topic.name] = MessageReaders(bounds, self._schema)
         return made
 
-    def lose(self, topic: str, why: str) -> None:
-        """Have unknown what a topic feeds."""
+    def lose(self, topic: str, why: str, *, before: bool = False) -> None:
+        """Have lost what a message of a topic said.
+
+        Args:
+            topic: its name.
+            why: it cannot be read, or did not come.
+            before: whether it was sent before now, so that it may have said something at any
+                instant since the last one that was read.
+        """
         _log.warning("a message of %s is not taken: %s", topic, why)
-        everything = (*self._schema.signals, *self._schema.events)
-        names = self._fed.get(topic) or everything
-        self._driver.offer(dict.fromkeys(names), robot=self._robot)
+        since = self._heard.get(topic, self._began) + 1
+        self._driver.lose(
+            self._fed.get(topic) or None,
+            robot=self._robot,
+            since_ns=since if before or topic in self._stamped else None,
+            is_over=True,
+            why=f"a message of {topic} was not taken",
+        )
 
 
 def _leading(path: str) -> Iterator[str]:

@@ -117,7 +117,7 @@ class MqttSource:
         self._client = Client(CallbackAPIVersion.VERSION2)
         self._client.max_queued_messages_set(0)
         self._client.on_connect = self._on_connect
-        self._client.on_subscribe = lambda *_: self._connected.set()
+        self._client.on_subscribe = self._on_subscribe
         self._client.on_disconnect = self._on_disconnect
         self._client.on_message = lambda _, __, message: self._take(
             message.topic, bytes(message.payload)
@@ -152,11 +152,17 @@ class MqttSource:
             # faster: at 4,000 messages in a second that is half of them.
             client.subscribe([(self._address.topics, 0), (_DROPPED, 0)])
 
+    def _on_subscribe(self, *_: object) -> None:
+        if self._connected.is_set():  # again
+            self._objects.driver.found()
+        self._connected.set()
+
     def _on_disconnect(self, _: object, __: object, ___: object, reason: Any, ____: object) -> None:
         self._dropped = None
         if reason.is_failure:
-            lost = RvmonError(f"{reason}: what is published until it is back is not known")
-            self._objects.lose("the connection to the broker", lost, None)
+            why = f"the connection to the broker is lost ({reason})"
+            _log.warning("%s: what is published until it is back is not known", why)
+            self._objects.driver.lose(why=why)
 
     def _take(self, topic: str, payload: bytes) -> None:
         if topic == _DROPPED:

@@ -123,7 +123,9 @@ class Ros2Source:
             lambda content: self._take(topic, content),
             qos,
             event_callbacks=SubscriptionEventCallbacks(
-                message_lost=lambda _: self._feed.lose(name, "some before it were lost")
+                message_lost=lambda _: self._feed.lose(
+                    name, "some before it were lost", before=True
+                )
             ),
         )
 

@@ -104,7 +104,7 @@ def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes], *, skippe
             t, values = read_object(decoded_object(line), spec.schema, ignored)
         except TraceError as error:
             warn(f"line {number} is not taken: {error}")
-            monitor.lose((*spec.schema.signals, *spec.schema.events))
+            monitor.miss()
             continue
         try:
             monitor.step_ns(t, values)

@@ -13,8 +13,7 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import Clock, WallClock
 from rvmon.live.robot import Judgement, Robot, Watch
 from rvmon.live.status import Status
-from rvmon.live.waiting import Entry, Lost, Names, NewRun, Offered, Values, Waiting
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Told, Values, Waiting
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, whole_ticks
 from rvmon.verdict.verdict import Verdict
@@ -59,9 +58,7 @@ class Driver:
         lag_ns: how long samples that bring their own stamps may take to arrive; deadlines pass so
             much later. Default the `max delay` of the specification, or 0.
         room: so many samples may wait. Of one that finds no room the signals are unknown until
-            their next value and the events unknown at its instant, so that no verdict rests on it;
-            where 100,000 such instants are lost in a row, or a value of a signal that ignores NaN,
-            a new run begins, and what has not failed is inconclusive.
+            their next value and the events unknown at its instant, so that no verdict rests on it.
         most_robots: samples of more are refused.
         on_judged: called with each attempt that passes or fails.
         on_failure: called with each that fails.
@@ -127,7 +124,7 @@ class Driver:
         self._wakes: dict[str, int] = {}
         self._turned_away = False
         self._watch, self._lag = self._watching(spec)
-        self._waiting = Waiting(room, _names(spec))
+        self._waiting = Waiting(room)
         self._clock.on_change(self._clock_was_set)
 
     def _watching(self, spec: Spec) -> tuple[Watch, int]:
@@ -187,6 +184,62 @@ class Driver:
             self.wake()
         return took
 
+    def lose(
+        self,
+        names: Iterable[str] | None = None,
+        *,
+        robot: str | None = None,
+        since_ns: int | None = None,
+        is_over: bool = False,
+        why: str = "lost",
+    ) -> None:
+        """Say that a source may have said anything of some names, and nobody heard it.
+
+        Args:
+            names: signals and events; `None`: all.
+            robot: whose; `None`: of every robot that was heard of.
+            since_ns: the first instant, ns; default the time now.
+            is_over: whether they are found again by now; else when `found` says so.
+            why: a phrase for people, for the input health.
+        """
+        self._tell(Told.LOST, names, robot, why, since_ns, is_over=is_over)
+
+    def found(self, names: Iterable[str] | None = None, *, robot: str | None = None) -> None:
+        """Say that names are lost up to now, and not behind it; otherwise as `lose`."""
+        self._tell(Told.FOUND, names, robot, "")
+
+    def miss(
+        self,
+        names: Iterable[str] | None = None,
+        *,
+        robot: str | None = None,
+        why: str = "lost",
+    ) -> None:
+        """Say that something was lost between a robot's last sample and its next one."""
+        self._tell(Told.MISSED, names, robot, why)
+
+    def _tell(
+        self,
+        told: Told,
+        names: Iterable[str] | None,
+        robot: str | None,
+        why: str,
+        since: int | None = None,
+        *,
+        is_over: bool = False,
+    ) -> None:
+        some = None if names is None else tuple(names)
+        with self._lock:
+            now = max(self._clock.now_ns(), self._stamped)
+            if told is not Told.MISSED:  # what is offered from now on is stamped later
+                self._stamped = now + self._runs_by_itself
+            first, last = now if since is None else min(since, now), now if is_over else None
+            robots = {*self._waiting.robots, *self._robots} if robot is None else {robot}
+            for one in robots:
+                if one in self._waiting.robots or self._is_room_for(one):
+                    self._waiting.put_gap(Gap(one, told, some, first, last, why))
+        self.wake()
+
     def _is_room_for(self, robot: str) -> bool:
         if len({*self._waiting.robots, *self._robots}) < self._most_robots:
             return True
@@ -216,8 +269,6 @@ class Driver:
         """
         with self._driving():
             self._watch, self._lag = self._watching(spec)
-            with self._lock:
-                self._waiting.expect(_names(spec))
             for robot in self._robots.values():
                 robot.end()
                 robot.begin(self._watch)
@@ -232,6 +283,11 @@ class Driver:
         with self._working:
             now = self._clock.now_ns()
             return {name: robot.status(now, most_open) for name, robot in self._robots.items()}
+
+    @property
+    def now_ns(self) -> int:
+        """What time it is, ns, by the clock of this driver."""
+        return self._clock.now_ns()
 
     @property
     def waiting(self) -> int:
@@ -294,13 +350,17 @@ class Driver:
             _log.info("%sis watched", _heading(entry.robot))
             found = Robot(entry.robot, self._watch, self._judged, self._ended)
             self._robots[entry.robot] = found
-        if isinstance(entry, Lost):
-            _input_log.warning("%slost %d samples: no room", _heading(entry.robot), entry.count)
-            found.lose(entry)
-        else:
-            if why := found.take(entry.t, entry.values):
-                _input_log.warning("%srefused a sample: %s", _heading(entry.robot), why)
-        self._look_at(entry.robot, entry.t + self._lag + self._patience)
+        match entry:
+            case Offered(t=t, values=values):
+                if why := found.take(t, values):
+                    _input_log.warning("%srefused a sample: %s", _heading(entry.robot), why)
+            case Dropped(last=t, count=count):
+                _input_log.warning("%slost %d samples: no room", _heading(entry.robot), count)
+                found.drop(entry)
+            case Gap():
+                found.hear(entry)
+        if found.last is not None:
+            self._look_at(entry.robot, found.last + self._lag + self._patience)
 
     def _look_at(self, robot: str, t: int) -> None:
         """Have a robot looked at when an instant has come, if it is not looked at before."""
@@ -370,13 +430,6 @@ class Driver:
         except Exception:  # noqa: BLE001 - what others do wrong stops no monitor
             self.errors += 1
             _log.exception("a callback failed")
-
-
-def _names(spec: Spec) -> Names:
-    checked = spec.checked
-    is_position = checked.time is TimeModel.SAMPLED and checked.period is None
-    momentary = None if is_position else frozenset(checked.events)
-    return Names(tuple(checked.signals), momentary, frozenset(checked.ignoring))
 
 
 def _heading(robot: str) -> str:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rvmon.errors import RvmonError, SnapshotError, TraceError
+from rvmon.errors import RvmonError, SnapshotError, TimeOrderError, TraceError
 from rvmon.execute.journal import add, begin, entries
 from rvmon.trace.time import whole_ticks
 
@@ -70,7 +70,6 @@ class DurableMonitor:
         self._every = every
         self._number = 0
         self.taken = 0
-        self._reached: int | None = None
         found = entries(self._path)
         self.monitor = spec.monitor(**options) if found is None else self._taken_up(spec, found)
         self.monitor.on_decided(self._hear)
@@ -84,7 +83,6 @@ class DurableMonitor:
             head = json.loads(found[0])
             self._number, data = int(head["told"]), str(head["snapshot"]).encode()
             self.taken = int(head["taken"])
-            self._reached = None if head["reached"] is None else int(head["reached"])
         except (ValueError, LookupError, TypeError, RecursionError):
             raise SnapshotError(
                 f"{self._path}: no run of a monitor, or its beginning is damaged: name another "
@@ -106,26 +104,24 @@ class DurableMonitor:
     def _judge(self, t: int | None, values: Mapping[str, Any] | None) -> None:
         self.taken += 1
         if t is None:
-            self._lose(values or ())
+            self.monitor.miss(values)
         elif values is None:
             self.monitor.advance_ns(t)
-            self._reached = t
         else:
             try:
                 self.monitor.step_ns(t, values)
-            except TraceError:
-                self._lose(values)
+            except TraceError as error:
+                self._refused(t, values, error)
                 raise
-            self._reached = t
 
-    def _lose(self, names: Iterable[str]) -> None:
-        """Have unknown what a sample spoke of; before the first one, nothing is known anyhow."""
+    def _refused(self, t: int, values: Mapping[str, Any], error: TraceError) -> None:
+        """Have lost what a sample spoke of that was refused."""
         checked = self.monitor.compiled.checked
-        lost = [name for name in names if name in checked.signals or name in checked.events]
-        if self._reached is not None:
-            if self.monitor.options.settle != "next":  # else it may be one more at the same stamp
-                self._reached += 1
-            self.monitor.step_ns(self._reached, dict.fromkeys(lost))
+        names = [name for name in values if name in checked.signals or name in checked.events]
+        if isinstance(error, TimeOrderError):
+            self.monitor.late_ns(names, t)
+        else:
+            self.monitor.lose_ns(names, t, t, why=f"refused, as {error}")
 
     def _hear(self, attempt: Attempt) -> None:
         self._number += 1
@@ -140,7 +136,6 @@ class DurableMonitor:
         head = {
             "told": self._number,
             "taken": self.taken,
-            "reached": self._reached,
             "snapshot": self.monitor.snapshot().decode(),
         }
         begin(self._path, [json.dumps(head).encode()])
@@ -150,7 +145,7 @@ class DurableMonitor:
         """Judge a sample, as `Monitor.step_ns` does; verdicts are reported.
 
         Raises:
-            TraceError: the monitor refuses it; what it spoke of is unknown from now on.
+            TraceError: the monitor refuses it; what it spoke of is lost at its instant.
             OSError: the file cannot be written; nothing was judged.
         """
         self._keep(whole_ticks(t_ns), dict(values))
@@ -159,9 +154,9 @@ class DurableMonitor:
         """Say that no sample before an instant, ns, will come; otherwise as `step_ns`."""
         self._keep(whole_ticks(t_ns), None)
 
-    def lose(self, names: Iterable[str]) -> None:
-        """Have unknown, from now on, what a sample spoke of that was lost."""
-        self._keep(None, dict.fromkeys(names))
+    def miss(self, names: Iterable[str] | None = None) -> None:
+        """Say that something was lost between the last sample and the next; see `Monitor.miss`."""
+        self._keep(None, None if names is None else dict.fromkeys(names))
 
     def _keep(self, t: int | None, values: Mapping[str, Any] | None) -> None:
         try:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.live.status import Status
-from rvmon.live.waiting import Lost, Values
+from rvmon.live.waiting import Dropped, Gap, Told, Values
 from rvmon.spec.checked.selection import requirements_asked
 from rvmon.trace.health import Health, HealthKind
 from rvmon.verdict.attempt import Attempt
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from rvmon.monitor import Monitor
     from rvmon.session import Spec
     from rvmon.verdict.report import Report
-
-_SAME = 40
-"""Remarks that begin alike to so many characters are counted together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +129,7 @@ class Robot:
         self._is_held_back = False
         self._since: int | None = None
         self.last: int | None = None
-        self._health: dict[tuple[HealthKind, str], Health] = {}
+        self._why: Health | None = None
 
     def _hear(self, attempt: Attempt) -> None:
         self._counts[attempt.requirement, attempt.verdict] += 1
@@ -140,14 +137,15 @@ class Robot:
 
     def restart(self, kind: HealthKind, why: str) -> None:
         """End the run that is under way where it has come to, and begin another."""
-        self._note(kind, 1, self.floor, why)
+        self._why = Health(kind, "samples", 1, self.floor, self._watch.ids, why)
         self.end()
         self._begin(self._watch)
 
     def end(self) -> Report:
         """End the run that is under way where it has come to."""
         report = self._monitor.finish_ns()
-        report = replace(report, health=(*report.health, *self._health.values()))
+        if self._why is not None:
+            report = replace(report, health=(*report.health, self._why))
         for name, verdict in report.verdicts.items():
             self._before[name].add(verdict)
         self.reports.append(report)
@@ -165,55 +163,54 @@ class Robot:
             Why it was refused; what it spoke of is unknown then. Empty: it was taken.
         """
         try:
-            self._step(t, values)
+            self._monitor.step_ns(t, values)
         except TraceError as error:
             self._refusal = str(error)
-            self._lose_one(t, values, is_late=isinstance(error, TimeOrderError))
+            self._lost += 1
+            names = self._declared(values)
+            if isinstance(error, TimeOrderError):
+                self._monitor.late_ns(names, t)
+            else:
+                self._monitor.lose_ns(names, t, t, why=f"refused, as {error}")
+                self._come_to(t)
             return self._refusal
         self._samples += 1
+        self._come_to(t)
         return ""
 
-    def lose(self, lost: Lost) -> None:
-        """Have unknown what was lost for want of room."""
-        self._lost += lost.count
-        self._note(HealthKind.DROPPED, lost.count, lost.t, "came faster than they were evaluated")
-        if lost.moments is None:
-            self._run_lost_much()
-            return
-        signals = self._watch.spec.checked.signals
-        at = {lost.t: {name: None for name in lost.names if name in signals}}
-        for t, names in lost.moments:
-            at.setdefault(t, {}).update(dict.fromkeys(names))
-        for t, values in at.items():
-            self._step(t, values)
+    def drop(self, dropped: Dropped) -> None:
+        """Have lost what found no room."""
+        self._lost += dropped.count
+        why = "came faster than they were evaluated"
+        names = self._declared(dropped.names)
+        self._monitor.lose_ns(names, dropped.first, dropped.last, why=why)
+        self._come_to(dropped.last)
 
-    def _run_lost_much(self) -> None:
-        """Begin a run, as nobody can say when what may have happened; nothing has passed then."""
-        for seen in self._before.values():
-            seen.add(Verdict.INCONCLUSIVE)
-        self.restart(HealthKind.DROPPED, "so much was lost that a new run began")
+    def hear(self, gap: Gap) -> None:
+        """Take what was lost, or found again, on the way here."""
+        match gap.told:
+            case Told.LOST:
+                self._lost += 1
+                self._monitor.lose_ns(gap.names, gap.since, gap.until, why=gap.why)
+                self._come_to(gap.since if gap.until is None else gap.until)
+            case Told.FOUND:
+                self._monitor.found_ns(gap.names, gap.since)
+                self._come_to(gap.since)
+            case Told.MISSED:
+                self._lost += 1
+                self._monitor.miss(gap.names, why=gap.why)
 
-    def _lose_one(self, t: int, values: Values, *, is_late: bool) -> None:
-        """What a sample held is unknown, from its instant on or, if that is over, from now on."""
-        self._lost += 1
-        kind = HealthKind.LATE if is_late else HealthKind.DROPPED
-        self._note(kind, 1, t, "left out" if is_late else f"refused, as {self._refusal}")
+    def _declared(self, names: Iterable[str]) -> list[str]:
         checked = self._watch.spec.checked
-        names = {name: None for name in values if name in checked.signals or name in checked.events}
-        self._step(t if self.floor is None else max(t, self.floor), names)
+        return [name for name in names if name in checked.signals or name in checked.events]
 
-    def _step(self, t: int, values: Values) -> None:
-        self._monitor.step_ns(t, values)
-        self.last = t
+    def _come_to(self, t: int) -> None:
+        """Time has come to an instant of what this robot sent or would have."""
+        self.last = t if self.last is None else max(self.last, t)
         self._since = t if self._since is None else self._since
         self._is_held_back = self._watch.settle == "next"
-        self.floor = t if self._is_held_back else t + 1
-
-    def _note(self, kind: HealthKind, count: int, first: int | None, remark: str) -> None:
-        known = self._health.get((kind, remark[:_SAME]))
-        if known is None:
-            known = Health(kind, "samples", 0, first, self._watch.ids, remark)
-        self._health[kind, remark[:_SAME]] = replace(known, count=known.count + count)
+        floor = self.last if self._is_held_back else self.last + 1
+        self.floor = floor if self.floor is None else max(self.floor, floor)
 
     def pass_to(self, t: int) -> None:
         """Learn that no sample before an instant will come."""

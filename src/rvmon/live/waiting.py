@@ -1,16 +1,14 @@
-"""Samples that wait to be judged, and what was lost because too many did."""
+"""Samples that wait to be judged, and what was lost because too many did or before they came."""
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from typing import Any
 
 Values = Mapping[str, Any]
-
-_MOST_MOMENTS = 100_000
-"""So many instants of what was lost in a row are kept: some ten megabytes."""
 
 
 @dataclass(slots=True)
@@ -28,52 +26,58 @@ class Offered:
     values: Values
 
 
-@dataclass(frozen=True, slots=True)
-class Names:
-    """What samples speak of.
-
-    Attributes:
-        signals: the signals.
-        momentary: what says something of an instant only: events; `None`: all, as each sample is a
-            position.
-        ignoring: signals that cannot be declared unknown, as they `ignore NaN`.
-    """
-
-    signals: tuple[str, ...]
-    momentary: frozenset[str] | None
-    ignoring: frozenset[str]
-
-
 @dataclass(slots=True)
-class Lost:
+class Dropped:
     """Samples of a robot, one after the other, for which there was no room.
 
     Attributes:
         robot: whose they were.
-        t: the instant of the first, ns.
+        first: the least instant of one, ns.
+        last: the greatest.
         count: how many they were.
         names: what they spoke of.
-        moments: the instants at which there may be something, with the names of what: occurrences
-            of events, positions; `None` if there were too many to be kept, or what was lost cannot
-            be declared unknown.
     """
 
     robot: str
-    t: int
+    first: int
+    last: int
     count: int = 0
     names: set[str] = field(default_factory=set)
-    moments: list[tuple[int, tuple[str, ...]]] | None = field(default_factory=list)
 
-    def add(self, sample: Offered, known: Names) -> None:
+    def add(self, sample: Offered) -> None:
         """One more sample is lost."""
         self.count += 1
         self.names.update(sample.values)
-        gone = tuple(name for name in sample.values if _is_momentary(name, sample.values, known))
-        if gone and self.moments is not None:
-            self.moments.append((sample.t, gone))
-        too_many = self.moments is not None and len(self.moments) > _MOST_MOMENTS
-        if too_many or not known.ignoring.isdisjoint(_known(sample.values)):
-            self.moments = None
+        self.first, self.last = min(self.first, sample.t), max(self.last, sample.t)
+
+
+class Told(Enum):
+    """What is told of names that a source may have spoken of."""
+
+    LOST = "lost"
+    FOUND = "found"
+    MISSED = "missed"
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """What a door lost of a robot; see `Monitor.lose_ns`, `found_ns` and `miss`.
+
+    Attributes:
+        robot: whose it was.
+        told: what.
+        names: of signals and events; `None`: all.
+        since: the first instant at which they are lost, ns, or the last of those that are found.
+        until: the last instant; `None`: they stay lost.
+        why: a phrase for people.
+    """
+
+    robot: str
+    told: Told
+    names: Collection[str] | None
+    since: int = 0
+    until: int | None = None
+    why: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,88 +91,66 @@ class NewRun:
     why: str
 
 
-Entry = Offered | Lost | NewRun
+Entry = Offered | Dropped | Gap | NewRun
 
 
 class Waiting:
     """A queue with room for so many samples; what finds it full is lost, and counted.
 
-    What was lost stands in the queue where it would have stood: one `Lost` for all samples of a
+    What was lost stands in the queue where it would have stood: one `Dropped` for all samples of a
     robot between two that were taken, so that at most twice as many entries wait as there is room
-    for. The first two values of a signal always find room: before them it is not born, and what is
-    lost then would be excused (SEMANTICS 1). It is not locked.
+    for. It is not locked.
 
     Args:
         room: so many samples may wait.
-        names: what samples speak of.
+
+    Attributes:
+        robots: those that were heard of.
     """
 
-    def __init__(self, room: int, names: Names) -> None:
+    def __init__(self, room: int) -> None:
         self.room = room
+        self.robots: set[str] = set()
         self._entries: deque[Entry] = deque()
-        self._losing: dict[str, Lost] = {}
-        self.expect(names)
+        self._losing: dict[str, Dropped] = {}
 
     def __len__(self) -> int:
         return len(self._entries)
-
-    def expect(self, names: Names) -> None:
-        """Samples are of another specification from now on."""
-        self._names = names
-        self._unborn: dict[str, Counter[str]] = {}
 
     @property
     def is_full(self) -> bool:
         """Whether the next sample would be lost."""
         return len(self._entries) >= self.room
 
-    @property
-    def robots(self) -> Collection[str]:
-        """The robots whose samples came."""
-        return self._unborn.keys()
-
     def put(self, sample: Offered) -> bool:
         """Have a sample wait; return whether there was room."""
-        unborn = self._unborn.get(sample.robot)
-        if unborn is None:
-            unborn = self._unborn[sample.robot] = Counter(dict.fromkeys(self._names.signals, 2))
-        if len(self._entries) < self.room or (unborn and _bears(unborn, sample.values)):
-            if unborn:
-                unborn -= Counter(_known(sample.values))
+        self.robots.add(sample.robot)
+        if not self.is_full:
             self._losing.pop(sample.robot, None)
             self._entries.append(sample)
             return True
         lost = self._losing.get(sample.robot)
         if lost is None:
-            lost = self._losing[sample.robot] = Lost(sample.robot, sample.t)
+            lost = self._losing[sample.robot] = Dropped(sample.robot, sample.t, sample.t)
             self._entries.append(lost)
-        lost.add(sample, self._names)
-        if lost.moments is None:  # a new run will begin
-            del self._unborn[sample.robot]
+        lost.add(sample)
         return False
+
+    def put_gap(self, gap: Gap) -> None:
+        """Have it be told behind all that waits."""
+        self.robots.add(gap.robot)
+        self._losing.pop(gap.robot, None)
+        self._entries.append(gap)
 
     def put_new_run(self, why: str) -> None:
         """Have new runs begin behind all that wait."""
         self._losing.clear()
-        self._unborn.clear()
         self._entries.append(NewRun(why))
 
     def take(self, most: int) -> list[Entry]:
         """Take what has waited longest, at most so many entries."""
         taken = [self._entries.popleft() for _ in range(min(most, len(self._entries)))]
         for one in taken:
-            if isinstance(one, Lost) and self._losing.get(one.robot) is one:
+            if isinstance(one, Dropped) and self._losing.get(one.robot) is one:
                 del self._losing[one.robot]
         return taken
-
-
-def _known(values: Values) -> list[str]:
-    return [name for name, value in values.items() if value is not None and value == value]
-
-
-def _is_momentary(name: str, values: Values, known: Names) -> bool:
-    return known.momentary is None or (name in known.momentary and values[name] is not False)
-
-
-def _bears(unborn: Collection[str], values: Values) -> bool:
-    return any(name in unborn for name in _known(values))

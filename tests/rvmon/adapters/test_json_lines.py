@@ -95,6 +95,7 @@ def test_a_field_names_the_robot():
     lines = [
         b'{"t": 0, "id": "left", "x": 0}',
         b'{"t": 0, "id": 2, "x": 3}',
+        b'{"t": 0.5, "id": 2}',
         b'{"t": 1, "x": 0}',
         b'{"t": 2, "id": "left"}',
     ]

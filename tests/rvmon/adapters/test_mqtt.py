@@ -100,7 +100,7 @@ def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
         publish("arm", '{"speed": 0.5}')
         _until(lambda: live.status()[""].samples == 1 if live.status() else False)
         broker.stop()
-        _until(lambda: objects.unread == 1)
+        _until(lambda: live.status()[""].lost == 1)
         broker.start()
         while not failed.wait(0.1):
             publish("arm", '{"speed": 5}')

@@ -137,7 +137,7 @@ def test_a_message_that_does_not_fit_is_unknown(feed):
     driver.work()
     (report,) = driver.close()[""]
     assert report.verdicts["R1"] == "I"
-    assert [one.name for one in report.health if one.kind == "none"] == ["base.speed"]
+    assert [one.name for one in report.health if one.kind == "dropped"] == ["base.speed"]
 
 
 def test_the_clock_follows_the_topic_of_that_name():

@@ -73,7 +73,7 @@ def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path):
     told = []
     monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
     monitor.step_ns(0, {"speed": 0.5, "p": True})
-    monitor.lose(["p", "other"])
+    monitor.miss(["p", "go"])
     monitor.step_ns(9, {"go": True})
     monitor.step_ns(30_000_000, {})
     assert not told

@@ -239,4 +239,4 @@ def test_margins_are_intervals_where_a_source_was_lost():
     monitor.lose(["x"], since=2, until=3)
     monitor.step(5, {"x": 2.0})
     [figure] = monitor.finish(6)
-    assert (figure.low, figure.high) == (float("-inf"), 3.0)
+    assert (figure.robustness.low, figure.robustness.high) == (float("-inf"), 3.0)

@@ -52,7 +52,7 @@ def test_the_buffer_of_delayed_samples_is_bounded(monkeypatch):
         monitor.step(t, {"x": 1})
     monitor.step(1, {"x": 2})
     found = {(one.name, one.count, one.first) for one in monitor.finish().health}
-    assert {("buffer", 3, 0), ("samples", 1, 10**9)} <= found
+    assert {("buffer", 3, 0), ("x", 1, 10**9)} <= found
 
 
 def test_samples_are_put_in_order_within_the_allowed_delay():
