@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
-from itertools import islice, takewhile
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import opened
@@ -14,7 +13,7 @@ from rvmon.readers.source import Source
 from rvmon.session import Spec
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.trace.sample import Sample, Trace
+from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -31,16 +30,6 @@ MOST_LATE_IN_ALL = 10_000
 """The same of all requirements, of which each gets its share, and at least one."""
 
 
-def in_order(recording: Iterable[Sample]) -> list[Sample]:
-    """The samples in order of time, equal stamps merged (under `max delay` they may come late)."""
-    merged: dict[int, Sample] = {}
-    for sample in recording:
-        known = merged.get(sample.t)
-        values = sample.values if known is None else {**known.values, **sample.values}
-        merged[sample.t] = Sample(sample.t, values)
-    return [merged[t] for t in sorted(merged)]
-
-
 def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals: bool) -> Report:
     """The report with the cover goals, and with what only the whole recording shows.
 
@@ -52,15 +41,8 @@ def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals
     if end is None or not can_be_read_again(trace):
         return report
 
-    @cache
-    def samples() -> Sequence[Sample]:
-        read: Iterable[Sample] = spec.recording(trace)
-        if spec.checked.max_delay is None:  # what comes behind may be broken
-            read = takewhile(lambda sample: sample.t <= end, read)
-        return [sample for sample in in_order(read) if sample.t <= end]
-
     if goals and spec.checked.covers:
-        report = replace(report, goals=_goals(spec, trace, end, names, samples))
+        report = replace(report, goals=_goals(spec, trace, end))
 
     late, silent = _missed(spec, report), _silent(report)
     if not late and not silent:
@@ -71,10 +53,7 @@ def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals
 
     questions = [question for _, waits in late.values() for question in waits.values()]
     questions += [parts_asked(spec.requirements[name]) for name in silent]
-    if spec.checked.max_delay is None:
-        pieces = _read_again(spec, recording, questions, end)
-    else:
-        pieces = samples()
+    pieces = _read_again(spec, recording, questions, end)
     seen = look_through(spec.checked, questions, pieces, end, names)
     arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
@@ -121,18 +100,8 @@ def _silent(report: Report) -> list[str]:
     return [name for name in report.verdicts if report.is_silent(name)]
 
 
-def _goals(
-    spec: Spec,
-    trace: str,
-    end: int,
-    names: frozenset[str] | None,
-    samples: Callable[[], Sequence[Sample]],
-) -> Mapping[str, Verdict]:
+def _goals(spec: Spec, trace: str, end: int) -> Mapping[str, Verdict]:
     from rvmon.verdict.cover_goals import goal_verdicts, goals_as_requirements
 
     goals = Spec(goals_as_requirements(spec.checked))
-    if spec.checked.max_delay is None:
-        source = Source(spec.recording(trace), end, is_cut=True)
-    else:
-        source = Source(Trace(tuple(samples()), names, end))
-    return goal_verdicts(goals.judge(source))
+    return goal_verdicts(goals.judge(Source(spec.recording(trace), end, is_cut=True)))

@@ -72,12 +72,11 @@ def write_files(
         return [] if trace == "-" else list(spec.recording(place))
 
     if arguments.mcap:
-        from rvmon.cli.post_analysis import in_order
         from rvmon.export.verdicts_mcap import write_verdicts
 
         for report in reports:
             end = report.end or 0
-            samples = [one for one in in_order(read(report.trace)) if one.t <= end]
+            samples = [one for one in read(report.trace) if one.t <= end]
             write_verdicts(arguments.mcap, spec.checked, report, samples)
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages

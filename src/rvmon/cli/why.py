@@ -56,7 +56,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
-    from rvmon.cli.post_analysis import in_order
     from rvmon.explain.dissect import dissect
     from rvmon.explain.not_triggered import why_not_triggered
     from rvmon.loading import load
@@ -74,8 +73,8 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     mapped = spec.schema.named
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
     until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
-    samples = in_order(shown_while_reading(recording, iter(recording)))
-    samples = [one for one in samples if until is None or one.t <= until]
+    read = shown_while_reading(recording, iter(recording))
+    samples = [one for one in read if until is None or one.t <= until]
     monitor = spec.monitor(only=[name], sources=recording.names)
     with busy(f"evaluating {name}"):
         for sample in samples:

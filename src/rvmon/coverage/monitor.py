@@ -93,8 +93,6 @@ class SpecCoverage:
         >>> {item: hit.count for item, hit in hits["size"].items()}
         {'low': 2, 'high': 1}
         """
-        if self.spec.max_delay is not None:  # its samples are put in order first
-            return self._of_samples(recording, end, requirements=requirements)
         source = Source(recording, end, is_cut=True)
         watched = _Watched(self, requirements=requirements)
         runs = [
@@ -106,13 +104,6 @@ class SpecCoverage:
         for run in runs:
             run.core.finish(source.end)
         return watched.hits([run.core for run in runs])
-
-    def _of_samples(self, recording: Recording, end: int | None, *, requirements: bool) -> Hits:
-        monitor = self.monitor(sources=recording.names, requirements=requirements)
-        for sample in recording:
-            if end is None or sample.t <= end:
-                monitor.step_ns(sample.t, sample.values)
-        return monitor.finish_ns(recording.end if end is None else end)
 
 
 class _Watched:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import planned_core
 from rvmon.monitor.evaluate import open_trace
 from rvmon.monitor.judge import Asked, judge_source
-from rvmon.monitor.robustness.monitor import RobustnessMonitor
-from rvmon.monitor.robustness.values import FIGURES, Margins, Measured, margins_from
+from rvmon.monitor.robustness.values import FIGURES, Margins
 from rvmon.readers.reading import Reading
 from rvmon.readers.source import Source
 from rvmon.trace.sample import Sample
@@ -22,16 +21,6 @@ if TYPE_CHECKING:
 
 _ROWS = 4096
 """So many are measured, and their figures taken, at once: they suit a cache of the processor."""
-
-
-class _Run(Protocol):
-    """Measures a recording."""
-
-    def take(self, piece: Batch | Sample) -> None:
-        """Take what comes next."""
-
-    def margins(self) -> Margins:
-        """End the run."""
 
 
 def margins_of(
@@ -55,8 +44,8 @@ def margins_of(
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     source = Source(recording, until)
-    run = _run_of(compiled, source, only, streams=streams)
-    for piece in _pieces(compiled, source):
+    run = _Run(compiled, source, only, streams=streams)
+    for piece in source.pieces():
         run.take(piece)
     return run.margins()
 
@@ -67,7 +56,7 @@ def judge_and_measure(compiled: CompiledSpec, source: Source, asked: Asked) -> R
     The recording is read once: each piece is measured, then judged. Arguments and errors are those
     of `judge_source`.
     """
-    run = _run_of(compiled, source, asked.only, streams=False)
+    run = _Run(compiled, source, asked.only, streams=False)
 
     def shown(pieces: Iterator[Any]) -> Iterator[Any]:
         for piece in source.shown(pieces):
@@ -89,22 +78,8 @@ def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:
         run.take(piece if until is None else piece.up_to(until))
 
 
-def _pieces(compiled: CompiledSpec, source: Source) -> Iterator[Batch | Sample]:
-    if compiled.checked.max_delay is None:
-        return source.pieces()
-    return source.samples(ordered=False)
-
-
-def _run_of(
-    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
-) -> _Run:
-    if compiled.checked.max_delay is None:
-        return _OrderedRun(compiled, source, only, streams=streams)
-    return _DelayedRun(compiled, source, only, streams=streams)
-
-
-class _OrderedRun:
-    """A run of the core over a recording in order."""
+class _Run:
+    """Measures a recording."""
 
     def __init__(
         self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
@@ -130,22 +105,3 @@ class _OrderedRun:
         self._run.core.finish(self._end)
         self._found.add(self._run.core.margins())
         return self._found.margins()
-
-
-class _DelayedRun:
-    """A monitor that puts samples in order, of which some may come late."""
-
-    def __init__(
-        self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
-    ) -> None:
-        self._monitor = RobustnessMonitor(compiled, only, "now", source.names, streams=streams)
-        self._found: list[Measured] = []
-        self._end = source.end
-
-    def take(self, piece: Batch | Sample) -> None:
-        if not isinstance(piece, Sample):
-            raise TypeError("samples that may come late are taken one by one")
-        self._found += self._monitor.step_ns(piece.t, piece.values)
-
-    def margins(self) -> Margins:
-        return margins_from([*self._found, *self._monitor.finish_ns(self._end)])

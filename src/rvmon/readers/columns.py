@@ -49,7 +49,8 @@ class TableRecording:
             columns: by name; undeclared ones are passed over, and so is a signal or event by the
                 name of the time column, as in files.
             schema: the declared names, and how the table gives them.
-            ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
+                put in order instead.
 
         Raises:
             TraceError: there is no such time column.
@@ -68,7 +69,7 @@ class TableRecording:
         Raises:
             TraceError: as going through it does.
         """
-        return self.rows.pieces(self._batches())
+        return self.rows.pieces(self._batches()) if self.rows.ordered else iter(self)
 
     def _batches(self) -> Iterator[Batch | Iterator[Row]]:
         from rvmon.readers.table_batch import batch_of_table
@@ -79,7 +80,7 @@ class TableRecording:
             yield self._read()
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of the table, equal stamps merged.
+        """Samples in order of time, equal stamps merged.
 
         Raises:
             TraceError: a column is none, they differ in length, or a row is wrong.

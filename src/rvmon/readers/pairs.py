@@ -34,7 +34,8 @@ class PairRecording:
         Args:
             trace: an iterable.
             schema: the declared names; of others values are left as they are.
-            ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
+                put in order instead.
 
         Raises:
             TraceError: it is no iterable.

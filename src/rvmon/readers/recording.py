@@ -65,7 +65,8 @@ class FileRecording:
             path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`; text may be packed
                 (`.csv.gz`, `.jsonl.zst`), and any may be an address.
             schema: the names that the spec declares, and how the recording gives them.
-            ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
+                put in order instead.
 
         Raises:
             TraceError: the file cannot be opened, its ending is unknown or its header wrong.
@@ -119,7 +120,7 @@ class FileRecording:
         self.ignored.update(dict.fromkeys(layout.ignored, 1))
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of the file, equal stamps merged.
+        """Samples in order of time, equal stamps merged.
 
         Raises:
             TraceError: with file and line; the samples before it have been given out.
@@ -152,7 +153,7 @@ class FileRecording:
             TraceError: with file and line.
         """
         of_columns = self._messages is None and can_be_read_again(self.path)
-        if not of_columns or self._has_less_than(TINY):
+        if not (of_columns and self._ordered) or self._has_less_than(TINY):
             yield from self
             return
         with self._named_errors():

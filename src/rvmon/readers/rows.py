@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
 from rvmon.errors import TimeOrderError
@@ -17,6 +18,9 @@ from rvmon.trace.time import format_ticks
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
 
+ROOM = 65_536
+"""So many rows wait at most for those that are late."""
+
 Row = tuple[int, int, Mapping[str, Value]]
 """Number, ticks, what it updates."""
 
@@ -27,9 +31,11 @@ class Rows:
     Args:
         schema: the declared names.
         unit: what a row is called.
-        ordered: whether a stamp before the one above it is an error; not so under `max delay`.
+        ordered: whether a stamp before the one above it is an error. Under `max delay` rows are put
+            in order instead.
 
     Attributes:
+        ordered: as given.
         count: of the rows that were read.
         first: the instants of the first rows, ticks.
         alternations: how known and unknown values follow each other.
@@ -38,7 +44,7 @@ class Rows:
     def __init__(self, schema: Schema, unit: str, *, ordered: bool) -> None:
         self._schema = schema
         self._unit = unit
-        self._ordered = ordered
+        self.ordered = ordered
         self._conflicts = Conflicts()
         self.count = 0
         self.first: list[int] = []
@@ -49,7 +55,7 @@ class Rows:
         """The samples of a source that is read from its start.
 
         Raises:
-            TimeOrderError: a row is before the one above it.
+            TimeOrderError: a row is before the one above it, or late by more than `ROOM` rows.
         """
         self._begin()
         for sample in coalesce(self._in_order(rows), self._schema.events, self._conflicts):
@@ -62,7 +68,7 @@ class Rows:
         What ends a batch comes as a sample: rows of its instant may follow.
 
         Raises:
-            TimeOrderError: a row is before the one above it.
+            TimeOrderError: a row is before the one above it; those of columns are never sorted.
         """
         from rvmon.readers.batch import Batch
         from rvmon.readers.batch_notes import note_batch, without_ignored
@@ -136,8 +142,8 @@ class Rows:
         )
 
     def _in_order(self, rows: Iterable[Row]) -> Iterator[Sample]:
-        for number, t, values in rows:
-            if self._ordered and self._last is not None and t < self._last:
+        for number, t, values in rows if self.ordered else self._sorted(rows):
+            if self._last is not None and t < self._last:
                 raise self._backwards(number, self._last, t)
             self._last = t
             self.count += 1
@@ -145,6 +151,22 @@ class Rows:
                 self.first.append(t)
             # Before equal stamps are merged: what is no update is no other value, either.
             yield Sample(t, updates_in(values, self._schema.ignoring))
+
+    def _sorted(self, rows: Iterable[Row]) -> Iterator[Row]:
+        """Rows by time, those of one instant as they come."""
+        waiting: list[tuple[int, int, Row]] = []
+        for place, row in enumerate(rows):
+            number, t, _ = row
+            if self._last is not None and t < self._last:
+                raise TimeOrderError(
+                    f"{self._unit} {number}: {format_ticks(t)} comes more than {ROOM:,} "
+                    f"{self._unit}s late: sort the recording by time"
+                )
+            heappush(waiting, (t, place, row))
+            if len(waiting) > ROOM:
+                yield heappop(waiting)[2]
+        while waiting:
+            yield heappop(waiting)[2]
 
     def conflicts(self) -> list[Health]:
         """The signals that got two values at one stamp."""

@@ -42,25 +42,18 @@ class Source:
         """The end of the trace in ticks; `None`: its last sample."""
         return self.recording.end if self.until is None else self.until
 
-    def samples(self, *, ordered: bool) -> Iterator[Sample]:
-        """The samples from the first on.
-
-        Args:
-            ordered: whether what comes behind the first that is too late is too late as well: it is
-                not read, and may be broken.
-        """
+    def samples(self) -> Iterator[Sample]:
+        """The samples; what lies behind the end is not read, and may be broken."""
         until, samples = self.until, self.shown(iter(self.read(self.recording)))
         if until is None or not self.is_cut:
             return samples
-        if ordered:
-            return takewhile(lambda sample: sample.t <= until, samples)
-        return (sample for sample in samples if sample.t <= until)
+        return takewhile(lambda sample: sample.t <= until, samples)
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """The recording in order: rows as columns where it has such, else samples."""
         read = getattr(self.recording, "pieces", None)
         if read is None or self.read is not iter:
-            yield from self.samples(ordered=True)
+            yield from self.samples()
             return
         until = self.until if self.is_cut else None
         for piece in self.shown(read()):

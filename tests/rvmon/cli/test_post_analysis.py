@@ -8,7 +8,6 @@ import pytest
 import rvmon
 from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
-from rvmon.cli.post_analysis import in_order
 from rvmon.explain.not_triggered import why_not_triggered
 from rvmon.readers import recording
 
@@ -73,7 +72,7 @@ def test_the_nearest_miss_is_that_of_all_samples(time, until, traces):
     spec = rvmon.loads(text)
     for trace in traces:
         report = judge(spec, trace, Options(until=until)).report
-        samples = [one for one in in_order(spec.recording(trace)) if one.t <= report.end]
+        samples = [one for one in spec.recording(trace) if one.t <= report.end]
         silent = [name for name, verdict in report.verdicts.items() if verdict == "NT"]
         assert len(silent) > 5
         names = spec.recording(trace).names

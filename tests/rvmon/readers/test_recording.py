@@ -147,10 +147,13 @@ def test_what_stands_before_a_broken_line_is_given_out(tmp_path):
         next(stream)
 
 
-def test_unordered_recordings_pass_where_lateness_is_allowed(tmp_path):
-    """Under a watermark the order is the monitor's business."""
-    _, samples = read(tmp_path, "a.csv", "t,n\n1,1\n0.5,1\n", ordered=False)
-    assert [t for t, _ in samples] == [10**9, 5 * 10**8]
+def test_unordered_recordings_pass_where_lateness_is_allowed(tmp_path, monkeypatch):
+    """They are put in order, as far as there is room; what comes later than that is told."""
+    monkeypatch.setattr("rvmon.readers.rows.ROOM", 2)
+    _, samples = read(tmp_path, "a.csv", "t,n\n1,1\n0.5,1\n0.5,2\n", ordered=False)
+    assert [(t, values["n"]) for t, values in samples] == [(5 * 10**8, 2), (10**9, 1)]
+    with pytest.raises(TimeOrderError, match="line 5: 500 ms comes more than 2 lines late"):
+        read(tmp_path, "a.csv", "t,n\n1,1\n2,1\n3,1\n0.5,1\n", ordered=False)
     with pytest.raises(TimeOrderError):
         read(tmp_path, "a.csv", "t,n\n1,1\n0.5,1\n")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, overload
 
@@ -128,17 +128,3 @@ class Margins:
         figures = self.doubtful if attempt.in_doubt else self.attempts
         found = figures.get((attempt.requirement, attempt.number))
         return attempt if found is None else measured_attempt(attempt, found.of(attempt))
-
-
-def margins_from(found: Iterable[Measured]) -> Margins:
-    """The figures of a run, by what they are of."""
-    attempts: dict[Key, Robustness] = {}
-    doubtful: dict[Key, Robustness] = {}
-    streams: dict[str, list[tuple[int, Robustness]]] = {}
-    for one in found:
-        if one.number is None:
-            streams.setdefault(one.requirement, []).append((one.t, one.robustness))
-        else:
-            figures = doubtful if one.in_doubt else attempts
-            figures[one.requirement, one.number] = one.robustness
-    return Margins(attempts, doubtful, streams)
