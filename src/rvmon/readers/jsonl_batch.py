@@ -10,8 +10,8 @@ import io
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import islice
-from operator import attrgetter
+from itertools import islice, repeat
+from operator import attrgetter, is_not
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import msgspec
@@ -22,7 +22,7 @@ from rvmon.readers import line_chunks
 from rvmon.readers.batch import NO, YES, Batch, NotPlainError, Occurrences
 from rvmon.readers.cells import cells_of_values
 from rvmon.readers.csv_batch import whole_pieces
-from rvmon.readers.jsonl_rows import jsonl_samples
+from rvmon.readers.jsonl_rows import count_of_names, jsonl_samples, names_in
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.rows import Row
@@ -39,6 +39,8 @@ _ANYTHING: Any = bool | int | float | str | list[Any] | None | _Given
 """What an undeclared name may hold; objects may hold declared names."""
 _EVENT: Any = bool | dict[str, bool | int | float | str | None] | None | _Given
 
+_WITH_NAMES = {dict, list}
+
 _LOOKED_AT = 50
 """So many lines of a piece say what its lines look like."""
 
@@ -54,12 +56,14 @@ class _Shape:
         stamps: says their unit.
         places: by declared name, where its value is in a decoded line.
         ignored: the same of names that are not declared, in the order of the line.
+        objects: of each object in a line, where the values in it are.
     """
 
     stamps: Stamps
     decode: Callable[[bytes], list[Any]] = list
     places: dict[str, str] = field(default_factory=dict)
     ignored: dict[str, str] = field(default_factory=dict)
+    objects: list[list[str]] = field(default_factory=list)
 
 
 def jsonl_batches(
@@ -123,6 +127,8 @@ def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
         raise NotPlainError("a line is none of those objects") from None
     if len(rows) != lines:
         raise NotPlainError("its lines are not all alike")
+    if names_in(text) != _names_given(rows, shape):
+        raise NotPlainError("a name may stand twice in a line")
     batch = Batch(
         instants_of([row.stamp for row in rows], shape.stamps),
         {
@@ -143,6 +149,30 @@ def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
         if count:
             ignored[name] += count
     return batch
+
+
+def _names_given(rows: Sequence[Any], shape: _Shape) -> int:
+    """How many names the lines have, each of those that objects have once."""
+    given = {"stamp": len(rows)}
+    inside = 0
+    for place in (*shape.places.values(), *shape.ignored.values()):
+        cells = _cells(rows, place)
+        given[place] = sum(map(is_not, cells, repeat(msgspec.UNSET)))
+        if not _WITH_NAMES.isdisjoint(map(type, cells)):
+            inside += sum(map(count_of_names, cells))
+    objects = sum(
+        len(rows)
+        if max((given[place] for place in leaves), default=0) == len(rows)
+        else _with_any(rows, leaves)
+        for leaves in shape.objects
+    )
+    return sum(given.values()) + inside + objects
+
+
+def _with_any(rows: Sequence[Any], places: Sequence[str]) -> int:
+    """How many rows have a value in one of these places."""
+    cells = zip(*(_cells(rows, place) for place in places), strict=True)
+    return sum(any(one is not msgspec.UNSET for one in row) for row in cells)
 
 
 def _shape_of(text: bytes, schema: Schema) -> _Shape:
@@ -211,7 +241,11 @@ def _fields(
             type_ = _EVENT
             shape.places[name] = place + own
         elif isinstance(value, dict):
+            before = len(shape.places), len(shape.ignored)
             inside = _fields(value, f"{name}.", f"{place}{own}.", schema, shape)
+            leaves = islice(shape.places.values(), before[0], None)
+            others = islice(shape.ignored.values(), before[1], None)
+            shape.objects.append([*leaves, *others])
             object_ = line_struct(*inside)
             fields.append((own, object_, msgspec.field(default_factory=object_)))
             continue

@@ -29,6 +29,11 @@ _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 """The first half of an escaped surrogate pair without the second."""
 
 
+_APART = re.compile(r'"\s+:')
+_APART_IN_BYTES = re.compile(rb'"\s+:')
+"""What looks like the end of a name that its colon does not follow at once."""
+
+
 def jsonl_samples(
     lines: Iterable[str], schema: Schema, ignored: Counter[str]
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
@@ -75,19 +80,55 @@ def decoded(line: Line, decode: Callable[[Line], Any]) -> Any:
 
     Raises:
         msgspec.DecodeError: it is no JSON.
-        TraceError: a number is too large.
+        TraceError: a number is too large, or a name stands twice in an object.
     """
     try:
-        return decode(line)
+        value = decode(line)
     except msgspec.DecodeError:
         if _NOT_FINITE.search(line if isinstance(line, str) else line.decode("utf-8", "replace")):
             try:
-                return json.loads(line, parse_float=double_of)
+                return json.loads(line, parse_float=double_of, object_pairs_hook=_once_each)
             except TraceError:
                 raise
             except ValueError:  # what was wrong with it first is reported
                 pass
         raise
+    if names_in(line) != count_of_names(value):  # what decodes it takes the last of equal names
+        json.loads(line, object_pairs_hook=_once_each)
+    return value
+
+
+def names_in(text: str | bytes) -> int:
+    """How many names objects of a text have, or another number than that, where it is not plain.
+
+    >>> names_in('{"a": "b:c", "a": {"d":1}}'), names_in('{"a" : 1}')
+    (3, -1)
+    """
+    if isinstance(text, str):
+        named, colons = text.count('":'), text.count(":")
+        return -1 if colons != named and _APART.search(text) else named
+    named, colons = text.count(b'":'), text.count(b":")
+    return -1 if colons != named and _APART_IN_BYTES.search(text) else named
+
+
+def count_of_names(value: object) -> int:
+    """How many names objects in a decoded value have.
+
+    >>> count_of_names({"a": 1, "b": [{"c": {}}]})
+    3
+    """
+    if isinstance(value, dict):
+        return len(value) + sum(map(count_of_names, value.values()))
+    return sum(map(count_of_names, value)) if isinstance(value, list) else 0
+
+
+def _once_each(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object of which each name stands there once."""
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        [(name, count)] = Counter(name for name, _ in pairs).most_common(1)
+        raise TraceError(f"`{shorten(name)}` stands {count} times in one object")
+    return found
 
 
 def read_object(
@@ -182,6 +223,8 @@ def _collect(
         if known and schema.gaps and schema.gaps.holds(value):
             continue
         if name in schema.signals:
+            if name in values:
+                raise TraceError(f"two fields of the line stand for `{shorten(name)}`")
             values[name] = _scalar(value, schema.signals[name], name)
         elif name in schema.events:
             values[name] = _occurrence(value, schema.events[name], name, schema.gaps)
