@@ -42,7 +42,7 @@ def parquet_file(path: str | Path) -> Any:
     except ImportError:
         raise not_installed("Parquet", "pyarrow") from None
     try:
-        return pyarrow.parquet.ParquetFile(path)
+        return pyarrow.parquet.ParquetFile(path, page_checksum_verification=True)
     except MemoryError:  # of Arrow, too: the file may be as it should be
         raise
     except pyarrow.ArrowException as error:

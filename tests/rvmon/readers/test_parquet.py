@@ -1,5 +1,7 @@
 """Parquet files of odd columns, and damaged ones: read as rows are, or refused with the cause."""
 
+import struct
+
 import pyarrow as pa
 import pytest
 from pyarrow import parquet
@@ -85,3 +87,19 @@ def test_sizes_and_offsets_that_overflow_are_refused(most, tmp_path):
         else:
             assert found == expected
     assert refused
+
+
+def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path):
+    """Pages have one, if their writer gave it; the value would be a number as any other."""
+    path = tmp_path / "a.parquet"
+    table = pa.table({"t": [0.0, 1.0], "x": [1.25, 1.5]})
+    parquet.write_table(
+        table, path, write_page_checksum=True, compression="none", use_dictionary=False
+    )
+    spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n")
+    assert spec.evaluate(path).verdicts["R"] == "P"
+    data = path.read_bytes()
+    assert data.count(page := struct.pack("<dd", 1.25, 1.5)) == 1
+    path.write_bytes(data.replace(page, struct.pack("<dd", 1.25, 1.75)))
+    with pytest.raises(rvmon.TraceError, match="CRC"):
+        spec.evaluate(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -11,7 +12,7 @@ import msgspec
 
 from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.readers.jsonl_rows import decoded
-from rvmon.readers.messages.ros import BagMessages, ros_topic
+from rvmon.readers.messages.ros import BagMessages, refuse_fewer, ros_topic
 from rvmon.readers.messages.topic import Message, Messages, Topic
 from rvmon.readers.values import first_line, shorten
 from rvmon.trace.schema import Kind
@@ -61,7 +62,7 @@ def mcap_reader(file: BinaryIO) -> Any:
         from mcap.reader import make_reader
     except ImportError:
         raise not_installed("MCAP", "mcap") from None
-    return make_reader(file)
+    return make_reader(file, validate_crcs=True)
 
 
 class _OtherMessages:
@@ -84,6 +85,7 @@ class _OtherMessages:
         statistics = None if summary is None else summary.statistics
         self.end: int | None = None
         self.count = 0
+        self._counted: Mapping[int, int] = {}
         if summary is not None and statistics is not None:
             channels = [
                 (summary.schemas.get(channel.schema_id), channel)
@@ -91,6 +93,7 @@ class _OtherMessages:
             ]
             self.count = statistics.message_count
             self.end = statistics.message_end_time if self.count else None
+            self._counted = statistics.channel_message_counts
         else:
             found = {}
             for schema, channel, message in self._reader.iter_messages(log_time_order=False):
@@ -143,8 +146,10 @@ class _OtherMessages:
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, in the order in which they were recorded."""
+        found: Counter[int] = Counter()
         with mcap_errors():
             for _, channel, message in self._reader.iter_messages(topics=list(topics)):
+                found[channel.id] += 1
                 try:
                     content = self._decoders[channel.id](message.data)
                 except MemoryError:
@@ -155,6 +160,8 @@ class _OtherMessages:
                         f"({first_line(error)})"
                     ) from None
                 yield channel.topic, message.log_time, content
+        counted = Counter({one: self._counted.get(one, 0) for one in found})
+        refuse_fewer(found.total(), counted.total())
 
     def close(self) -> None:
         """Close the file."""

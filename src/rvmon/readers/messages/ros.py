@@ -79,7 +79,9 @@ class BagMessages:
             return
         decoders = self._decoders
         with bag_errors(self._form):
+            found = 0
             for connection, t, raw in self._reader.messages(wanted):
+                found += 1
                 try:
                     content = decoders[connection.id](raw)
                 except MemoryError:
@@ -90,10 +92,24 @@ class BagMessages:
                         f"not fit its definition ({first_line(error)})"
                     ) from None
                 yield connection.topic, t, content
+        refuse_fewer(found, sum(one.msgcount for one in wanted))
 
     def close(self) -> None:
         """Close the files."""
         self._reader.close()
+
+
+def refuse_fewer(found: int, counted: int) -> None:
+    """Refuse a recording that lacks messages of those that are read.
+
+    Raises:
+        TraceError: it says that there are more.
+    """
+    if found < counted:
+        raise TraceError(
+            f"holds {found:,} messages of the topics that are read, and says itself that it has "
+            f"{counted:,}: copy it again, or reindex it"
+        )
 
 
 @cache

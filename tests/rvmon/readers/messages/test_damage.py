@@ -1,6 +1,8 @@
 """Bags and MCAP files that cannot be read, or lack what is read: place, cause, fix."""
 
+import sqlite3
 import struct
+from contextlib import closing
 
 import pytest
 from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
@@ -10,7 +12,7 @@ from rvmon.cli import main
 from rvmon.errors import UnknownNameError
 
 pytest.importorskip("rosbags")
-pytest.importorskip("mcap")
+CompressionType = pytest.importorskip("mcap.writer").CompressionType
 
 SPEC = """
 spec base
@@ -215,4 +217,23 @@ def test_a_size_beyond_the_memory_is_told(tmp_path, spec):
     data[8 + 8] = 0x1E
     file.write_bytes(data)
     with pytest.raises(rvmon.TraceError, match="a size in it is beyond the memory"):
+        spec.evaluate(path)
+
+
+def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
+    """A chunk of MCAP has one; the value would be a number as any other."""
+    path = write_json_mcap(tmp_path / "a.mcap", SENT, compression=CompressionType.NONE)
+    data = path.read_bytes()
+    assert data.count(b'{"data": 0.5}') == 1
+    path.write_bytes(data.replace(b'{"data": 0.5}', b'{"data": 9.5}'))
+    with pytest.raises(rvmon.TraceError, match=r"a\.mcap: cannot be read as MCAP \(crc"):
+        spec.evaluate(path)
+
+
+def test_a_bag_that_counts_more_messages_than_it_has_is_told(tmp_path, spec):
+    """A database of ROS 2 does not see that rows are gone; `metadata.yaml` has their number."""
+    path, file = written(tmp_path, "sqlite3")
+    with closing(sqlite3.connect(file)) as database, database:
+        database.execute("delete from messages where id > 1500")
+    with pytest.raises(rvmon.TraceError, match=r"holds 7\d\d messages of .* that it has 800: copy"):
         spec.evaluate(path)
