@@ -99,7 +99,8 @@ def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path):
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n")
     assert spec.evaluate(path).verdicts["R"] == "P"
     data = path.read_bytes()
-    assert data.count(page := struct.pack("<dd", 1.25, 1.5)) == 1
+    page = struct.pack("<dd", 1.25, 1.5)
+    assert data.count(page) == 1
     path.write_bytes(data.replace(page, struct.pack("<dd", 1.25, 1.75)))
     with pytest.raises(rvmon.TraceError, match="CRC"):
         spec.evaluate(path)
