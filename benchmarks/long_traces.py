@@ -32,7 +32,7 @@ from rvmon.automaton.location import PASSED, Token
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
-from rvmon.formula.state import FALSE, TRUE, State, StateOp
+from rvmon.formula.state import FALSE, TRUE, Elapsed, State, StateOp
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
 from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
@@ -154,6 +154,8 @@ def _holds(state: State, sample: Sample) -> bool:
             return bool(sample.values[name])
         case StateOp.LEAF, Constant(value=value):
             return value
+        case StateOp.LEAF, Elapsed(duration=0):  # each sample is a position
+            return True
         case StateOp.NOT, _:
             return not _holds(state.args[0], sample)
         case StateOp.AND, _:

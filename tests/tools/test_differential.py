@@ -72,11 +72,13 @@ class Echo:
 
     def _do(self, action: Sample | int) -> Sequence[Attempt]:
         self.case = replace(self.case, actions=(*self.case.actions, action))
+        reached = max(one.t if isinstance(one, Sample) else one for one in self.case.actions)
         triggers = {name: r.trigger for name, r in self.case.spec.requirements.items()}
         new = [
             attempt
             for attempt in judge(self.case).attempts
             if attempt.decision is Decision.PREFIX
+            and attempt.decided <= reached  # at its end time comes to the tick behind it
             and (attempt.requirement, attempt.number) not in self.told
             and getattr(triggers[attempt.requirement], "bound", None) != "end"
         ]

@@ -32,7 +32,7 @@ from rvmon.automaton.location import location_of, normalise
 from rvmon.formula.core import Literal, Sense, Until
 from rvmon.formula.progress import step
 from rvmon.formula.residual import NO_CLOCK, Clause, Residual, TooManyClausesError
-from rvmon.formula.state import State
+from rvmon.formula.state import Elapsed, State
 
 MOST_TRIED = 200
 """Steps of states, and combinations of regions in which they might be made."""
@@ -222,13 +222,18 @@ def _left_open(literal: Literal) -> Residual:
 
 
 def _without_literals(clause: Clause) -> Clause | None:
-    """What a clause owes later; `None` if its literals contradict each other."""
+    """What a clause owes later; `None` if no letter satisfies its literals.
+
+    All that comes is there: nothing is lost of what is still possible.
+    """
     seen: dict[State, Sense] = {}
     pending = []
     for node, clock in clause:
         if not isinstance(node, Literal):
             pending.append((node, clock))
-        elif seen.setdefault(node.proposition, node.sense) is not node.sense:
+            continue
+        is_blank = node.proposition.leaf == Elapsed(0) and node.sense is not Sense.TRUE
+        if is_blank or seen.setdefault(node.proposition, node.sense) is not node.sense:
             return None
     return frozenset(pending)
 

@@ -419,7 +419,7 @@ bool network_outlasts(run *r, int32_t index, const attempt *x);
 /* ---- watch.c: what is kept beside what becomes of attempts */
 bool begin_watch(home *h);
 void watch(run *r, int64_t t);
-void end_watch(run *r, int64_t end);
+void end_watch(run *r, int64_t end, int64_t reached);
 
 /* ---- cover.c: what runs hit of coverpoints and crosses */
 bool begin_cover(home *h);

@@ -352,7 +352,6 @@ void home_come_to(home *h, int64_t end)
         pass_all(h, end);
     } else {
         through(h->root, end, false);
-        end_watch(h->root, end);
     }
     for (one = h->root; one != NULL; one = following(h, one)) {
         for (i = 0; i < h->part->plan->judges.count; i++) {
@@ -366,6 +365,9 @@ void home_close(home *h, int64_t end, int64_t reached)
     run *one;
     int32_t i;
     home_come_to(h, end);
+    if (!is_apart(h)) {
+        end_watch(h->root, end, reached);
+    }
     if (awaits_end(h)) {
         for (one = h->root; one != NULL; one = one->next) {
             begin_at_end(one, end);

@@ -109,13 +109,13 @@ void watch(run *r, int64_t t)
     }
 }
 
-/* The trace ends: what stays goes on to there. */
-void end_watch(run *r, int64_t end)
+/* The trace ends: what stays goes on to there, and time has come behind it. */
+void end_watch(run *r, int64_t end, int64_t reached)
 {
     networks *net = r->home->truths;
     if ((net != NULL) && net->begun && !r->home->monitor->spoilt) {
         const form f = kept_form(r);
-        stay(&f, net, end, (f.gap > 0) ? floored(end, f.step) : net->readings[0].last);
+        stay(&f, net, reached, (f.gap > 0) ? floored(end, f.step) : net->readings[0].last);
     }
 }
 

@@ -7,7 +7,15 @@ from collections.abc import Callable
 from threading import Lock
 from typing import Protocol
 
-from rvmon.trace.time import TICKS_PER_SECOND, whole_ticks
+from rvmon.errors import TraceError
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, whole_ticks
+
+FAR_NS = 365 * 86_400 * TICKS_PER_SECOND
+"""Stamps that are so far from the clock are of another epoch."""
+
+_AHEAD_NS = 10 * TICKS_PER_SECOND
+"""Stamps that are so far ahead of a clock that runs by itself are wrong: taken, they would make all
+others late until it has come there."""
 
 Change = Callable[[int, int], None]
 """Called with the instants, ns, before and after somebody set a clock."""
@@ -95,3 +103,18 @@ class SimulatedClock:
     def on_change(self, callback: Change) -> None:
         """Have a function called whenever it is set."""
         self._callbacks.append(callback)
+
+
+def refuse_far(t_ns: int, now_ns: int) -> None:
+    """Refuse a stamp that is of another epoch than a clock that runs by itself, or ahead of it.
+
+    Raises:
+        TraceError: it is.
+    """
+    if not now_ns - FAR_NS < t_ns < now_ns + _AHEAD_NS:
+        far = "years from" if abs(t_ns - now_ns) > FAR_NS else "ahead of"
+        raise TraceError(
+            f"the stamp {format_ticks(t_ns)} is {far} the clock, which shows "
+            f"{format_ticks(now_ns)}: set the clocks of the machines alike, or give the driver "
+            "the clock of the stamps, such as WallClock(since_1970=True)"
+        )

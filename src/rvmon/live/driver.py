@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -10,12 +9,13 @@ from threading import Condition, Lock, RLock
 from typing import TYPE_CHECKING, TypeVar
 
 from rvmon.errors import RvmonError, TraceError
-from rvmon.live.clock import Clock, WallClock
+from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Watch
 from rvmon.live.status import Status
+from rvmon.live.timers import Timers
 from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Told, Values, Waiting
 from rvmon.trace.health import HealthKind
-from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, whole_ticks
+from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -32,14 +32,6 @@ _BATCH = 1_000
 
 _PATIENCE_NS = 2_000_000
 """Monitors are asked what is due when no sample came for so long: a sample decides it as well."""
-
-_FAR_NS = 365 * 86_400 * TICKS_PER_SECOND
-"""Stamps that are so far from the clock are of another epoch."""
-
-
-_AHEAD_NS = 10 * TICKS_PER_SECOND
-"""Stamps that are so far ahead of a clock that runs by itself are wrong: taken, they would make all
-others late until it has come there."""
 
 
 class Driver:
@@ -120,8 +112,7 @@ class Driver:
         self._is_closed = False
         self._robots: dict[str, Robot] = {}
         self._patience = _PATIENCE_NS if self._runs_by_itself else 0
-        self._timers: list[tuple[int, str]] = []
-        self._wakes: dict[str, int] = {}
+        self._timers = Timers()
         self._turned_away = False
         self._watch, self._lag = self._watching(spec)
         self._waiting = Waiting(room)
@@ -140,8 +131,6 @@ class Driver:
     def spec(self) -> Spec:
         """As given, or the latest that replaced it."""
         return self._watch.spec
-
-    # --- from any thread ---------------------------------------------------------------------
 
     def offer(
         self, values: Values, *, robot: str = "", t_ns: int | None = None, wait: bool = False
@@ -166,14 +155,16 @@ class Driver:
         if not isinstance(values, Mapping):
             raise TraceError(f"expected values by name, found {values!r}")
         if t_ns is not None:
-            t_ns = self._near(whole_ticks(t_ns))
+            t_ns = whole_ticks(t_ns)
+            if self._runs_by_itself:
+                refuse_far(t_ns, self._clock.now_ns())
         kept = dict(values)
         with self._has_room:
             while wait and self._waiting.is_full and not self._is_closed:
                 self._has_room.wait()
             if self._is_closed:
                 raise RvmonError("the monitors were closed: no sample is taken any more")
-            if robot not in self._waiting.robots and not self._is_room_for(robot):
+            if not self._is_room_for(robot):
                 return False
             if t_ns is None:
                 t_ns = max(self._clock.now_ns(), self._stamped)
@@ -236,30 +227,18 @@ class Driver:
             first, last = now if since is None else min(since, now), now if is_over else None
             robots = {*self._waiting.robots, *self._robots} if robot is None else {robot}
             for one in robots:
-                if one in self._waiting.robots or self._is_room_for(one):
+                if self._is_room_for(one):
                     self._waiting.put_gap(Gap(one, told, some, first, last, why))
         self.wake()
 
     def _is_room_for(self, robot: str) -> bool:
-        if len({*self._waiting.robots, *self._robots}) < self._most_robots:
-            return True
-        if robot in self._robots:
+        known = {*self._waiting.robots, *self._robots}
+        if robot in known or len(known) < self._most_robots:
             return True
         if not self._turned_away:
             _input_log.warning("robot %r is one too many: at most %d", robot, self._most_robots)
         self._turned_away = True
         return False
-
-    def _near(self, t_ns: int) -> int:
-        now = self._clock.now_ns()
-        if self._runs_by_itself and not now - _FAR_NS < t_ns < now + _AHEAD_NS:
-            far = "years from" if abs(t_ns - now) > _FAR_NS else "ahead of"
-            raise TraceError(
-                f"the stamp {format_ticks(t_ns)} is {far} the clock, which shows "
-                f"{format_ticks(now)}: set the clocks of the machines alike, or give the driver "
-                "the clock of the stamps, such as WallClock(since_1970=True)"
-            )
-        return t_ns
 
     def replace_spec(self, spec: Spec) -> None:
         """Judge by another specification from now on: each robot begins a new run.
@@ -295,14 +274,12 @@ class Driver:
         return len(self._waiting)
 
     def _clock_was_set(self, before: int, now: int) -> None:
-        if now < before or now - before > _FAR_NS:  # as where a clock is set that began with 1970
+        if now < before or now - before > FAR_NS:  # as where a clock is set that began with 1970
             with self._lock:
                 self._stamped = now
                 way = f"back by {format_ticks(before - now)}" if now < before else "on by years"
                 self._waiting.put_new_run(f"a new run began: the clock went {way}")
         self.wake()
-
-    # --- from whoever drives it --------------------------------------------------------------
 
     def work(self) -> float | None:
         """Judge what waits, and let time pass.
@@ -343,7 +320,7 @@ class Driver:
             _input_log.warning("%s", entry.why)
             for robot in self._robots.values():
                 robot.restart(HealthKind.CLOCK, entry.why)
-                self._wakes.pop(robot.name, None)
+                self._timers.forget(robot.name)
             return
         found = self._robots.get(entry.robot)
         if found is None:
@@ -360,33 +337,21 @@ class Driver:
             case Gap():
                 found.hear(entry)
         if found.last is not None:
-            self._look_at(entry.robot, found.last + self._lag + self._patience)
-
-    def _look_at(self, robot: str, t: int) -> None:
-        """Have a robot looked at when an instant has come, if it is not looked at before."""
-        known = self._wakes.get(robot)
-        if known is None or t < known:
-            self._wakes[robot] = t
-            heapq.heappush(self._timers, (t, robot))
+            self._timers.set(entry.robot, found.last + self._lag + self._patience)
 
     def _pass_to(self, now: int) -> float | None:
         """Let time come to an instant on those whose time it is; seconds to the next."""
-        while self._timers and self._timers[0][0] <= now:
-            t, name = heapq.heappop(self._timers)
-            if self._wakes.get(name) != t:  # it was looked at before
-                continue
-            del self._wakes[name]
+        for t, name in self._timers.take_due(now):
             robot = self._robots[name]
             quiet = (t if robot.last is None else robot.last) + self._lag + self._patience
             if quiet > now:  # what is due is decided by samples, which keep coming
-                self._look_at(name, quiet)
+                self._timers.set(name, quiet)
                 continue
             robot.pass_to(now - self._lag)
             if (due := robot.due) is not None:
-                self._look_at(name, max(due + self._lag, now + 1))
-        if not self._timers:
-            return None
-        return self._clock.seconds_until(self._timers[0][0])
+                self._timers.set(name, max(due + self._lag, now + 1))
+        first = self._timers.first
+        return None if first is None else self._clock.seconds_until(first)
 
     def close(self) -> dict[str, tuple[Report, ...]]:
         """Judge what waits, end all runs now, and take nothing any more.
@@ -407,8 +372,6 @@ class Driver:
                     robot.pass_to(now)
                     robot.end()
             return {name: tuple(robot.reports) for name, robot in self._robots.items()}
-
-    # --- to whoever wants to know ------------------------------------------------------------
 
     def _judged(self, judgement: Judgement) -> None:
         if judgement.attempt.verdict is Verdict.FAIL:

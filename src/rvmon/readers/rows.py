@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
-from rvmon.errors import TimeOrderError
+from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.alternation import Alternations
 from rvmon.readers.coalesce import Conflicts, coalesce, merged, updates_in
 from rvmon.readers.steps import LOOKED_AT
@@ -155,18 +155,24 @@ class Rows:
     def _sorted(self, rows: Iterable[Row]) -> Iterator[Row]:
         """Rows by time, those of one instant as they come."""
         waiting: list[tuple[int, int, Row]] = []
-        for place, row in enumerate(rows):
-            number, t, _ = row
-            if self._last is not None and t < self._last:
-                raise TimeOrderError(
-                    f"{self._unit} {number}: {format_ticks(t)} comes more than {ROOM:,} "
-                    f"{self._unit}s late: sort the recording by time"
-                )
-            heappush(waiting, (t, place, row))
-            if len(waiting) > ROOM:
-                yield heappop(waiting)[2]
+        fault = None
+        try:
+            for place, row in enumerate(rows):
+                number, t, _ = row
+                if self._last is not None and t < self._last:
+                    raise TimeOrderError(
+                        f"{self._unit} {number}: {format_ticks(t)} comes more than {ROOM:,} "
+                        f"{self._unit}s late: sort the recording by time"
+                    )
+                heappush(waiting, (t, place, row))
+                if len(waiting) > ROOM:
+                    yield heappop(waiting)[2]
+        except TraceError as error:
+            fault = error
         while waiting:
             yield heappop(waiting)[2]
+        if fault is not None:
+            raise fault
 
     def conflicts(self) -> list[Health]:
         """The signals that got two values at one stamp."""

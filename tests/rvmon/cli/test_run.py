@@ -293,7 +293,7 @@ def test_a_broken_recording_is_an_entry_in_json(files, capsys):
     assert whole["requirements"]["D1"]["verdict"] == "P"
 
 
-@pytest.mark.parametrize(("until", "verdict"), [("2", "I"), ("3", "I"), ("30", "F")])
+@pytest.mark.parametrize(("until", "verdict"), [("2", "I"), ("3", "F"), ("30", "F")])
 def test_until_is_the_end_that_is_judged(files, capsys, until, verdict):
     """What comes after --until is not judged; time goes on to it where samples end before."""
     (files / "late.csv").write_text(FAIL + "6,,\n9,maybe,\n" if until != "30" else FAIL)

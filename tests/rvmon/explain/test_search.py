@@ -63,11 +63,11 @@ def test_random_differences(seed):
 
 
 def test_all_four_kinds_of_a_response():
-    """A timed response has all four; its failure ends a tick after the deadline."""
+    """A timed response has all four; its failure ends at the deadline."""
     spec = build.spec_of(build.requirement(build.eventually(build.f, 0, 7), upon=build.e))
     found = examples_of(spec).examples
     assert set(found) == set(KINDS)
-    assert found["F"].end == 8
+    assert found["F"].end == 7
     assert all(len(example.samples) == 1 for example in found.values())
 
 

@@ -106,7 +106,7 @@ class FedMonitor(ABC, Generic[T]):
         Source: SEMANTICS, sections 1 (Outage) and 6 (Too late).
 
         >>> from rvmon import loads
-        >>> spec = loads("spec s\nevent stop\nrequirement R\n  upon start\n  then never stop\n")
+        >>> spec = loads("spec s\nevent stop\nrequirement R\n  always not stop\n")
         >>> monitor = spec.monitor()
         >>> _ = monitor.step(0, {"stop": False})
         >>> _ = monitor.lose(["stop"], since=1, until=3, why="the connection was down")

@@ -222,7 +222,7 @@ def test_a_run_that_was_torn_at_its_first_step_is_restored():
     def tear(*_):
         raise Torn
 
-    monitor._judge = tear
+    monitor._feed.take = tear
     t, values = SAMPLES[0]
     with pytest.raises(Torn):
         monitor.step(t, MappingProxyType(values))
