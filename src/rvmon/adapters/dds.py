@@ -107,7 +107,7 @@ class DdsSource:
                         if content.sample_info.valid_data:
                             self._feed.take(topic, content)
                 except Exception as error:  # noqa: BLE001 - what others sent does not fit its type
-                    self._feed.lose(topic.name, f"it cannot be unpacked ({error})")
+                    self._feed.lose(topic.name, f"cannot be unpacked ({error})", before=True)
             self._find()
 
     def _wait_for(self, reader: Any) -> None:
@@ -142,7 +142,7 @@ class DdsSource:
             try:
                 self._begin(name, self._found.pop(name))
             except Exception as error:  # noqa: BLE001 - as above: the others go on
-                self._feed.lose(self._wanted[name], f"it cannot be read ({error})")
+                self._feed.lose(self._wanted[name], f"{error}", for_good=True)
 
     def _begin(self, name: str, wire_type: str) -> None:
         from cyclonedds.core import Policy, Qos
@@ -154,7 +154,7 @@ class DdsSource:
         if topic.fault:
             if name not in self._reported:
                 self._reported.add(name)
-                self._feed.lose(topic.name, f"{kind}: {topic.fault}")
+                self._feed.lose(topic.name, f"{kind}: {topic.fault}", for_good=True)
             return
         # A history that keeps the last messages would replace others and report nothing.
         limits = Policy.ResourceLimits(_DEPTH, -1, -1)

@@ -112,7 +112,7 @@ class MessageFeed:
         made = self._readers[topic.name] = MessageReaders(bounds, self._schema)
         return made
 
-    def lose(self, topic: str, why: str, *, before: bool = False) -> None:
+    def lose(self, topic: str, why: str, *, before: bool = False, for_good: bool = False) -> None:
         """Have lost what a message of a topic said.
 
         Args:
@@ -120,16 +120,27 @@ class MessageFeed:
             why: it cannot be read, or did not come.
             before: whether it was sent before now, so that it may have said something at any
                 instant since the last one that was read.
+            for_good: whether no message of the topic can be read from now on.
         """
         _log.warning("a message of %s is not taken: %s", topic, why)
         since = self._heard.get(topic, self._began) + 1
         self._driver.lose(
-            self._fed.get(topic) or None,
+            self._fed.get(topic) or self._may_feed(topic),
             robot=self._robot,
             since_ns=since if before or topic in self._stamped else None,
-            is_over=True,
-            why=f"a message of {topic} was not taken",
+            is_over=not for_good,
+            why=f"{topic} cannot be read" if for_good else f"a message of {topic} was not taken",
         )
+
+    def _may_feed(self, topic: str) -> list[str]:
+        """The names that a topic may feed which was never read."""
+        bounds, columns = self._schema.binding.bounds, self._schema.columns
+        found = []
+        for name in (*self._schema.signals, *self._schema.events):
+            path = columns.get(name, name).strip("/").replace(".", "/")
+            if bounds[name].topic == topic if name in bounds else topic in _leading(path):
+                found.append(name)
+        return found
 
 
 def _leading(path: str) -> Iterator[str]:

@@ -113,13 +113,14 @@ class MqttSource:
         self._verdicts = verdicts
         self._connected = Event()
         self._dropped: int | None = None
+        self._told = objects.driver.now_ns
         self._refusal = ""
         self._client = Client(CallbackAPIVersion.VERSION2)
         self._client.max_queued_messages_set(0)
         self._client.on_connect = self._on_connect
         self._client.on_subscribe = self._on_subscribe
         self._client.on_disconnect = self._on_disconnect
-        self._client.on_message = lambda _, __, message: self._take(
+        self._client.on_message = lambda _, __, message: self.hear(
             message.topic, bytes(message.payload)
         )
         if address.user:
@@ -164,7 +165,8 @@ class MqttSource:
             _log.warning("%s: what is published until it is back is not known", why)
             self._objects.driver.lose(why=why)
 
-    def _take(self, topic: str, payload: bytes) -> None:
+    def hear(self, topic: str, payload: bytes) -> None:
+        """Offer what a message says."""
         if topic == _DROPPED:
             self._hear_of_drops(payload)
             return
@@ -180,14 +182,14 @@ class MqttSource:
             self._objects.lose(f"a message of {topic}", error, robot)
 
     def _hear_of_drops(self, payload: bytes) -> None:
+        """Have lost what the broker may have dropped of ours since it last said how much it did."""
         count = int(payload) if payload.isdigit() else 0
+        driver = self._objects.driver
         if self._dropped is not None and count > self._dropped:
-            _log.warning(
-                "the broker has dropped %d messages, to this or to other clients: if to this one, "
-                "verdicts lack them",
-                count - self._dropped,
-            )
-        self._dropped = count
+            why = "the broker has dropped messages, to this or to other clients"
+            _log.warning("%s: %d", why, count - self._dropped)
+            driver.lose(since_ns=self._told, is_over=True, why=why)
+        self._dropped, self._told = count, driver.now_ns
 
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""

@@ -106,7 +106,8 @@ class Ros2Source:
             kind = get_message(types[0])
             topic = Topic(name, types[0], dict(_leaves(kind)))
         except (ImportError, AttributeError, ValueError) as error:
-            self._feed.lose(name, f"{error}: is the package of {types[0]} installed?")
+            why = f"{error}: is the package of {types[0]} installed?"
+            self._feed.lose(name, why, for_good=True)
             return
         # Who asks for more than is promised gets nothing at all.
         reliable, latched = ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL

@@ -131,7 +131,10 @@ def run(arguments: argparse.Namespace) -> int:
     live = watch(arguments, spec, shown)
     shown.ended(live)
     verdicts = [one for status in live.status().values() for one in status.verdicts.values()]
-    return int(any(one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts))
+    unseen = live.turned_away or any(
+        one in (Verdict.FAIL, Verdict.INCONCLUSIVE) for one in verdicts
+    )
+    return int(unseen)
 
 
 def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
@@ -164,12 +167,21 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         live = _live(arguments, spec, clock, shown.judged)
         objects = JsonObjects(live, spec.schema, clock=followed)
         every = itertools.chain([first], lines)
-        feeding = threading.Thread(
-            target=feed_lines, args=(objects, every, arguments.robot), daemon=True
-        )
+        faults: list[OSError] = []
+
+        def feed() -> None:
+            try:
+                feed_lines(objects, every, arguments.robot)
+            except OSError as error:  # what comes is heard no more
+                live.lose(why=f"{arguments.source}: {error.strerror}")
+                faults.append(error)
+
+        feeding = threading.Thread(target=feed, daemon=True)
         with live, shown:
             feeding.start()
             _follow(arguments, live, shown, feeding)
+        for fault in faults:
+            warn(f"{arguments.source}: {fault.strerror}: nothing more was heard")
     _warn_ignored(objects)
     return live
 

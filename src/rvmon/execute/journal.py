@@ -22,11 +22,16 @@ from pathlib import Path
 from rvmon.writing import place_whole
 
 
-def entries(path: Path) -> list[bytes] | None:
+def entries(path: Path, *, all_of_them: bool = False) -> list[bytes] | None:
     """The entries of a journal, up to the first that is not whole; `None` if there is no file.
+
+    Args:
+        path: of the journal.
+        all_of_them: whether an entry that is not whole may only be the last, which was torn.
 
     Raises:
         OSError: it cannot be read.
+        ValueError: another one is damaged.
     """
     try:
         lines = path.read_bytes().splitlines(keepends=True)
@@ -36,6 +41,8 @@ def entries(path: Path) -> list[bytes] | None:
     for line in lines:
         entry = line[_WIDTH:-1]
         if _line(entry) != line:
+            if all_of_them and line is not lines[-1]:
+                raise ValueError(f"line {len(found) + 1} is damaged")
             break
         found.append(entry)
     return found

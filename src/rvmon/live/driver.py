@@ -59,6 +59,7 @@ class Driver:
     Attributes:
         wake: to be set to what has `work` called soon; it is called from any thread.
         errors: so many callbacks raised something, which was logged.
+        turned_away: whether a robot was one too many: of that there are no verdicts.
 
     Raises:
         RvmonError: `room`, `most_robots` or `keep` is no count.
@@ -113,7 +114,7 @@ class Driver:
         self._robots: dict[str, Robot] = {}
         self._patience = _PATIENCE_NS if self._runs_by_itself else 0
         self._timers = Timers()
-        self._turned_away = False
+        self.turned_away = False
         self._watch, self._lag = self._watching(spec)
         self._waiting = Waiting(room)
         self._clock.on_change(self._clock_was_set)
@@ -235,9 +236,9 @@ class Driver:
         known = {*self._waiting.robots, *self._robots}
         if robot in known or len(known) < self._most_robots:
             return True
-        if not self._turned_away:
+        if not self.turned_away:
             _input_log.warning("robot %r is one too many: at most %d", robot, self._most_robots)
-        self._turned_away = True
+        self.turned_away = True
         return False
 
     def replace_spec(self, spec: Spec) -> None:

@@ -70,13 +70,22 @@ class DurableMonitor:
         self._every = every
         self._number = 0
         self.taken = 0
-        found = entries(self._path)
+        found = self._found()
         self.monitor = spec.monitor(**options) if found is None else self._taken_up(spec, found)
         self.monitor.on_decided(self._hear)
         for line in [] if found is None else found[1:]:
             self._again(line)
         # What these samples decided was reported: they need not be judged once more.
         self.save()
+
+    def _found(self) -> list[bytes] | None:
+        try:
+            return entries(self._path, all_of_them=True)
+        except ValueError as error:  # what stands behind it cannot be judged without it
+            raise SnapshotError(
+                f"{self._path}: {error}, and not the last one: name another file, or delete this "
+                "one to start again"
+            ) from None
 
     def _taken_up(self, spec: Spec, found: list[bytes]) -> Monitor:
         try:

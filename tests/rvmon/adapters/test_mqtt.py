@@ -10,7 +10,7 @@ from tests.tools.servers import LONG, Broker, missing, mosquitto
 from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.json_objects import JsonObjects
 from rvmon.adapters.mqtt import MqttSource, address_of
-from rvmon.live import Live
+from rvmon.live import Driver, Live, SimulatedClock
 
 SPEC = """
 spec s
@@ -120,6 +120,23 @@ def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
         publish("arm/speed", "fast!")
         _until(lambda: objects.unread == 1)
     assert live.close()[""][0].verdicts["R1"] is Verdict.INCONCLUSIVE
+
+
+def test_what_a_broker_has_dropped_may_have_been_ours():
+    """It says how many of all clients; between two of its reports nobody knows what was lost."""
+    pytest.importorskip("paho.mqtt.client")
+    spec = loads(SPEC)
+    driver = Driver(spec, clock=(clock := SimulatedClock()))
+    source = MqttSource(JsonObjects(driver, spec.schema), address_of("mqtt://127.0.0.1:1/#"))
+    source.hear("arm/speed", b"0.5")
+    for t, dropped in ((1, b"7"), (2, b"7"), (3, b"9")):
+        clock.set_ns(t * 10**9)
+        source.hear("$SYS/broker/publish/messages/dropped", dropped)
+        source.hear("arm/speed", b"0.5")
+        driver.work()
+    (report,) = driver.close()[""]
+    assert report.verdicts == {"R1": "I", "R2": "I"}
+    assert "dropped messages" in report.health[0].remark
 
 
 def test_a_broker_that_is_not_there_is_told():

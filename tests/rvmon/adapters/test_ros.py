@@ -140,6 +140,34 @@ def test_a_message_that_does_not_fit_is_unknown(feed):
     assert [one.name for one in report.health if one.kind == "dropped"] == ["base.speed"]
 
 
+def test_a_topic_that_cannot_be_read_is_lost_for_good(feed):
+    """What it feeds, as nothing of it is heard; the rest is judged as before."""
+    messages, driver, clock = feed
+    messages.take(FLOAT, {"data": 0.5})
+    messages.lose("/stop", "nobody knows its type", for_good=True)
+    clock.set_ns(10**9)
+    messages.take(FLOAT, {"data": 0.5})
+    (report,) = driver.close()[""]
+    lost = {one.name for one in report.health if one.kind == "dropped"}
+    assert lost == {"stop"}
+    assert {*report.verdicts.values()} == {"P", "I"}
+
+
+def test_what_was_lost_before_a_message_is_lost_since_the_last_one(feed):
+    """What was judged in between may have been otherwise."""
+    messages, driver, clock = feed
+    messages.take(FLOAT, {"data": 0.5})
+    for t in (1, 2):
+        clock.set_ns(t * 10**9)
+        messages.take(Topic("/stop", "std_msgs/msg/Empty", {}), {})
+        driver.work()
+    messages.lose("/base/speed", "some were lost", before=True)
+    clock.set_ns(3 * 10**9)
+    messages.take(FLOAT, {"data": 0.5})
+    (report,) = driver.close()[""]
+    assert report.verdicts["R1"] == "I"
+
+
 def test_the_clock_follows_the_topic_of_that_name():
     """It is known what time it is from its first message on; back is a new run, and is told."""
     spec, clock = loads(SPEC), SimulatedClock()

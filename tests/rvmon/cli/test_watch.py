@@ -53,6 +53,22 @@ def test_as_json_each_line_can_be_read(door, capsys):
     assert last == {"robot": "", "runs": 1, "verdicts": {"D1": "F"}, "samples": 2, "lost": 0}
 
 
+def test_a_stream_that_breaks_off_passes_nothing(door, capsys, monkeypatch):
+    """As a serial line that is unplugged: what came behind it nobody heard."""
+    pieces = [b'{"t": 0, "closed": true}\n']
+
+    def read(*_):
+        if pieces:
+            return pieces.pop()
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr("rvmon.adapters.json_lines.os.read", read)
+    assert main(["watch", "door.rv", "a.jsonl", "--format", "text"]) == 1
+    told = capsys.readouterr()
+    assert "D1   I  ?" in told.out
+    assert "a.jsonl: Input/output error: nothing more was heard" in told.err
+
+
 def test_what_passes_can_be_left_out(door, capsys):
     """With `--failures`; the exit code is 0 where nothing failed."""
     lines = FAILS.replace('"t": 3', '"t": 1')

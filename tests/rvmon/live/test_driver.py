@@ -99,6 +99,7 @@ def test_a_robot_too_many_is_turned_away(caplog):
     assert door.driver.offer({"speed": 0.5}, robot="left")
     door.at(1)
     assert list(door.driver.status()) == ["left"]
+    assert door.driver.turned_away
     assert len(caplog.records) == 1
 
 

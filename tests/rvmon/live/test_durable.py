@@ -97,6 +97,20 @@ def test_files_and_values_that_are_none_are_told(tmp_path):
     assert monitor.taken == 0
 
 
+def test_a_sample_that_is_damaged_in_the_file_is_told(tmp_path):
+    """Without it those behind cannot be judged; the last may be torn, and was not taken then."""
+    path = tmp_path / "run"
+    monitor = DurableMonitor(SPEC, path, print)
+    for t in range(3):
+        monitor.step_ns(t, {"speed": 0.5})
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join(lines)[:-3])
+    assert DurableMonitor(SPEC, path, print).taken == 2
+    path.write_bytes(b"".join([*lines[:2], lines[2].replace(b"0.5", b"5.5"), *lines[3:]]))
+    with pytest.raises(SnapshotError, match="run: line 3 is damaged, and not the last one"):
+        DurableMonitor(SPEC, path, print)
+
+
 @pytest.mark.process
 def test_a_watch_that_is_killed_goes_on(tmp_path):
     """Real processes, killed where they happen to be."""
