@@ -187,3 +187,32 @@ def test_no_verdict_is_overturned(door, tmp_path):
         split += any(len(kinds) > 1 for kinds in seen.values())
     assert runs > RUNS / 3
     assert split > runs / 20
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_a_file_that_is_damaged_or_out_of_order_has_the_verdicts_of_the_whole_or_none(
+    late, tmp_path
+):
+    """A line that cannot be read is an error; under `max delay` their order does not matter."""
+    path, told = tmp_path / "a.jsonl", 0
+    for number in range(RUNS):
+        rng = random.Random(f"file {late} {number}")
+        case = case_of(f"door/file/{number}", Profile(requirements=2), TraceProfile())
+        if len(case.samples) < 3:
+            continue
+        spec = Spec(replace(case.spec, max_delay=1 if late else None))
+        lines = [line_of(one) for one in case.samples]
+        path.write_bytes(b"\n".join(lines) + b"\n")
+        whole = spec.evaluate(path, sources=case.names)
+        if late:
+            rng.shuffle(lines)
+            path.write_bytes(b"\n".join(lines) + b"\n")
+            assert spec.evaluate(path, sources=case.names).attempts == whole.attempts
+        else:
+            place = rng.randrange(len(lines))
+            rest = [damaged(rng, lines[place]), *lines[place + 1 :]]
+            path.write_bytes(b"\n".join([*lines[:place], *rest]) + b"\n")
+            with pytest.raises(TraceError, match=f"line {place + 1}:|not UTF-8 text"):
+                spec.evaluate(path, sources=case.names)
+        told += 1
+    assert told > RUNS / 3
