@@ -1,19 +1,20 @@
 """Does the core's C hold a line that no test needs? Seeded mutants of it, run on recorded cases.
 
-    python -m benchmarks.core_mutants --count 30 --seed 1 [--tests] [FILE …]
+    python -m benchmarks.core_mutants --count 30 --seed 1 [FILE …]
 
 Of each file so many changes are drawn, evenly over their kinds. Each is compiled alone, linked with
 the others, and judges the cases of `benchmarks.core_recording`, of which the law and the core say
 the same (core_replay.c): it is killed if it says anything else, crashes or hangs. What does not
-compile is not counted, nor what a compiler makes the same code of. With `--tests` those that
-survive go through tests/rvmon/core. Prints each that survives, and the counts of each file; exits 1
-if any does.
+compile is not counted, nor what a compiler makes the same code of. Prints each that survives, and
+the counts of each file; exits 1 if any does.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
+import itertools
+import random
+import re
 import resource
 import shutil
 import subprocess
@@ -21,12 +22,10 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.core_recording import recorded
-from benchmarks.mutants import draw
-from benchmarks.mutation_c import c_mutants
 
 from rvmon.cdv.mutation.mutant import Mutant
 
@@ -115,39 +114,69 @@ def _bound_memory() -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def tested(mutants: Sequence[Mutant]) -> Iterator[Mutant]:
-    """Those that tests/rvmon/core lets pass."""
-    with tempfile.TemporaryDirectory() as directory:
-        copy = Path(directory)
-        ignored = shutil.ignore_patterns("__pycache__", "_core*")
-        shutil.copytree(ROOT / "src", copy / "src", ignore=ignored)
-        shutil.copy2(ROOT / "hatch_build.py", copy)
-        path = os.pathsep.join([str(copy / "src"), str(ROOT)])
-        environment = {**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1"}
-        tests = ["-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
-        tests += ["-m", "not compiler", "tests/rvmon/core"]
-        for mutant in mutants:
-            place = copy / mutant.path.relative_to(ROOT)
-            place.write_text(mutant.source, encoding="utf-8")
-            words = [[sys.executable, str(copy / "hatch_build.py")], [sys.executable, *tests]]
-            try:
-                passed = all(
-                    subprocess.run(
-                        one,
-                        cwd=ROOT,
-                        env=environment,
-                        capture_output=True,
-                        check=False,
-                        timeout=600,
-                    ).returncode
-                    == 0
-                    for one in words
-                )
-            except subprocess.TimeoutExpired:
-                passed = False
-            shutil.copy2(mutant.path, place)
-            if passed:
-                yield mutant
+_SWAPS = (
+    ("comparison", r"(?<= )(<|<=|>|>=|==|!=)(?= )", ("<", "<=", ">", ">=", "==", "!=")),
+    ("and/or", r"(?<= )(&&|\|\|)(?= )", ("&&", "||")),
+    ("operator", r"(?<= )(\+|-)(?= (?!1\b))", ("+", "-")),
+    ("constant", r"\b(true|false)\b", ("true", "false")),
+    ("constant", r"\b(IS_TRUE|IS_FALSE)\b", ("IS_TRUE", "IS_FALSE")),
+    ("constant", r"(?<=[ (])([01])(?=[;,) ])", ("0", "1")),
+    ("operator", r"(?<= )(&|\|)(?= )", ("&", "|")),
+    ("operator", r"(?<= )(\*|/)(?= )", ("*", "/")),
+)
+"""Kind, what is looked for, and the words of which each is replaced by its neighbour in a pair."""
+
+_NEGATED = re.compile(r"^\s+(?:\} else )?if (\(.+\)) \{$")
+"""A condition that stands on one line."""
+
+_DROPS = (
+    ("off by one", r" [+-] 1\b(?!\])"),
+    ("dropped not", r"!(?=[a-z(])"),
+    ("dropped statement", r"(?<=^)\s+(?:break|continue);$"),
+    ("dropped statement", r"^\s+[a-z][\w\->\[\].*]* (?:[-+|&]?=) [^;{}]*;$"),
+    ("dropped statement", r"^\s+[a-z]\w*\([^;{}]*\);$"),
+)
+
+
+def c_mutants(path: Path) -> Iterator[Mutant]:
+    """All changes that are tried in a C file, outside comments, directives and declarations."""
+    source = path.read_text(encoding="utf-8")
+    at = 0
+    comment = False
+    for number, line in enumerate(source.splitlines(keepends=True), start=1):
+        begins, ends = "/*" in line, "*/" in line
+        code = not (comment or begins or line.startswith(("#", "static const", "typedef")))
+        if code and line.startswith(" "):
+            for kind, start, end, text in _changes(line.rstrip("\n")):
+                changed = source[: at + start] + text + source[at + end :]
+                after = (line[:start] + text + line[end:]).strip()
+                yield Mutant(path, number, kind, line.strip(), after, changed)
+        comment = (comment or begins) and not ends
+        at += len(line)
+
+
+def _changes(line: str) -> Iterator[tuple[str, int, int, str]]:
+    for kind, pattern, words in _SWAPS:
+        for found in re.finditer(pattern, line):
+            index = words.index(found[1])
+            yield kind, found.start(1), found.end(1), words[index ^ 1]
+    if found := _NEGATED.match(line):
+        yield "negated condition", found.start(1), found.end(1), f"(!{found[1]})"
+    for kind, pattern in _DROPS:
+        for found in re.finditer(pattern, line):
+            text = ";" if kind == "dropped statement" else ""
+            yield kind, found.start(), found.end(), text
+
+
+def draw(found: Iterable[Mutant], options: argparse.Namespace) -> list[Mutant]:
+    """A seeded sample, the kinds of change in turn; what is drawn depends on no other mutant."""
+    kinds: dict[str, list[Mutant]] = {}
+    for mutant in found:
+        kinds.setdefault(mutant.kind, []).append(mutant)
+    for members in kinds.values():
+        members.sort(key=lambda mutant: random.Random(f"{options.seed} {mutant.change}").random())
+    rounds = itertools.chain.from_iterable(itertools.zip_longest(*kinds.values()))
+    return [*itertools.islice(filter(None, rounds), options.count)]
 
 
 def main(words: list[str]) -> int:
@@ -157,20 +186,10 @@ def main(words: list[str]) -> int:
     parser.add_argument("--count", type=int, default=30, help="of each file")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--pairs", type=int, default=1_200)
-    parser.add_argument(
-        "--recorded",
-        type=Path,
-        nargs="+",
-        help="cases, instead of new ones; then more for the rest",
-    )
-    parser.add_argument("--tests", action="store_true", help="try those left by tests/rvmon/core")
     options = parser.parse_args(words)
-    cases = [path.read_bytes() for path in options.recorded or ()]
-    first, *further = cases or [recorded(options.pairs, options.seed)]
-    left: list[Mutant] = []
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
-        trial = Trial(Path(directory), first)
+        trial = Trial(Path(directory), recorded(options.pairs, options.seed))
         for path in sources():
             if options.files and path.name not in options.files:
                 continue
@@ -180,24 +199,11 @@ def main(words: list[str]) -> int:
                 outcome = trial.outcome(mutant)
                 found[outcome] += 1
                 if outcome == "survived":
-                    left.append(mutant)
                     print(f"survived  {mutant}", flush=True)
             total += found
             print(f"{path.name}: {_told(found)}, of {len(possible)}", flush=True)
     print(f"all: {_told(total)}")
-    for more in further:
-        with tempfile.TemporaryDirectory() as directory:
-            trial = Trial(Path(directory), more)
-            left = [mutant for mutant in left if trial.outcome(mutant) == "survived"]
-        for mutant in left:
-            print(f"survived more  {mutant}", flush=True)
-        print(f"{len(left)} survived more cases", flush=True)
-    if options.tests:
-        left = [*tested(left)]
-        for mutant in left:
-            print(f"tests let pass  {mutant}")
-        print(f"tests/rvmon/core lets {len(left)} pass")
-    return 1 if left else 0
+    return 1 if total["survived"] else 0
 
 
 def _told(found: Counter[str]) -> str:

@@ -6,14 +6,26 @@ from argparse import Namespace
 from pathlib import Path
 
 import pytest
-from benchmarks.core_mutants import CORE, REPLAY, Trial, sources
+from benchmarks.core_mutants import CORE, REPLAY, Trial, c_mutants, draw, sources
 from benchmarks.core_recording import recorded
-from benchmarks.mutants import draw
-from benchmarks.mutation_c import c_mutants
 
 pytestmark = pytest.mark.compiler
 
 CASES = 60
+C = """\
+/* if (a < 1) { */
+#define LIMIT (1 < 2)
+static bool judge(int a, int b)
+{
+    bool found = false;
+    if ((a < b) && !ready(a)) {
+        found = a == b - 1;
+        note(a);
+    }
+    return found;
+}
+"""
+
 FLAGS = ("-std=c99", "-O0", "-ffp-contract=off", f"-I{CORE}")
 
 
@@ -63,3 +75,24 @@ def test_mutants_are_seen(cases: Path, tmp_path: Path) -> None:
     path = CORE / "graph.c"
     drawn = draw(c_mutants(path), Namespace(seed=1, count=4))
     assert sum(trial.outcome(mutant) == "killed" for mutant in drawn) >= 3
+
+
+def test_c_changes(tmp_path):
+    """Operators, constants and statements are changed; comments and directives are not."""
+    path = tmp_path / "m.c"
+    path.write_text(C, encoding="utf-8")
+    found = list(c_mutants(path))
+    changes = {(one.line, one.kind) for one in found}
+    assert changes == {
+        (5, "constant"),
+        (6, "and/or"),
+        (6, "comparison"),
+        (6, "dropped not"),
+        (6, "negated condition"),
+        (7, "comparison"),
+        (7, "constant"),
+        (7, "dropped statement"),
+        (7, "off by one"),
+        (8, "dropped statement"),
+    }
+    assert all(one.source.count("\n") == C.count("\n") for one in found)
