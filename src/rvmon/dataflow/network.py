@@ -1,11 +1,4 @@
-"""The delay network: what is known of each node at each position, and since when.
-
-Each node keeps where it is known to be true, and where to be false, in ranges of positions; of what
-became known last, also the stamp as of which it did. Time and letters only ever add to that, and
-each node takes from its operands what is new of them: a step costs what it makes known, however
-long windows are and however much happens within one. What time alone will make known is worked out
-by a copy that goes ahead; the network itself follows when it is asked to. Positions that nothing
-above can ask for again are dropped.
+"""The delay network: what letters make known of each node at each position, and since when.
 
 Source: AUTOMATA 4.
 """
@@ -13,148 +6,182 @@ Source: AUTOMATA 4.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
-from rvmon.dataflow.knowledge import Knowledge
-from rvmon.dataflow.news import Work, junction_work, shift_work
-from rvmon.dataflow.news_of_past import past_work
-from rvmon.dataflow.news_of_until import until_work
-from rvmon.dataflow.news_of_window import sampled_window_work, window_work
-from rvmon.dataflow.nodes import Junction, Shift, Sweep, Window
-from rvmon.dataflow.piecewise import FAR, Piece
+from rvmon.dataflow.evaluate import evaluated
+from rvmon.dataflow.nodes import Leaf, NetworkPlan, Sweep, operands_of
+from rvmon.dataflow.piecewise import (
+    FAR,
+    PAST,
+    Piece,
+    Pieces,
+    append,
+    soonest,
+    stamp,
+    unchanged_until,
+    up_to,
+)
+from rvmon.dataflow.positions import Positions
+from rvmon.dataflow.sweep import Carried, Known
+from rvmon.formula.core import Core
 
 Noted = Sequence[tuple[int, Sequence[bool]]]
-"""Positions with their letters."""
-
-FOREVER = 1 << 200
-"""Behind all stamps."""
+"""Instants of positions with their letters: the truth of each leaf, which stays until the next."""
 
 
-class Network(Knowledge):
-    """One two-valued reading of a word, as far as it is known.
+class Network:
+    """One two-valued reading of a word, as far as it is known at a stamp.
 
     Args:
         plan: its nodes.
         gap: ticks between two positions; `None` if only samples are positions.
+        noted: the letters, ascending; those behind the stamp do not count.
+        first: the instant of the position that is asked for. If it is before all letters, what came
+            between only leads on to the first of them.
+        limit: the stamp.
+        before: a stamp; what was known then is known since ever.
+
+    Attributes:
+        plan: its nodes.
+        positions: those of the word.
+        limit: the stamp.
+        start: the first position with a letter.
     """
 
-    _works: Sequence[Work] | None = None
-    """What works out the news of the nodes but for leaves, bound to what is known of them."""
+    def __init__(
+        self,
+        plan: NetworkPlan,
+        gap: int | None,
+        noted: Noted,
+        first: int,
+        limit: int,
+        before: int = PAST,
+    ) -> None:
+        self.plan = plan
+        self.limit = limit
+        step = gap or 1
+        cells = [(t // step, letter) for t, letter in noted if 2 * t < limit]
+        self.start = cells[0][0] if cells else FAR
+        stamps = [position for position, _ in cells]
+        if cells and first // step < self.start:
+            stamps.insert(0, first // step)
+        self.positions = Positions(gap, stamps)
+        self._leaves = (self._samples if gap is None else self._held)(cells)
+        self._known = [
+            (_aged(up_to(true, limit), before), _aged(up_to(false, limit), before))
+            for true, false in self._evaluated(self.positions, FAR)
+        ]
 
-    def begin_at(self, start: int, first: int, letter: Sequence[bool]) -> None:
-        """Begin in the midst of a word; what is before only leads on to where it does.
+    def truth(self, t: int) -> Carried:
+        """What is known of the formula at the position at `t`, and its stamp."""
+        return _at(self._known[-1], t // self.positions.gap)
 
-        Args:
-            start: the position.
-            first: the first one whose value is wanted.
-            letter: that of the position, the truth of each of the plan's leaves.
+    def known_of(self, core: Core) -> Known:
+        """What is known of a part of the formula."""
+        return self._known[self.plan.places[core]]
+
+    def value_at(self, core: Core, position: int) -> bool | None:
+        """What is known of a part of the formula at a position."""
+        found = _at(self.known_of(core), position)
+        return None if found is None else found[0]
+
+    def first_unknown(self, core: Core, first: int) -> int | None:
+        """The first position from `first` on of which a part of the formula is not known."""
+        positions = self.positions
+        position = positions.following(max(first, self.start))
+        while position <= positions.last and positions.slope * position < self.limit:
+            if self.value_at(core, position) is None:
+                return position
+            position = positions.following(unchanged_until(self.known_of(core), position) + 1)
+        return None
+
+    @cached_property
+    def alone(self) -> Known:
+        """What comes to be known of the formula if no further position comes."""
+        return self.alone_from(self.limit)
+
+    def alone_from(self, limit: int) -> Known:
+        """What comes to be known of the formula if no position comes behind a stamp.
+
+        Source: SEMANTICS 2, Truth after a prefix.
         """
-        positions, count = self.positions, len(self.plan.nodes)
-        positions.first = first
-        if positions.sparse:
-            positions.last = start - 1
-            positions.stamps = [first] if first < start else []
-        self.grown = positions.slope * start
-        self._letter = letter
-        self.pending, self.swept = [start] * count, [start] * count
-        self.pending[-1] = first
+        positions = self.positions.ended((limit - 1) // self.positions.slope)
+        return self._evaluated(positions, limit)[-1]
 
-    def note(self, t: int, letter: Sequence[bool]) -> None:
-        """Note a position with a letter, which stays until the next one.
+    def _samples(self, cells: Noted) -> list[Known]:
+        """The leaves at samples, each with the integers back to the one before it."""
+        leaves: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in self.plan.leaves]
+        behind = self.start
+        for position, letter in cells:
+            for leaf, value in zip(leaves, letter, strict=True):
+                append(leaf[not value], behind, position, 1 + 2 * position, 0)
+            behind = position + 1
+        return [*leaves]
 
-        What it brings is worked out when time is let come to it.
-
-        Args:
-            t: its instant.
-            letter: the truth of each of the plan's leaves.
-        """
-        self.noted.append((t // self.positions.gap, letter))
-
-    def grow(self, limit: int, wanted: int | None = None) -> None:
-        """Let time come to a stamp, the letters being as noted.
-
-        Args:
-            limit: the stamp.
-            wanted: the instant of the first position whose value is wanted, if it may have come.
-        """
-        noted, positions, before = self.noted, self.positions, self._letter
-        if limit <= self.grown and not noted:
-            return
-        if noted:
-            self.noted = []
-            # Behind an interrupt, too, each position has a letter.
-            self._letter = noted[-1][1]
-        first = positions.first == FAR
-        if first:
-            if not noted:
-                self.grown = limit
-                return
-            before = noted[0][1]
-            positions.first = noted[0][0]
-        if wanted is not None:
-            self._tidy_up(wanted // positions.gap)
-        if first:
-            self.grown = max(self.grown, 2 * positions.first * positions.gap)
-            self._begin()
-        self.news[:] = [()] * len(self.news)
-        if positions.sparse:
-            self._read_samples(noted)
-        else:
-            self._read_held(before, noted, limit)
-        since = self.grown
-        for work in self._works or self._bound():
-            work(since, limit)
-        self.grown = limit
-        self.arrived = None
-
-    def _read_samples(self, noted: Noted) -> None:
-        """Tell the leaves of samples."""
-        if not noted:
-            return
-        cells = []
-        for position, letter in noted:
-            behind = self.positions.visit(position)
-            cells.append(((behind, position, 1 + 2 * position, 0), letter))
-        self.arrived = cells[0][0][0], noted[-1][0]
-        for index, (place, _) in enumerate(self.plan.leaves):
-            true = [cell for cell, letter in cells if letter[index]]
-            false = [cell for cell, letter in cells if not letter[index]]
-            self.add_news(place, 0, true)
-            self.add_news(place, 1, false)
-
-    def _read_held(self, before: Sequence[bool], noted: Noted, limit: int) -> None:
-        """Tell the leaves of all positions up to a stamp, each with the letter that was last."""
+    def _held(self, cells: Noted) -> list[Known]:
+        """The leaves at all positions up to the stamp, each with the letter that was last."""
+        leaves: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in self.plan.leaves]
         slope = self.positions.slope
-        start = max((self.grown - 1) // slope + 1, self.positions.first)
-        end = FAR if limit >= FOREVER else (limit - 1) // slope
-        for index, (place, _) in enumerate(self.plan.leaves):
-            first, value = start, before[index]
-            sides: tuple[list[Piece], list[Piece]] = [], []
-            for position, letter in noted:
-                if letter[index] is not value:
-                    if first < position:
-                        sides[not value].append((first, position - 1, 1, slope))
-                        first = position
-                    value = letter[index]
-            if first <= end:
-                sides[not value].append((first, end, 1, slope))
-            self.add_news(place, 0, sides[0])
-            self.add_news(place, 1, sides[1])
+        ends = [position - 1 for position, _ in cells[1:]] + [(self.limit - 1) // slope]
+        for (position, letter), end in zip(cells, ends, strict=bool(cells)):
+            for leaf, value in zip(leaves, letter, strict=True):
+                append(leaf[not value], position, end, 1, slope)
+        return [*leaves]
 
-    def _bound(self) -> Sequence[Work]:
-        self._works = [_work_of(self, place, node) for place, node in self.plan.inner]
-        return self._works
+    def _evaluated(self, positions: Positions, limit: int) -> list[Known]:
+        """What becomes known of each node, of the leaves what is known at a stamp."""
+        nodes = self.plan.nodes
+        if self.start == FAR:
+            return [((), ())] * len(nodes)
+        leaves = iter(self._leaves)
+        known: list[Known] = []
+        for node in nodes:
+            if isinstance(node, Leaf):
+                true, false = next(leaves)
+                known.append((up_to(true, limit), up_to(false, limit)))
+                continue
+            operands = [known[operand] for operand in operands_of(node)]
+            known.append(evaluated(node, operands, positions))
+        if isinstance(nodes[-1], Sweep) and nodes[-1].future and positions.first < self.start:
+            true, false = known[-1]
+            known[-1] = self._led_on(true), self._led_on(false)
+        return known
+
+    def _led_on(self, pieces: Pieces) -> Pieces:
+        """With the value at the first letter from the position that is asked for on."""
+        at = stamp(pieces, self.start)
+        if at is None:
+            return pieces
+        return soonest(pieces, ((self.positions.first, self.start - 1, at, 0),))
 
 
-def _work_of(network: Network, place: int, node: Junction | Window | Sweep | Shift) -> Work:
-    match node:
-        case Junction():
-            return junction_work(network, place, node)
-        case Window(over=int()):
-            made = sampled_window_work if network.positions.sparse else window_work
-            return made(network, place, node)
-        case Sweep(future=True):
-            return until_work(network, place, node)
-        case Shift() if node.offset >= 0:
-            return shift_work(network, place, node)
-        case _:
-            return past_work(network, place, node)
+def settled(alone: Known, position: int) -> tuple[int, bool] | None:
+    """The last instant before time alone settles the formula at a position, and its value then.
+
+    Args:
+        alone: as a network gives it for a stamp at which the value is not known.
+        position: as the network counts them.
+
+    Returns:
+        `None` if time alone does not settle it.
+    """
+    found = _at(alone, position)
+    return None if found is None else (found[1] // 2 - 1, found[0])
+
+
+def _at(known: Known, position: int) -> Carried:
+    """The value at a position, and its stamp."""
+    for value, pieces in zip((True, False), known, strict=True):
+        if (found_at := stamp(pieces, position)) is not None:
+            return value, found_at
+    return None
+
+
+def _aged(pieces: Pieces, before: int) -> Pieces:
+    """With what was known at a stamp known since ever."""
+    made: list[Piece] = []
+    for left, right, at, slope in pieces:
+        end = (before - at) // slope if slope else FAR if at <= before else -FAR
+        append(made, left, min(right, end), PAST, 0)
+        append(made, max(left, end + 1), right, at, slope)
+    return made

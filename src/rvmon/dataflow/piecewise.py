@@ -31,9 +31,6 @@ PAST = -(1 << 90)
 EVER: Pieces = ((-FAR, FAR, PAST, 0),)
 """Known everywhere, from the first."""
 
-_SHORT = 4
-"""So few pieces are looked at one by one."""
-
 _left = itemgetter(0)
 
 
@@ -44,6 +41,18 @@ def stamp(pieces: Pieces, position: int) -> int | None:
         return None
     _, right, at, slope = pieces[index]
     return at + slope * position if position <= right else None
+
+
+def unchanged_until(known: tuple[Pieces, Pieces], integer: int) -> int:
+    """The last integer up to which what is known stays as it is at one."""
+    end = FAR
+    for pieces in known:
+        index = bisect_right(pieces, integer, key=_left) - 1
+        if index >= 0 and pieces[index][1] >= integer:
+            end = min(end, pieces[index][1])
+        if index + 1 < len(pieces):
+            end = min(end, pieces[index + 1][0] - 1)
+    return end
 
 
 def append(pieces: list[Piece], left: int, right: int, at: int, slope: int) -> None:
@@ -62,38 +71,12 @@ def clip(pieces: Pieces, left: int, right: int = FAR) -> Pieces:
     """What lies between two positions, both included; it may be the very same pieces."""
     if not pieces or (pieces[0][0] >= left and pieces[-1][1] <= right):
         return pieces
-    start, end = span(pieces, left, right)
-    found = list(pieces[start:end])
-    if found:
-        first, last, at, slope = found[0]
-        if first < left:
-            found[0] = (left, last, at, slope)
-        first, last, at, slope = found[-1]
-        if last > right:
-            found[-1] = (first, right, at, slope)
-    return found
-
-
-def span(pieces: Pieces, left: int, right: int) -> tuple[int, int]:
-    """The indices of the pieces between two positions: the first, and that behind the last.
-
-    There are none if the positions are the wrong way round, also where one piece holds both.
-    """
-    count = len(pieces)
-    if left > right:
-        return count, count
-    if count <= _SHORT:
-        start = 0
-        while start < count and pieces[start][1] < left:
-            start += 1
-        end = start
-        while end < count and pieces[end][0] <= right:
-            end += 1
-        return start, end
-    start = max(bisect_right(pieces, left, key=_left) - 1, 0)
-    if pieces[start][1] < left:
-        start += 1
-    return start, max(bisect_right(pieces, right, key=_left), start)
+    made: list[Piece] = []
+    for first, last, at, slope in pieces[max(bisect_right(pieces, left, key=_left) - 1, 0) :]:
+        if first > right:
+            break
+        append(made, max(first, left), min(last, right), at, slope)
+    return made
 
 
 def shift(pieces: Pieces, offset: int) -> Pieces:
@@ -131,39 +114,23 @@ def soonest(one: Pieces, other: Pieces) -> Pieces:
     """Known if either is, as soon as the first is."""
     if not one or not other:
         return one or other
-    if one[0][0] > other[0][0]:
-        one, other = other, one
-    if one[-1][1] < other[0][0]:
-        return [*one, *other]
     made: list[Piece] = []
     for left, right, first, second in _refined(one, other):
-        if first is None or second is None:
-            at, slope = first or second or (PAST, 0)
-            append(made, left, right, at, slope)
-        else:
+        if first is not None and second is not None:
             _choose(made, left, right, first, second, least=True)
+        elif line := first or second:
+            append(made, left, right, *line)
     return made
 
 
 def latest(one: Pieces, other: Pieces) -> Pieces:
     """Known if both are, as soon as the second is."""
+    if not one or not other:
+        return ()
     made: list[Piece] = []
-    ones, others = iter(one), iter(other)
-    first, second = next(ones, None), next(others, None)
-    while first is not None and second is not None:
-        left, right, at, slope = first
-        its_left, its_right, its_at, its_slope = second
-        start = left if left > its_left else its_left
-        end = right if right < its_right else its_right
-        if start <= end:
-            if slope == its_slope:
-                append(made, start, end, at if at > its_at else its_at, slope)
-            else:
-                _choose(made, start, end, (at, slope), (its_at, its_slope), least=False)
-        if right <= its_right:
-            first = next(ones, None)
-        if its_right <= right:
-            second = next(others, None)
+    for left, right, first, second in _refined(one, other):
+        if first is not None and second is not None:
+            _choose(made, left, right, first, second, least=False)
     return made
 
 
@@ -192,34 +159,25 @@ def _choose(
 
 def _refined(one: Pieces, other: Pieces) -> Iterable[tuple[int, int, Line | None, Line | None]]:
     """The stretches on which either has one line, in order; without those where neither has one."""
-    ones, others = list(one), list(other)
     i = j = 0
     at = -FAR
-    while i < len(ones) or j < len(others):
-        here = ones[i] if i < len(ones) else None
-        there = others[j] if j < len(others) else None
-        starts = [max(piece[0], at) for piece in (here, there) if piece is not None]
-        left = min(starts)
-        first = second = None
-        ends = []
-        for piece, is_first in ((here, True), (there, False)):
-            if piece is None:
-                continue
-            if max(piece[0], at) > left:
-                ends.append(piece[0] - 1)
-                continue
-            ends.append(piece[1])
-            if is_first:
-                first = piece[2:]
-            else:
-                second = piece[2:]
-        right = min(ends)
+    while i < len(one) or j < len(other):
+        start, end, *line = one[i] if i < len(one) else _NO_MORE
+        its_start, its_end, *its_line = other[j] if j < len(other) else _NO_MORE
+        left = max(at, min(start, its_start))
+        right = min(
+            end if start <= left else start - 1, its_end if its_start <= left else its_start - 1
+        )
+        first = (line[0], line[1]) if start <= left else None
+        second = (its_line[0], its_line[1]) if its_start <= left else None
         yield left, right, first, second
         at = right + 1
-        if here is not None and here[1] < at:
-            i += 1
-        if there is not None and there[1] < at:
-            j += 1
+        i += end < at
+        j += its_end < at
+
+
+_NO_MORE: Piece = (FAR + 1, FAR + 1, 0, 0)
+"""Behind all pieces."""
 
 
 def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
@@ -230,38 +188,9 @@ def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
     """
     if low > high or not pieces:
         return ()
-    if rises(pieces):
-        return _soonest_first(pieces, low, high)
     ends = [(left, at + slope * left if slope else at) for left, _, at, slope in pieces]
     entered = _sliding(ends, low, high, keeps=lambda old, new: old < new)
     return soonest(shift(pieces, low), entered)
-
-
-def rises(pieces: Pieces) -> bool:
-    """Whether no stamp is before one further left."""
-    if len(pieces) == 1:
-        return True
-    before = PAST
-    for left, right, at, slope in pieces:
-        if at + slope * left < before:
-            return False
-        before = at + slope * right
-    return True
-
-
-def _soonest_first(pieces: Pieces, low: int, high: int) -> Pieces:
-    """`some_of_window` where stamps rise: the first position of a window is the soonest."""
-    made: list[Piece] = []
-    end = -FAR
-    for left, right, at, slope in pieces:
-        if left > -FAR:
-            start = max(end, left - high)
-            append(made, start, left - low - 1, at + slope * left, 0)
-            left -= low
-        right = right - low if right < FAR else FAR
-        append(made, left, right, at + slope * low, slope)
-        end = right + 1
-    return made
 
 
 def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
@@ -269,21 +198,13 @@ def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
     if low > high:
         return EVER
     made: list[Piece] = []
-    if rises(pieces):
-        # The last position of a window is the latest.
-        moved = shift(pieces, high)
-        for first, last in _runs(pieces):
-            made += clip(
-                moved, first - low if first > -FAR else first, FAR if last >= FAR else last - high
-            )
-        return made
     ends = [
         (right, at + slope * right if slope else at)
         for _, right, at, slope in pieces
         if right < FAR
     ]
     left_of = _sliding(ends, low, high, keeps=lambda old, new: old > new)
-    floor = filled(left_of)
+    floor = _filled(left_of)
     for first, last in _runs(pieces):
         start = first - low if first > -FAR else first
         end = last - high if last < FAR else last
@@ -292,7 +213,7 @@ def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
     return made
 
 
-def filled(pieces: Pieces) -> Pieces:
+def _filled(pieces: Pieces) -> Pieces:
     """The same, and `PAST` wherever it is not known."""
     made: list[Piece] = []
     at = -FAR

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 
 from rvmon.dataflow.piecewise import FAR, PAST, Piece, Pieces, append, clip
 
@@ -15,9 +16,10 @@ class Positions:
 
     Args:
         gap: ticks between two positions; `None` if only samples are positions.
+        stamps: those that have a letter, ascending; empty before there is one.
 
     Attributes:
-        stamps: where they are sparse, those of which something may be asked.
+        stamps: where they are sparse, all positions.
         gap: ticks between two integers, 1 in sampled time.
         slope: what a stamp grows by from one integer to the next.
         sparse: whether there are integers between positions.
@@ -25,50 +27,20 @@ class Positions:
         last: the last position; `FAR` while it is taken that they go on.
     """
 
-    def __init__(self, gap: int | None) -> None:
+    def __init__(self, gap: int | None, stamps: Sequence[int]) -> None:
         self.gap = gap or 1
         self.slope = 2 * self.gap
         self.sparse = not gap
-        self.first = FAR
-        self.last = FAR if gap else -FAR
-        self.stamps: list[int] = []
+        self.first = stamps[0] if stamps else FAR
+        self.stamps = stamps if self.sparse else ()
+        self.last = stamps[-1] if self.sparse and stamps else -FAR if self.sparse else FAR
 
-    @property
-    def distance(self) -> int | None:
-        """Ticks between two positions; `None` if only samples are positions."""
-        return None if self.sparse else self.gap
-
-    def copy(self) -> Positions:
-        """The same, independent from now on."""
-        made = Positions.__new__(Positions)
-        made.gap, made.slope, made.sparse = self.gap, self.slope, self.sparse
-        made.first, made.last = self.first, self.last
-        made.stamps = list(self.stamps)
+    def ended(self, last: int) -> Positions:
+        """The same, with no position behind `last`."""
+        made = Positions(None if self.sparse else self.gap, [self.first])
+        made.stamps = self.stamps[: bisect_right(self.stamps, last)]
+        made.last = min(self.last, last)
         return made
-
-    def visit(self, position: int) -> int:
-        """Come to a position; returns the integer behind the position before it.
-
-        For the first one that is the position itself.
-        """
-        if self.first == FAR:
-            self.first = position
-        if not self.sparse:
-            return position
-        behind = self.last + 1 if self.last > -FAR else position
-        if self.last < position:
-            self.stamps.append(position)
-            self.last = position
-        return behind
-
-    def end(self, last: int) -> None:
-        """Learn that there is no position behind `last`."""
-        self.last = min(self.last, last)
-
-    def forget(self, before: int) -> None:
-        """Drop the positions before `before`, of which nothing will be asked, but for the last."""
-        if self.stamps:
-            del self.stamps[: max(bisect_left(self.stamps, before) - 1, 0)]
 
     def following(self, integer: int) -> int:
         """The first position at or behind an integer, or the integer itself if there is none."""
@@ -77,40 +49,10 @@ class Positions:
         index = bisect_left(self.stamps, integer)
         return self.stamps[index] if index < len(self.stamps) else max(integer, self.last + 1)
 
-    def alike_from(self, integer: int) -> int:
-        """The first integer of which no more can be known than of one: both lie before a position.
-
-        Where that is still to come, the one behind the last position.
-        """
-        index = bisect_left(self.stamps, integer) if self.sparse else 0
-        return self.stamps[index - 1] + 1 if index else integer
-
-    def standing_at(self, integer: int) -> int:
-        """The last position not behind an integer, or the integer itself if there is none."""
-        if not self.sparse:
-            return integer
-        index = bisect_right(self.stamps, integer)
-        return self.stamps[index - 1] if index else integer
-
-    def within(self, left: int, right: int) -> list[int]:
+    def within(self, left: int, right: int) -> Sequence[int]:
         """The positions from `left` to `right` where they are sparse."""
         stamps = self.stamps
         return stamps[bisect_left(stamps, left) : bisect_right(stamps, right)]
-
-    def cells(self, pieces: Pieces) -> Pieces:
-        """Of each piece its positions, where they are sparse with all integers back to others."""
-        if not self.sparse:
-            return pieces
-        stamps = self.stamps
-        made: list[Piece] = []
-        for left, right, at, slope in pieces:
-            index, end = bisect_left(stamps, left), bisect_right(stamps, right)
-            while index < end:
-                until = index + 1 if slope else end
-                start = stamps[index - 1] + 1 if index else stamps[0]
-                append(made, start, stamps[until - 1], at + slope * stamps[until - 1], 0)
-                index = until
-        return made
 
     def held_on(self, pieces: Pieces) -> Pieces:
         """Of each piece its positions, where they are sparse with all integers up to others."""
@@ -126,15 +68,9 @@ class Positions:
                 append(made, position, end, at + slope * position, 0)
         return made
 
-    def only(self, pieces: Pieces, left: int, right: int) -> Pieces:
-        """Known at positions alone, for what has to be met at one of them.
-
-        Args:
-            pieces: what is known.
-            left: the first integer that matters.
-            right: the last one.
-        """
-        found = clip(pieces, max(left, self.first), min(right, self.last))
+    def only(self, pieces: Pieces) -> Pieces:
+        """Known at positions alone, for what has to be met at one of them."""
+        found = clip(pieces, self.first, self.last)
         if not self.sparse:
             return found
         made: list[Piece] = []
@@ -143,33 +79,22 @@ class Positions:
                 append(made, position, position, at + slope * position, 0)
         return made
 
-    def besides(self, pieces: Pieces, left: int, right: int) -> Pieces:
-        """Known at all integers that are no positions as well, for what has to hold at each.
-
-        Args:
-            pieces: what is known.
-            left: the first integer that matters.
-            right: the last one.
-        """
-        if not self.sparse and left >= self.first and right <= self.last:
-            return clip(pieces, left, right)
+    def besides(self, pieces: Pieces) -> Pieces:
+        """Known at all integers that are no positions as well, for what has to hold at each."""
         made: list[Piece] = []
-        append(made, left, min(right, self.first - 1), PAST, 0)
-        behind = max(left, self.first)
-        for first, last, at, slope in clip(pieces, behind, min(right, self.last)):
+        append(made, -FAR, self.first - 1, PAST, 0)
+        behind = self.first
+        for first, last, at, slope in clip(pieces, self.first, self.last):
             self._fill(made, behind, first - 1)
-            if not self.sparse or at == PAST:
-                append(made, first, last, at, slope)
-            else:
-                start = first
-                for position in self.within(first, last):
-                    append(made, start, position - 1, PAST, 0)
-                    append(made, position, position, at + slope * position, 0)
-                    start = position + 1
-                append(made, start, last, PAST, 0)
+            start = first
+            for position in self.within(first, last):
+                append(made, start, position - 1, PAST, 0)
+                append(made, position, position, at + slope * position, 0)
+                start = position + 1
+            append(made, start, last, *((PAST, 0) if self.sparse else (at, slope)))
             behind = last + 1
-        self._fill(made, behind, min(right, self.last))
-        append(made, max(left, self.last + 1, behind), right, PAST, 0)
+        self._fill(made, behind, self.last)
+        append(made, max(self.last + 1, behind), FAR, PAST, 0)
         return made
 
     def _fill(self, made: list[Piece], left: int, right: int) -> None:

@@ -11,10 +11,7 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from rvmon.dataflow.network import Network
-from rvmon.dataflow.nodes import Sweep
-from rvmon.dataflow.piecewise import FAR, up_to
-from rvmon.dataflow.ranges import stretch
-from rvmon.dataflow.sweep import Known
+from rvmon.dataflow.piecewise import FAR, unchanged_until
 from rvmon.formula.core import (
     And,
     Constant,
@@ -53,10 +50,10 @@ class Remaining:
         self.duals = duals
         positions = network.positions
         self.gap = positions.gap
-        known = positions.last if positions.sparse else (network.grown - 1) // positions.slope
+        known = positions.last if positions.sparse else (network.limit - 1) // positions.slope
         self.now = min(known, positions.last)
-        self._known: dict[Core, Known] = {}
         self._looked = 0
+        self._owed: Core | None = None
 
     def of(self, core: Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
         """What a formula, or its negation, at a position asks for at least.
@@ -73,6 +70,7 @@ class Remaining:
             TooManyClausesError: it may have more than `MOST_CLAUSES` clauses.
         """
         self._looked = 0
+        self._owed = core
         found = self._at(core, position, positive)
         anchors = sorted({c for clause in found for _, c in clause if c != NO_CLOCK})
         number = {anchor: clock for clock, anchor in enumerate(anchors)}
@@ -85,7 +83,7 @@ class Remaining:
     def _value(self, core: Core, position: int, positive: bool) -> bool | None:
         if isinstance(core, Constant):
             return core.value is positive
-        found = self.network.value_at(core, position, self.network.grown)
+        found = self.network.value_at(core, position)
         return None if found is None else found is positive
 
     def _at(self, core: Core, position: int, positive: bool) -> Residual:
@@ -93,8 +91,8 @@ class Remaining:
         value = self._value(core, position, positive)
         if value is not None:
             return HOLDS if value else FAILS
-        forgotten = position < self.network.pending[self.network.plan.places[core]]
-        if forgotten or self._looked > MOST_POSITIONS:
+        unheard = position < self.network.start and core is not self._owed
+        if unheard or self._looked > MOST_POSITIONS:
             return HOLDS
         match core:
             case Constant() | Literal() | Previous() | Since():
@@ -155,9 +153,7 @@ class Remaining:
         and whether the right one is not.
         """
         some = isinstance(core, Until) is positive
-        place = self.network.plan.places[core]
-        swept = isinstance(self.network.plan.nodes[place], Sweep)
-        k = max(position, self.network.swept[place]) if swept else position
+        k = max(position, self.network.start)
         positions = self.network.positions
         last = self.now
         if core.high is not None:
@@ -190,15 +186,7 @@ class Remaining:
         """The last integer up to which what is known of a formula stays as it is at a position."""
         if isinstance(core, Constant):
             return FAR
-        return stretch(self._known_of(core), position)[1]
-
-    def _known_of(self, core: Core) -> Known:
-        """What is known of a part by now."""
-        known = self._known.get(core)
-        if known is None:
-            true, false = (up_to(side, self.network.grown) for side in self.network.known_of(core))
-            known = self._known[core] = true, false
-        return known
+        return unchanged_until(self.network.known_of(core), position)
 
     def _is_in_window(self, core: Until | Release, position: int, k: int) -> bool:
         age = (k - position) * self.gap

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from rvmon.dataflow.piecewise import Line, Piece, Pieces, append, clip, latest, soonest, stamp
+from rvmon.dataflow.piecewise import FAR, PAST, Line, Piece, Pieces, append, latest, soonest, stamp
 
 Known = tuple[Pieces, Pieces]
 """Where something is known to be true, and where to be false."""
@@ -16,8 +16,8 @@ _Side = tuple[bool, Line] | None
 """What is known of an operand all over a stretch."""
 
 
-def until(left: Known, right: Known, start: int, end: int, beyond: Carried = None) -> Known:
-    """`left U right` at all integers from `start` to `end`.
+def until(left: Known, right: Known) -> Known:
+    """`left U right` at all integers.
 
     U(i) = right(i) or (left(i) and U(i + 1)). As stamps do not fall within a stretch, its first
     position is the best witness it has, and its last one speaks for the way through it.
@@ -25,16 +25,10 @@ def until(left: Known, right: Known, start: int, end: int, beyond: Carried = Non
     Args:
         left: operand that has to hold on the way; known to at integers that are no positions.
         right: operand to be met; false at integers that are no positions.
-        start: the first integer wanted.
-        end: the last one.
-        beyond: the value at the integer behind.
     """
-    one, other = _all_over(left, start, end), _all_over(right, start, end)
-    if one is not None and other is not None:
-        return _until_on(start, end, one[0], other[0], beyond)
-    found: list[tuple[Pieces, Pieces]] = []
-    carried = beyond
-    for first, last, stays, meets in reversed(list(_stretches(left, right, start, end))):
+    found: list[Known] = []
+    carried: Carried = None
+    for first, last, stays, meets in reversed(list(_stretches(left, right))):
         true, false = _until_on(first, last, stays, meets, carried)
         found.append((true, false))
         carried = _value_at(first, true, false)
@@ -43,8 +37,6 @@ def until(left: Known, right: Known, start: int, end: int, beyond: Carried = Non
 
 def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried) -> Known:
     """`until` on a stretch on which neither operand changes."""
-    if not (stays and stays[1][1]) and not (meets and meets[1][1]):
-        return _level_pieces(first, last, _level(stays, meets, beyond))
     true = _whole(first, last, meets, True)
     false: Pieces = ()
     if meets is not None and not meets[0]:
@@ -58,54 +50,16 @@ def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried
     return true, false
 
 
-def _all_over(known: Known, start: int, end: int) -> tuple[_Side] | None:
-    """What is known of an operand if that is the same from `start` to `end`."""
-    true, false = known
-    if len(true) + len(false) > 1:
-        return None
-    if not true and not false:
-        return (None,)
-    left, right, at, slope = (true or false)[0]
-    if left > start or right < end:
-        return None
-    return ((bool(true), (at, slope)),)
-
-
-def _level(stays: _Side, meets: _Side, beyond: Carried) -> Carried:
-    """What is known all over a stretch whose sides have one stamp each."""
-    found: Carried = None
-    if meets is not None and (meets[0] or (stays is not None and not stays[0])):
-        at = meets[1][0]
-        found = (True, at) if meets[0] or stays is None else (False, max(at, stays[1][0]))
-    if beyond is not None:
-        value, known = beyond
-        side = stays if value else meets
-        if side is not None and side[0] is value:
-            at = max(side[1][0], known)
-            found = (value, at if found is None else min(at, found[1]))
-    return found
-
-
-def _level_pieces(first: int, last: int, known: Carried) -> tuple[Pieces, Pieces]:
-    if known is None:
-        return (), ()
-    pieces = ((first, last, known[1], 0),)
-    return (pieces, ()) if known[0] else ((), pieces)
-
-
-def since(left: Known, right: Known, start: int, end: int, before: Carried) -> Known:
-    """`left S right` at all integers from `start` to `end`; the mirror image of `until`.
+def since(left: Known, right: Known) -> Known:
+    """`left S right` at all integers, false before all; the mirror image of `until`.
 
     Args:
         left: operand that has held ever since; known to at integers that are no positions.
         right: operand that was met; false at integers that are no positions.
-        start: the first integer wanted.
-        end: the last one.
-        before: the value at the integer before.
     """
-    found: list[tuple[Pieces, Pieces]] = []
-    carried = before
-    for first, last, stays, meets in _stretches(left, right, start, end):
+    found: list[Known] = []
+    carried: Carried = (False, PAST)
+    for first, last, stays, meets in _stretches(left, right):
         # True: met at the first position of the stretch or before, and so all the way since.
         # False: cut there or before, and not met all the way since.
         true = latest(_whole(first, last, stays, True), _from(first, last, meets, carried, True))
@@ -144,7 +98,7 @@ def _value_at(position: int, true: Pieces, false: Pieces) -> Carried:
     return None
 
 
-def _joined(parts: Iterator[tuple[Pieces, Pieces]] | list[tuple[Pieces, Pieces]]) -> Known:
+def _joined(parts: Iterable[Known]) -> Known:
     true: list[Piece] = []
     false: list[Piece] = []
     for its_true, its_false in parts:
@@ -155,37 +109,35 @@ def _joined(parts: Iterator[tuple[Pieces, Pieces]] | list[tuple[Pieces, Pieces]]
     return true, false
 
 
-def _stretches(
-    left: Known, right: Known, start: int, end: int
-) -> Iterator[tuple[int, int, _Side, _Side]]:
+def _stretches(left: Known, right: Known) -> Iterator[tuple[int, int, _Side, _Side]]:
     """What is known of both operands, in stretches on which neither changes."""
-    ones, others = _sides(left, start, end), _sides(right, start, end)
-    one = next(ones, None)
-    other = next(others, None)
-    first = start
-    while one is not None and other is not None:
+    ones, others = _sides(left), _sides(right)
+    one, other = next(ones), next(others)
+    first = -FAR
+    while True:
         last = min(one[1], other[1])
         yield first, last, one[2], other[2]
+        if last >= FAR:
+            return
         first = last + 1
         if one[1] == last:
-            one = next(ones, None)
+            one = next(ones)
         if other[1] == last:
-            other = next(others, None)
+            other = next(others)
 
 
-def _sides(known: Known, start: int, end: int) -> Iterator[tuple[int, int, _Side]]:
-    """An operand from `start` to `end` without gaps."""
-    true, false = (clip(pieces, start, end) for pieces in known)
-    at = start
-    sides: list[tuple[int, int, tuple[bool, Line]]] = [
-        (left, right, (True, (stamp_, slope))) for left, right, stamp_, slope in true
+def _sides(known: Known) -> Iterator[tuple[int, int, _Side]]:
+    """An operand at all integers, without gaps."""
+    at = -FAR
+    sides = [
+        (left, right, (value, (stamp_, slope)))
+        for value, pieces in zip((True, False), known, strict=True)
+        for left, right, stamp_, slope in pieces
     ]
-    sides += [(left, right, (False, (stamp_, slope))) for left, right, stamp_, slope in false]
-    sides.sort()
-    for left, right, side in sides:
+    for left, right, side in sorted(sides):
         if left > at:
             yield at, left - 1, None
         yield left, right, side
         at = right + 1
-    if at <= end:
-        yield at, end, None
+    if at <= FAR:
+        yield at, FAR, None

@@ -1,16 +1,12 @@
-"""The delay network: what only it can judge, how much it remembers, and how often it works."""
+"""The delay network: what only it can judge, and what is said of it."""
 
-import random
-import sys
 from itertools import accumulate
 
 import pytest
 from tests.tools.differential import case_of
 from tests.tools.drive import drive
-from tests.tools.scale import in_units, scaled
 
 import rvmon
-from rvmon.dataflow.network import Network
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.costs import compile_report
 from rvmon.session import Spec
@@ -20,8 +16,6 @@ from rvmon.testing.generate.trace import TraceProfile
 
 SECOND = 10**9
 RESPAWNED = "whenever a then F[2 s, 5 s] b"
-PAIRS = 30
-BRIEF, LENGTHY = ("100 ms", "250 ms"), ("1 s", "2.5 s")
 
 
 def spec_of(requirement, time="held"):
@@ -94,36 +88,6 @@ def test_the_sample_before_is_kept(at):
     assert outcomes(spec, samples) == [(began, began + 2 * SECOND + 1, "F")]
 
 
-def count_steps(monkeypatch, case):
-    """How often the network was told of a letter or of time."""
-    count = 0
-    for name in ("note", "grow"):
-        original = getattr(Network, name)
-
-        def counted(self, *args, original=original):
-            nonlocal count
-            count += 1
-            return original(self, *args)
-
-        monkeypatch.setattr(Network, name, counted)
-    report, _ = drive(Spec(case.spec).monitor(sources=case.names), case)
-    monkeypatch.undo()
-    return report, count
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("seed", range(25))
-def test_the_length_of_a_tick_is_of_no_account(seed, monkeypatch):
-    """A million times longer: the same attempts, at the same instants, in as many steps."""
-    profile = Profile(time=TimeModel.HELD, numbers=False)
-    case = case_of(f"scale {seed}", profile, TraceProfile())
-    short, long = scaled(case, 10**3), scaled(case, 10**9)
-    expected, steps = count_steps(monkeypatch, short)
-    found, as_many = count_steps(monkeypatch, long)
-    assert in_units(found, 10**9) == in_units(expected, 10**3)
-    assert abs(as_many - steps) <= 2
-
-
 def test_time_that_passes_in_one_go_leaves_out_no_failure():
     """Within a silence each failure is followed by the next attempt, though an older one waits."""
     owed = "always (a -> (c and F[1 s, 20 s] b) or F[1 s, 3 s] b)"
@@ -161,35 +125,6 @@ def test_an_instance_fails_under_another_letter_before_its_next_trigger():
         monitor.step_ns(t, {"g": {"k": 0}})
     attempts = monitor.finish().attempts
     assert [(one.triggered, one.decided) for one in attempts] == [(16, 17), (20, 25), (28, 29)]
-
-
-def calls_per_change(low, high, time):
-    """How many functions are called for a change, once the window is full."""
-    monitor = spec_of(f"whenever a then F[{low}, {high}] b", time).monitor()
-    rng = random.Random(1)
-    count, changes = 0, 60
-
-    def hear(frame, event, _):
-        nonlocal count
-        count += event == "call"
-
-    values = {"a": False, "b": False}
-    for k in range(300 + changes):
-        name = rng.choice("ab")
-        values[name] = not values[name]
-        if k == 300:
-            sys.setprofile(hear)
-        monitor.step(k * 0.01, {name: values[name]})
-    sys.setprofile(None)
-    return count / changes
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("time", ["held", "sampled"])
-def test_a_change_costs_what_it_makes_known(time):
-    """A window ten times as long, with ten times as many changes in it: hardly more is done."""
-    short, long = (calls_per_change(*window, time) for window in (BRIEF, LENGTHY))
-    assert long < 1.5 * short
 
 
 def test_what_time_alone_decides_is_known_beforehand():

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from struct import Struct
 
-from rvmon.dataflow.network import Network
-from rvmon.dataflow.time_decisions import Moment
+from rvmon.dataflow.network import Network, Noted
 from rvmon.formula.core import Constant, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.compiled.requirement import CompiledRequirement
@@ -47,8 +46,15 @@ def _truth(sense: Sense, value: int, *, better: bool) -> bool:
     return value == (TRUE if sense is Sense.TRUE else FALSE)
 
 
-class _Replay:
-    """A network that is given the letters from a position on.
+def _noted(
+    compiled: CompiledRequirement,
+    gap: int | None,
+    letters: Letters,
+    position: int,
+    *,
+    better: bool,
+) -> Noted:
+    """Letters for a network, from the position that is asked for on, where no others matter.
 
     Args:
         compiled: the requirement.
@@ -57,57 +63,25 @@ class _Replay:
         position: what is asked for.
         better: whether the unknown is taken for the better.
     """
+    plan, propositions = compiled.network_plan, compiled.alphabet.propositions
+    place = {state: number for number, state in enumerate(propositions)}
+    leaves = [core for _, core in plan.leaves]
 
-    def __init__(
-        self,
-        compiled: CompiledRequirement,
-        gap: int | None,
-        letters: Letters,
-        position: int,
-        *,
-        better: bool,
-    ) -> None:
-        plan, propositions = compiled.network_plan, compiled.alphabet.propositions
-        place = {state: number for number, state in enumerate(propositions)}
-        leaves = [core for _, core in plan.leaves]
+    def letter(truths: Sequence[int]) -> tuple[bool, ...]:
+        return tuple(
+            core.value
+            if isinstance(core, Constant)
+            else _truth(core.sense, truths[place[core.proposition]], better=better)
+            for core in leaves
+        )
 
-        def letter(truths: Sequence[int]) -> tuple[bool, ...]:
-            return tuple(
-                core.value
-                if isinstance(core, Constant)
-                else _truth(core.sense, truths[place[core.proposition]], better=better)
-                for core in leaves
-            )
-
-        noted = [(t, letter(truths)) for t, truths in letters.read(len(propositions))]
-        self.network = Network(plan, gap)
-        self._position = position
-        if noted and not plan.looks_back:
-            # What came before the position does not matter; a letter that stays does till there.
-            first = max((i for i, (t, _) in enumerate(noted) if t <= position), default=0)
-            t, stays = noted[first]
-            noted = [(t if gap is None else max(t, position), stays), *noted[first + 1 :]]
-        if noted and position < noted[0][0]:
-            t, stays = noted[0]
-            step = gap or 1
-            self.network.begin_at(t // step, position // step, stays)
-        self._noted = noted
-
-    def last_before(self, t: int) -> int:
-        """The last instant before another at which there was a letter, or just that before it."""
-        return max((at for at, _ in self._noted if at < t), default=t - 1)
-
-    def grow(self, stamp: int) -> None:
-        """Let time come to a stamp; letters behind it are not known yet."""
-        known = (stamp - 1) // 2
-        given = 0
-        for t, letter in self._noted:
-            if t > known:
-                break
-            self.network.note(t, letter)
-            given += 1
-        del self._noted[:given]
-        self.network.grow(stamp, self._position)
+    noted = [(t, letter(truths)) for t, truths in letters.read(len(propositions))]
+    if noted and not plan.looks_back:
+        # What came before the position does not matter; a letter that stays does till there.
+        first = max((i for i, (t, _) in enumerate(noted) if t <= position), default=0)
+        t, stays = noted[first]
+        noted = [(t if gap is None else max(t, position), stays), *noted[first + 1 :]]
+    return noted
 
 
 def at_decision(
@@ -132,20 +106,20 @@ def at_decision(
     """
     if letters is None:
         return None
-    replay = _Replay(compiled, gap, letters, position, better=not verdict)
+    noted = _noted(compiled, gap, letters, position, better=not verdict)
+
+    def stood(stamp: int, before: int) -> Network:
+        return Network(compiled.network_plan, gap, noted, position, stamp, before)
+
+    if triggered > position == t:
+        return stood(2 * triggered, 2 * t + 1)
     if t == position:
         # It was known as the attempt began, perhaps before that: since the letter before.
-        replay.grow(2 * replay.last_before(t) + 1)
-        replay.grow(2 * t + 1)
-        if triggered > position:
-            replay.grow(2 * triggered)
-        return replay.network
+        last = max((at for at, _ in noted if at < t), default=t - 1)
+        return stood(2 * t + 1, 2 * last + 1)
     # What became known by then is no news at the decision.
-    replay.grow(2 * t - 1)
-    replay.grow(2 * t)
-    if replay.network.truth(position) is None:
-        replay.grow(2 * t + 1)
-    return replay.network
+    network = stood(2 * t, 2 * t - 1)
+    return stood(2 * t + 1, 2 * t) if network.truth(position) is None else network
 
 
 def at_moment(
@@ -168,9 +142,14 @@ def at_moment(
     """
     if letters is None:
         return NetworkRuns(None, None, count, gap)
-    moments = []
-    for better in (False, True):
-        replay = _Replay(compiled, gap, letters, position, better=better)
-        replay.grow(now)
-        moments.append(Moment(replay.network, now))
-    return NetworkRuns(moments[0], moments[1], count, gap)
+    worse, better = (
+        Network(
+            compiled.network_plan,
+            gap,
+            _noted(compiled, gap, letters, position, better=better),
+            position,
+            now,
+        )
+        for better in (False, True)
+    )
+    return NetworkRuns(worse, better, count, gap)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.automaton.location import FAILED, PASSED, Token
-from rvmon.dataflow.network import Network
+from rvmon.dataflow.network import Network, settled
 from rvmon.dataflow.remaining import Remaining
-from rvmon.dataflow.time_decisions import Moment, known_alone, settled
 from rvmon.formula.residual import TooManyClausesError
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.explained.explanation import (
@@ -78,7 +77,7 @@ def _settled_before(network: Network, position: int, at: int) -> int | None:
     """The last instant before time alone would have settled what became known at a stamp."""
     if at % 2 == 0:
         return at // 2 - 1  # as it did: no letter of that instant was needed
-    alone = settled(known_alone(network, at - 1, (position, position)), position)
+    alone = settled(network.alone_from(at - 1), position)
     return None if alone is None else alone[0]
 
 
@@ -93,18 +92,18 @@ class NetworkRuns:
         gap: ticks between two positions; `None` if only samples are positions.
     """
 
-    worse: Moment | None
-    better: Moment | None
+    worse: Network | None
+    better: Network | None
     count: int
     gap: int | None
 
     def met(self, worse: Token, better: Token) -> tuple[Token, Token]:
         """Two runs that wait, of which one may have come to its end by now."""
-        for moment, value, ended in ((self.worse, False, FAILED), (self.better, True, PASSED)):
+        for network, value, ended in ((self.worse, False, FAILED), (self.better, True, PASSED)):
             token = better if value else worse
-            if moment is None or token[0] != WAITING:
+            if network is None or token[0] != WAITING:
                 continue
-            found = moment.network.truth(token[1][0])
+            found = network.truth(token[1][0])
             if found is not None and found[0] is value and value:
                 better = (ended, token[1])
             elif found is not None and found[0] is value:
@@ -114,15 +113,15 @@ class NetworkRuns:
     def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
         """See `Judged`."""
         del now  # the networks have come to it
-        moment, token = self.worse, attempt.worse
+        network, token = self.worse, attempt.worse
         if token[0] == FAILED and attempt.better != attempt.worse:
-            moment, token = self.better, attempt.better
-        if moment is None or token[0] != WAITING:
+            network, token = self.better, attempt.better
+        if network is None or token[0] != WAITING:
             return Explanation(f"left open by the input: {attempt.doubt}")
-        network, compiled = moment.network, attempt.compiled
+        compiled = attempt.compiled
         position = token[1][0] // network.positions.gap
         core = compiled.obligation.owed
-        owed = owed_at(network, core, position, network.grown, compiled.words)
+        owed = owed_at(network, core, position, compiled.words)
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
         waiting = still_owed(owed or "what lies ahead", end)
         lasting = longer(core, attempt.triggered, end)
@@ -146,14 +145,14 @@ class NetworkRuns:
         return None
 
     def _may_become(
-        self, moment: Moment | None, attempt: Undecided, token: Token, value: bool
+        self, network: Network | None, attempt: Undecided, token: Token, value: bool
     ) -> bool:
         """Whether continuations may give an attempt a value in a network."""
-        if moment is None:
+        if network is None:
             return True
         forecaster = attempt.compiled.forecaster
-        remaining = Remaining(moment.network, forecaster.duals)
-        position = token[1][0] // moment.network.positions.gap
+        remaining = Remaining(network, forecaster.duals)
+        position = token[1][0] // network.positions.gap
         try:
             residual, ages = remaining.of(attempt.compiled.obligation.owed, position, value)
         except TooManyClausesError:
@@ -161,8 +160,8 @@ class NetworkRuns:
         return forecaster.admits(residual, ages, self.gap)
 
 
-def _alone(moment: Moment | None, token: Token) -> tuple[int, bool] | None:
+def _alone(network: Network | None, token: Token) -> tuple[int, bool] | None:
     """What time alone makes of a run, and the last instant before that."""
-    if moment is None or token[0] != WAITING:
+    if network is None or token[0] != WAITING:
         return None
-    return settled(moment.alone, token[1][0] // moment.network.positions.gap)
+    return settled(network.alone, token[1][0] // network.positions.gap)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from rvmon.dataflow.network import Network
-from rvmon.dataflow.piecewise import FAR, PAST
+from rvmon.dataflow.piecewise import FAR
 from rvmon.formula.core import (
     And,
     Constant,
@@ -91,9 +91,8 @@ class NetworkCauseFinder:
         """The first position at which a formula got the decision's value at its stamp."""
         if isinstance(core, Constant):
             return None
-        # What was known before is as fresh as anything that was.
-        known_of = self.network.known_of if self.at == PAST else self.network.news_of
-        for left, right, at, slope in known_of(core)[not self.verdict]:
+        positions = self.network.positions
+        for left, right, at, slope in self.network.known_of(core)[not self.verdict]:
             low, high = max(left, first), min(right, last)
             if low > high:
                 continue
@@ -103,7 +102,8 @@ class NetworkCauseFinder:
             elif at != self.at:
                 continue
             elif low > -FAR:
-                found = self.network.positions.following(low)
-            if low <= found <= high and not rest:
+                found = positions.following(low)
+            is_met = low <= found <= min(high, positions.last) and not rest
+            if is_met and found == positions.following(found):
                 return found if found > -FAR else None
         return None

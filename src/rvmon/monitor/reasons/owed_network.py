@@ -21,20 +21,19 @@ from rvmon.monitor.reasons.obligation_words import Words, all_of
 from rvmon.trace.time import format_ticks
 
 
-def owed_at(network: Network, core: Core, position: int, limit: int, words: Words) -> str:
-    """What a formula at a position asks for at a stamp, as text; empty if it is decided."""
-    return _Owing(network, limit, words).at(core, position)
+def owed_at(network: Network, core: Core, position: int, words: Words) -> str:
+    """What a formula at a position asks for, as text; empty if it is decided."""
+    return _Owing(network, words).at(core, position)
 
 
 class _Owing:
-    def __init__(self, network: Network, limit: int, words: Words) -> None:
+    def __init__(self, network: Network, words: Words) -> None:
         self.network = network
-        self.limit = limit
         self.words = words
         self.gap = network.positions.gap
 
     def at(self, core: Core, position: int) -> str:
-        if self.network.value_at(core, position, self.limit) is not None:
+        if self.network.value_at(core, position) is not None:
             return ""
         match core:
             case Constant() | Literal():
@@ -65,5 +64,5 @@ class _Owing:
         """What the first position asks for, of those from `first` on that are not known."""
         if isinstance(core, Literal | Constant):
             return ""
-        position = self.network.first_unknown(core, first, self.limit)
+        position = self.network.first_unknown(core, first)
         return "" if position is None else self.at(core, position)
