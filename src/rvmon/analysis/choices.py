@@ -11,7 +11,7 @@ from typing import TypeVar, assert_never
 from rvmon.analysis.solve import Variable, parts_of, turning_values
 from rvmon.analysis.tried import truths_tried
 from rvmon.formula.state import Leaf
-from rvmon.plan.leaves import captured_names, reads
+from rvmon.plan.leaves import captured_names, names_of
 from rvmon.spec.checked.formula import (
     Compare,
     EventAtom,
@@ -199,7 +199,7 @@ class _Seen:
         self.plain: list[Leaf] = []
         self.raw: set[str] = set(remembered)
         for leaf in leaves:
-            own = reads(leaf).names
+            own = names_of(leaf)
             if captured_names(leaf) or own & remembered or isinstance(leaf, ProbeAtom):
                 self.raw |= own
             elif isinstance(leaf, SignalAtom | EventAtom | Compare):

@@ -18,7 +18,7 @@ from rvmon.analysis.choices import Silence, values_of
 from rvmon.analysis.solve import is_solved
 from rvmon.analysis.tried import truths_tried
 from rvmon.formula.state import TRUE, Lapsed, Leaf, State, StateOp
-from rvmon.plan.leaves import captured_names, reads
+from rvmon.plan.leaves import captured_names, names_of
 from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
@@ -202,7 +202,7 @@ def _leaves_by_source(nodes: Iterable[State], spec: CheckedSpec) -> dict[Source,
     found: dict[Source, tuple[State, ...]] = {}
     for node in nodes:
         if node.leaf is not None and _is_plain(node.leaf, spec):
-            for name in sorted(reads(node.leaf).names):
+            for name in sorted(names_of(node.leaf)):
                 found[name] = (*found.get(name, ()), node)
         elif _is_free(node):
             found[node] = (node,)
@@ -234,7 +234,7 @@ def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
             return True
         case Compare():
             solved = is_solved(leaf) and not captured_names(leaf)
-            return solved and all(_is_steady(name, spec) for name in reads(leaf).names)
+            return solved and all(_is_steady(name, spec) for name in names_of(leaf))
         case _:
             return False
 

@@ -9,8 +9,8 @@ from rvmon.core.forms import add_operators
 from rvmon.core.sections import Section, Sections
 from rvmon.dataflow.nodes import NetworkPlan
 from rvmon.formula.core import Constant, Literal, Sense
+from rvmon.formula.numeric import events_of
 from rvmon.formula.state import State
-from rvmon.plan.numbers import events_of
 from rvmon.spec.checked.arithmetic import UnitRule
 from rvmon.spec.checked.formula import (
     Arithmetic,

@@ -16,8 +16,8 @@ from rvmon.core.sections import Listed, Section, Sections
 from rvmon.core.unit import SHARED, Unit
 from rvmon.dataflow.network_plan import plan_of_all
 from rvmon.errors import RvmonError
+from rvmon.formula.numeric import events_of, inputs_of
 from rvmon.plan.instances import keys_of
-from rvmon.plan.numbers import events_of, inputs_of
 from rvmon.plan.plan import Plan, Uses
 from rvmon.spec.checked.formula import Compare, Numeric
 

@@ -12,13 +12,12 @@ from rvmon.formula.core import Core
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor.core.watching import TruthsRun
-from rvmon.plan.instances import occurrences_with
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, TimeModel
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.gaps import is_unknown
-from rvmon.trace.sample import Payload, Sample, Scalar, Value
+from rvmon.trace.sample import Payload, Sample, Scalar, Value, payloads_of
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
@@ -270,15 +269,23 @@ class _Ticks:
 def _of_instance(
     each: ForEach, captured: Mapping[str, Scalar], samples: Iterable[Sample]
 ) -> Iterator[Sample]:
-    """A recording as the instance of a value sees it: other occurrences of its event are none."""
-    event = each.value.event
+    """A recording as the instance of a value sees it: other occurrences of its event are none.
+
+    One whose value is not known is an unknown occurrence in every instance.
+    """
+    event, own = each.value.event, captured[each.name]
     for sample in samples:
         if event not in sample.values:
             yield sample
             continue
         values: dict[str, Value] = {**sample.values}
-        del values[event]
-        seen = occurrences_with(each.value, captured[each.name], sample.values[event])
+        seen: list[Payload | None] = []
+        for payload in payloads_of(values.pop(event)):
+            key = None if payload is None else payload.get(each.value.field)
+            if key is None or key != key:
+                seen.append(None)
+            elif key == own:
+                seen.append(payload)
         if seen:
             values[event] = _reported(seen)
         yield Sample(sample.t, values)

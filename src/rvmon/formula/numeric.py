@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from rvmon.spec.checked.formula import (
     Arithmetic,
+    Captured,
     Compare,
     FieldValue,
     Numeric,
@@ -44,3 +45,22 @@ def reads_fields(atom: SignalAtom | Compare) -> bool:
     return isinstance(atom, Compare) and any(
         isinstance(part, FieldValue) for part in (*operands(atom.left), *operands(atom.right))
     )
+
+
+def inputs_of(*expressions: Numeric) -> frozenset[str]:
+    """The signals and events that expressions read."""
+    parts = [part for expression in expressions for part in operands(expression)]
+    signals = {part.name for part in parts if isinstance(part, SignalValue | UpdateValue)}
+    return frozenset(signals) | frozenset(events_of(*expressions))
+
+
+def events_of(*expressions: Numeric) -> tuple[str, ...]:
+    """The events whose fields expressions read, each once."""
+    parts = [part for expression in expressions for part in operands(expression)]
+    return tuple(dict.fromkeys(part.event for part in parts if isinstance(part, FieldValue)))
+
+
+def captured_of(*expressions: Numeric) -> frozenset[str]:
+    """The captured values that expressions read."""
+    parts = [part for expression in expressions for part in operands(expression)]
+    return frozenset(part.name for part in parts if isinstance(part, Captured))

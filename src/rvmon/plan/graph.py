@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from rvmon.formula.state import Elapsed, Shown, State, StateOp
-from rvmon.plan.leaves import Reads, captured_names, reads
+from rvmon.plan.leaves import captured_names, names_of
 from rvmon.spec.print.printer import format_formula
 
 
@@ -19,10 +19,8 @@ class Graph:
         index: their places in `nodes`.
         operands: per node the places of its operands.
         parents: per node the places of those it is an operand of.
-        reads: what each leaf depends on, by place.
         by_name: per signal and event, the leaves that read it.
         stateful: the nodes that remember, and those that change by time alone.
-        captured: names of captured values that some leaf reads.
         remembers_captured: whether a node that remembers stands above such a leaf.
     """
 
@@ -30,10 +28,8 @@ class Graph:
     index: Mapping[State, int]
     operands: tuple[tuple[int, ...], ...]
     parents: tuple[tuple[int, ...], ...]
-    reads: Mapping[int, Reads]
     by_name: Mapping[str, tuple[int, ...]]
     stateful: tuple[int, ...]
-    captured: frozenset[str]
     remembers_captured: bool
 
 
@@ -72,21 +68,16 @@ def graph_of(roots: Iterable[State]) -> Graph:
     operands = tuple(tuple(index[arg] for arg in state.args) for state in nodes)
     parents: list[list[int]] = [[] for _ in nodes]
     by_name: dict[str, list[int]] = {}
-    leaf_reads: dict[int, Reads] = {}
     stateful: list[int] = []
-    captured: set[str] = set()
     varies: set[int] = set()
     remembers = False
     for place, state in enumerate(nodes):
         for operand in dict.fromkeys(operands[place]):
             parents[operand].append(place)
         if state.leaf is not None:
-            leaf_reads[place] = found = reads(state.leaf)
-            for name in found.names:
+            for name in names_of(state.leaf):
                 by_name.setdefault(name, []).append(place)
-            own = captured_names(state.leaf)
-            captured |= own
-            if own:
+            if captured_names(state.leaf):
                 varies.add(place)
         elif varies.intersection(operands[place]):
             varies.add(place)
@@ -100,9 +91,7 @@ def graph_of(roots: Iterable[State]) -> Graph:
         index,
         operands,
         tuple(tuple(places) for places in parents),
-        leaf_reads,
         {name: tuple(places) for name, places in by_name.items()},
         tuple(stateful),
-        frozenset(captured),
         remembers,
     )

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from rvmon.formula.numeric import events_of
 from rvmon.formula.state import Lapsed, Leaf, State, StateOp
 from rvmon.plan.graph import Graph
-from rvmon.plan.inputs import Reported, payloads_of
 from rvmon.plan.leaves import captured_names
-from rvmon.plan.numbers import events_of
 from rvmon.spec.checked.formula import Captured, Compare, CompareOp, EventAtom, FieldValue
 from rvmon.spec.checked.specification import ForEach
-from rvmon.trace.sample import Payload, Scalar
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,15 +18,13 @@ class Reach:
     """What an instance depends on; worked out once for a requirement.
 
     Attributes:
-        varying: the nodes whose value depends on the instance's, though its event does not occur.
-        own: these, and those that read its event.
+        own: the nodes whose value depends on the instance's, or that read its event.
         fields: by event, the field that has to have the value; else it does not concern it.
         others: the names that concern all instances.
         is_fresh: whether one can be made from what an instance of no value remembers.
         begins: whether nothing starts in it but where its event occurs.
     """
 
-    varying: frozenset[int]
     own: frozenset[int]
     fields: Mapping[str, FieldValue]
     others: frozenset[str]
@@ -46,7 +42,6 @@ def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: 
     leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}
     reads = {place for place, leaf in leaves.items() if each.name in captured_names(leaf)}
     own = frozenset(graph.by_name.get(event, ()))
-    varying = above(graph, reads - own)
     fields = {event: each.value}
     for name, places in graph.by_name.items():
         found = {_compared(leaves[place], name, each.name) for place in places}
@@ -54,11 +49,10 @@ def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: 
         if name != event and not found and field is not None:
             fields[name] = field
     return Reach(
-        varying,
         above(graph, reads | own),
         fields,
         frozenset(graph.by_name.keys() - fields.keys()),
-        varying.isdisjoint(graph.stateful) and not looks_back,
+        above(graph, reads - own).isdisjoint(graph.stateful) and not looks_back,
         trigger is not None and _occurs(trigger, event),
     )
 
@@ -109,28 +103,6 @@ def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
         if not found.isdisjoint(operands):
             found.add(place)
     return frozenset(found)
-
-
-def occurrences_with(
-    source: FieldValue, value: Scalar, reported: Reported
-) -> tuple[Payload | None, ...]:
-    """The occurrences of an event that concern the instance of a value.
-
-    One whose value is not known is an unknown occurrence in every instance.
-
-    Args:
-        source: the field whose value tells instances apart.
-        value: that of the instance.
-        reported: of the event, in a sample.
-    """
-    seen: list[Payload | None] = []
-    for payload in payloads_of(reported):
-        own = None if payload is None else payload.get(source.field)
-        if own is None or own != own:
-            seen.append(None)
-        elif own == value:
-            seen.append(payload)
-    return tuple(seen)
 
 
 def _compared(leaf: Leaf, event: str, name: str) -> FieldValue | None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from rvmon.automaton.automaton import Automaton
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.core import Core
-from rvmon.formula.state import Leaf, State, Unborn
+from rvmon.formula.state import State
 from rvmon.plan.graph import Graph
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.sample import Scalar
@@ -97,12 +97,10 @@ class Uses:
     Attributes:
         history: the last two updates matter (`prev`, `delta`, `rate`, `changed`).
         marked: whether there is an update matters (`updated`, `changed`).
-        birth: when it had its first value matters.
     """
 
     history: bool = False
     marked: bool = False
-    birth: bool = False
 
 
 class Watch(NamedTuple):
@@ -137,7 +135,7 @@ class WatchGroup:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """Some requirements of a specification, to be generated as one unit.
+    """Some requirements of a specification, for one run of the core.
 
     Attributes:
         spec: gives names, types and the time model.
@@ -183,17 +181,3 @@ class Plan:
     def judged(self) -> tuple[PlannedRule, ...]:
         """The rules, then those that judge the attempts in doubt of some of them."""
         return tuple(rule for _, rule in self.judges)
-
-    def readers(self, name: str) -> tuple[int, ...]:
-        """The leaves that depend on the value of a signal or event."""
-        nodes = self.graph.nodes
-        return tuple(
-            place
-            for place in self.graph.by_name.get(name, ())
-            if not asks_knowledge(nodes[place].leaf)
-        )
-
-
-def asks_knowledge(leaf: Leaf | None) -> bool:
-    """Whether a leaf depends on what is known of signals, and not on their values."""
-    return isinstance(leaf, Unborn)

@@ -1,4 +1,4 @@
-"""From requirements to the plan of generated code."""
+"""From requirements to the plan of what the core runs."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from dataclasses import replace
 
 from rvmon.formula.alphabet import literals
 from rvmon.formula.core import Core
-from rvmon.formula.numeric import operands
-from rvmon.formula.state import UNKNOWN, State, Unborn
+from rvmon.formula.numeric import inputs_of, operands
+from rvmon.formula.state import State, Unborn
 from rvmon.plan.graph import Graph, graph_of
-from rvmon.plan.numbers import inputs_of
 from rvmon.plan.plan import Plan, PlannedRule, Uses, Watch, WatchGroup
 from rvmon.spec.checked.formula import Compare, Numeric, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
@@ -91,7 +90,6 @@ def _uses(leaves: Sequence[State], name: str) -> Uses:
             isinstance(state.leaf, ProbeAtom) and state.leaf.probe is not Probe.KNOWN
             for state in leaves
         ),
-        birth=any(isinstance(s.leaf, Unborn) or s.unborn != UNKNOWN for s in leaves),
     )
 
 

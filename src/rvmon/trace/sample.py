@@ -17,6 +17,15 @@ Value = Scalar | Payload | tuple[Payload, ...]
 """What a sample says of a name: a signal's value; of an event `True`, its payload or payloads."""
 
 
+def payloads_of(value: Value) -> tuple[Payload | None, ...]:
+    """The payloads of a report of an event: one per occurrence, `None` if it is unknown."""
+    if isinstance(value, tuple):
+        return value
+    if isinstance(value, Mapping):
+        return (value,)
+    return (None,) if value is None else ({},) if value is True else ()
+
+
 def calculated(operation: Callable[..., float], *values: Scalar) -> float | None:
     """What an operation on numbers gives; unknown if one is, or if it is no finite number."""
     for value in values:

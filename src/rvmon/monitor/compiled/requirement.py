@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 
 from rvmon.automaton.automaton import Automaton
@@ -20,12 +20,12 @@ from rvmon.formula.core import Core
 from rvmon.formula.expand import expanded
 from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
+from rvmon.formula.numeric import events_of, inputs_of
 from rvmon.formula.obligation import Obligation, UnmonitorableError
 from rvmon.formula.residual import Residual
 from rvmon.formula.state import State
 from rvmon.monitor.reasons.obligation_words import Words
-from rvmon.plan.graph import Graph, graph_of, leaf_count, leaf_texts
-from rvmon.plan.numbers import events_of, inputs_of
+from rvmon.plan.graph import graph_of, leaf_count, leaf_texts
 from rvmon.spec.checked.formula import Compare
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 
@@ -180,16 +180,6 @@ class CompiledRequirement:
         """Tells what is still possible for its open attempts."""
         return Forecaster()
 
-    @property
-    def _own(self) -> Iterator[State]:
-        """The state formulas of an attempt."""
-        obligation = self.obligation
-        yield from self.alphabet.propositions
-        yield from (one for one in (obligation.again, obligation.unborn) if one is not None)
-        if self.requirement.mode is Mode.WHENEVER:
-            states = (obligation.trigger, obligation.running)
-            yield from (one for one in states if one is not None)
-
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:
         """What it reads of the input, with its text."""
@@ -225,11 +215,6 @@ class CompiledRequirement:
     def words(self) -> Words:
         """Names its parts."""
         return Words(self.obligation.origins)
-
-    @cached_property
-    def consequent_graph(self) -> Graph:
-        """The propositions of what it owes."""
-        return graph_of(self._own)
 
 
 def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirement]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from rvmon.automaton.location import Token
 from rvmon.formula.residual import Residual
-from rvmon.formula.state import FALSE, TRUE, UNKNOWN
+from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.replayed import Letters, at_decision, at_moment
@@ -26,10 +26,9 @@ from rvmon.monitor.explained.undecided import (
     why_open,
     why_settled,
 )
-from rvmon.monitor.reasons.doubt import Doubt
-from rvmon.plan.leaves import reads
-from rvmon.plan.outages import Outage
-from rvmon.plan.stood import Stood
+from rvmon.monitor.reasons.doubt import Doubt, Outage
+from rvmon.monitor.reasons.sentence import Standing
+from rvmon.plan.leaves import names_of
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
@@ -148,40 +147,27 @@ class Told:
         return self.compiled.shaped_residuals[location]
 
     @cached_property
-    def graph(self) -> Any:
-        """The formulas of what it owes."""
-        return self.compiled.consequent_graph
-
-    @property
-    def gap(self) -> int | None:
-        """See `rvmon.plan.standing.Standing`."""
-        return self._gap
-
-    @cached_property
     def _reasons(self) -> Reasons:
         return Reasons(self.compiled, self)
 
     def _then(self, note: Note) -> tuple[int, ...]:
         return truths(note.words[_HEAD:], len(self._texts))
 
-    def _stood(self, note: Note) -> tuple[tuple[int, ...], tuple[int, ...], Stood]:
+    def _stood(self, note: Note) -> tuple[tuple[int, ...], tuple[int, ...], Standing]:
         """The leaves, the propositions, and how these stood."""
-        standing, count = note.standing, len(self._propositions)
-        leaves = truths(standing[2:], len(self._texts))
+        words, propositions = note.standing, self._propositions
+        leaves = truths(words[2:], len(self._texts))
         at = 2 + self._leaf_words
-        values = truths(standing[at:], count)
-        at += words_for(count)
-        index = self.graph.index
-        since: dict[int, int] = {}
-        until: dict[int, int | None] = {}
-        held: dict[int, int] = {}
-        for number, state in enumerate(self._propositions):
-            place = index[state]
-            own = standing[at + 3 * number : at + 3 * number + 3]
-            held[place], since[place] = values[number], own[0]
-            until[3 * place + FALSE], until[3 * place + TRUE] = map(_instant, own[1:])
-        begun = _instant(standing[1])
-        return leaves, values, Stood(self, held, since, until, {}, note.at, begun)
+        values = truths(words[at:], len(propositions))
+        at += words_for(len(propositions))
+        since: dict[State, int] = {}
+        before: dict[tuple[State, int], int | None] = {}
+        for state in propositions:
+            since[state] = words[at]
+            before[state, FALSE], before[state, TRUE] = map(_instant, words[at + 1 : at + 3])
+            at += 3
+        held = dict(zip(propositions, values, strict=True))
+        return leaves, values, Standing(self._gap, _instant(words[1]), held, since, before)
 
     def _letters(self, values: Sequence[int]) -> tuple[int, int]:
         """The letters of both readings."""
@@ -328,7 +314,7 @@ class Told:
     def _reads(self) -> Sequence[frozenset[str]]:
         """The names that each leaf reads."""
         return [
-            frozenset() if state.leaf is None else reads(state.leaf).names
+            frozenset() if state.leaf is None else names_of(state.leaf)
             for state, _ in self.compiled.leaves
         ]
 

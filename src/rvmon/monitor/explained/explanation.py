@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from rvmon.formula.core import Core
 from rvmon.formula.horizon import horizon
 from rvmon.formula.state import TRUE, UNKNOWN
-from rvmon.monitor.reasons.doubt import Doubt, outage_in_words
-from rvmon.plan.outages import Outage
+from rvmon.monitor.reasons.doubt import Doubt, Outage, outage_in_words
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks

@@ -16,8 +16,7 @@ from rvmon.monitor.explained.explanation import (
 from rvmon.monitor.explained.findings import Reasons, Residuals
 from rvmon.monitor.explained.undecided import Undecided
 from rvmon.monitor.reasons.obligation_words import settled_alone
-from rvmon.monitor.reasons.sentence import rendered
-from rvmon.plan.standing import Standing
+from rvmon.monitor.reasons.sentence import Standing, rendered
 from rvmon.verdict.verdict import Verdict
 
 

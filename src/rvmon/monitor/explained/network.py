@@ -19,8 +19,7 @@ from rvmon.monitor.explained.explanation import (
 from rvmon.monitor.explained.undecided import Undecided
 from rvmon.monitor.reasons.cause_network import NetworkCauseFinder
 from rvmon.monitor.reasons.owed_network import owed_at
-from rvmon.monitor.reasons.sentence import rendered
-from rvmon.plan.standing import Standing
+from rvmon.monitor.reasons.sentence import Standing, rendered
 from rvmon.verdict.attempt import Blame
 from rvmon.verdict.verdict import Verdict
 

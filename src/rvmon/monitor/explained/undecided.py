@@ -8,8 +8,7 @@ from typing import Protocol
 from rvmon.automaton.location import FAILED, Token
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.explained.explanation import Explanation
-from rvmon.monitor.reasons.doubt import Doubt
-from rvmon.plan.outages import Outage
+from rvmon.monitor.reasons.doubt import Doubt, Outage
 from rvmon.spec.checked.specification import EndPolicy
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict

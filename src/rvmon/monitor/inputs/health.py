@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.inputs.intake import MOST_HELD, Intake
-from rvmon.plan.inputs import payloads_of
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Value
+from rvmon.trace.sample import Value, payloads_of
 from rvmon.trace.time import format_ticks
 
 if TYPE_CHECKING:

@@ -4,10 +4,29 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rvmon.plan.outages import Outage
 from rvmon.spec.print.printer import format_duration
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outage:
+    """A stretch over which a signal or event was not known; it ends when a value comes.
+
+    Attributes:
+        name: of the signal or event.
+        why: what it began with; `MISSING` if there was no value yet, `ABSENT` if there is no
+            source.
+        since: its first instant, ticks; of no meaning for `MISSING` and `ABSENT`.
+        until: the instant from which on it was known again, ticks; `None` if it still is not.
+        bound: if it is stale, the time without an update that made it so, ticks.
+    """
+
+    name: str
+    why: HealthKind
+    since: int = 0
+    until: int | None = None
+    bound: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,15 @@ from rvmon.formula.progress import after, value
 from rvmon.formula.residual import NO_CLOCK, Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN
 from rvmon.monitor.reasons.cause import Cause
-from rvmon.monitor.reasons.sentence import AfterTrigger, Base, LastWith, Place, Sentence, Turned
-from rvmon.plan.standing import Standing
+from rvmon.monitor.reasons.sentence import (
+    AfterTrigger,
+    Base,
+    LastWith,
+    Place,
+    Sentence,
+    Standing,
+    Turned,
+)
 from rvmon.spec.checked.formula import EventAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.tense import has_future, is_pulse
 from rvmon.spec.print.printer import format_formula
@@ -208,7 +215,7 @@ class Words:
             window = (start + low, None if high is None else start + high)
         at: tuple[int, ...] = ()
         if cause.literal is not None:
-            at = (flow.since[flow.graph.index[cause.literal.proposition]],)
+            at = (flow.since[cause.literal.proposition],)
         first, last = (0, 0) if span is None else (span.start, span.end)
         return Blame(self.text(node), first, last, window, at)
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, assert_never
 
 from rvmon.formula.state import State
-from rvmon.plan.standing import Standing
 from rvmon.trace.time import format_ticks
 
 
@@ -89,6 +89,30 @@ class LastWith:
     lasting: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How the propositions of a requirement stood at a position.
+
+    Attributes:
+        gap: ticks between two positions; `None` if only samples are positions.
+        begun: the position from which on it saw what is its own; `None`: it saw all.
+        values: by proposition, its truth.
+        since: by proposition, the position from which on it has had that.
+        before: by proposition and truth, the last position at which it had another one.
+    """
+
+    gap: int | None
+    begun: int | None
+    values: Mapping[State, int]
+    since: Mapping[State, int]
+    before: Mapping[tuple[State, int], int | None]
+
+    def last_with(self, proposition: State, value: int, t: int) -> int | None:
+        """The last position up to `t`, not before the present one, with a value."""
+        is_now = self.values[proposition] == value
+        return t if is_now else self.before[proposition, value]
+
+
 Part = str | Place | Turned | AfterTrigger | LastWith
 
 Sentence = tuple[Part, ...]
@@ -113,7 +137,7 @@ def rendered(sentence: Sentence, decided: int, start: int, triggered: int, flow:
             case Place():
                 return format_ticks(one.ticks(decided, start))
             case Turned(proposition=proposition, seen=seen):
-                since = flow.since[flow.graph.index[proposition]]
+                since = flow.since[proposition]
                 verb = "became" if start < since == decided else "was"
                 long = f" (since {format_ticks(since)})" if since < decided else ""
                 return f"{verb} {seen} at {format_ticks(decided)}{long}"
@@ -122,7 +146,7 @@ def rendered(sentence: Sentence, decided: int, start: int, triggered: int, flow:
                     return ""
                 return f", {format_ticks(decided - start)} after the trigger"
             case LastWith(proposition=proposition, value=value, verb=verb):
-                last = flow.last_with(flow.graph.index[proposition], value, decided)
+                last = flow.last_with(proposition, value, decided)
                 if last is None and flow.begun is not None:
                     return f"it had not {verb} since {format_ticks(flow.begun)}"
                 if last is None:
