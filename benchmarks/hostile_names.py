@@ -33,13 +33,12 @@ from rvmon.diagnostics.render import render_concise, render_full, render_json
 from rvmon.diagnostics.shown import shown, shown_json, shown_line
 from rvmon.diagnostics.span import Source, Span
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.explain.graph_text import quoted
+from rvmon.explain.graph import quoted
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.report.junit import junit_xml
 from rvmon.report.markup import data, e, page, to_html
 from rvmon.report.run_text import print_reports
-from rvmon.report.table import RunGroup, VerdictTable
-from rvmon.report.table_csv import tables_csv
+from rvmon.report.table import RunGroup, VerdictTable, tables_csv
 from rvmon.report.table_html import table_html
 from rvmon.report.table_latex import table_latex
 from rvmon.spec.checked.specification import CheckedSpec

@@ -20,7 +20,7 @@ from handover.driver import run_test
 from handover.driver.run import SampleValues
 from handover.generator.files import directed
 from rvmon.report.markup import e
-from rvmon.report.scene_html import UNITS, scene_svg
+from rvmon.report.run_html import UNITS, scene_svg
 from rvmon.report.style import MARKS, verdict_colours
 from rvmon.trace.time import TICKS_PER_SECOND
 

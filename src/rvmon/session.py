@@ -190,7 +190,7 @@ class Spec:
                 once or in parts.
             robustness: whether each attempt is to have its robustness.
         """
-        from rvmon.monitor.judge import Asked, judge_source
+        from rvmon.monitor.evaluate import Asked, judge_source
 
         asked = Asked(requirements_asked(self.checked, only), decided)
         if robustness:

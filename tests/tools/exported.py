@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.export.c_files import core_files, plan_files
-from rvmon.export.c_names import prefix_of
+from rvmon.export.c_files import core_files, plan_files, prefix_of
 from rvmon.monitor import CompiledSpec, compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.core.planned import PlannedCore, planned_core

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.plan.plan import Plan
-from rvmon.plan.planning import plan_of_truths
+from rvmon.plan.plan import Plan, plan_of_truths
 
 TRACED_MOST = 64
 """As plan.h has it."""

@@ -8,10 +8,9 @@ from enum import Enum
 from itertools import combinations, islice, product
 from typing import TypeVar, assert_never
 
-from rvmon.analysis.solve import Variable, parts_of, turning_values
-from rvmon.analysis.tried import truths_tried
+from rvmon.analysis.solve import Variable, parts_of, truths_tried, turning_values
 from rvmon.formula.state import Leaf
-from rvmon.plan.leaves import captured_names, names_of
+from rvmon.plan.graph import captured_names, names_of
 from rvmon.spec.checked.formula import (
     Compare,
     EventAtom,

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
-from rvmon.analysis.regions import Regions
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.layout import row_of
+from rvmon.analysis.subject import Regions
+from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.state import FALSE, TRUE, State
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel

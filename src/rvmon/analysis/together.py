@@ -15,10 +15,8 @@ from itertools import product
 
 from rvmon.analysis.combinations import Letters, Table, Truths
 from rvmon.analysis.possible import automaton_letter
-from rvmon.analysis.regions import Regions, after_edge
-from rvmon.analysis.subject import Subject
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.layout import row_of
+from rvmon.analysis.subject import Regions, Subject, after_edge
+from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 

@@ -1,13 +1,17 @@
-"""The deterministic timed monitor of one formula, as integer tables."""
+"""The deterministic timed monitor of one formula, as integer tables, and what is read off them."""
 
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 
 from rvmon.automaton.letter_classes import LetterClasses
-from rvmon.automaton.location import Location
+from rvmon.automaton.location import NOW, PASSED, Location
 from rvmon.formula.alphabet import Alphabet
+from rvmon.formula.core import Release
+from rvmon.formula.residual import NO_CLOCK, Residual
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,3 +55,116 @@ class Automaton:
     def clocks(self) -> int:
         """The largest number of clocks in one location."""
         return max(len(location.cuts) for location in self.locations)
+
+
+EndClause = tuple[tuple[int, int, bool], ...]
+"""Clock (−1: none), least age, and whether the age is that at the end or as far as time came."""
+
+
+def end_clauses(residual: Residual) -> tuple[EndClause, ...]:
+    """When the end of a trace makes a residual true, whatever else is pending (SEMANTICS 3).
+
+    A bounded `R` counts if its window is over as far as time has come, an unbounded one if its
+    window has opened at the end; nothing else counts.
+    """
+    made = []
+    for clause in residual:
+        releases = [(node, clock) for node, clock in clause if isinstance(node, Release)]
+        if len(releases) == len(clause):
+            tests: list[tuple[int, int, bool]] = []
+            for node, clock in releases:
+                if node.high is not None:
+                    tests.append((clock, node.high + 1, False))
+                elif clock != NO_CLOCK and node.low:
+                    tests.append((clock, node.low, True))
+            made.append(tuple(sorted(tests)))
+    return tuple(sorted(made))
+
+
+def layout_of(
+    locations: Sequence[Location],
+) -> tuple[tuple[int, ...], tuple[tuple[int, ...], ...], int]:
+    """First row and strides of each location, number of rows; the last clock runs fastest."""
+    bases, strides, total = [], [], 0
+    for location in locations:
+        bases.append(total)
+        own: list[int] = []
+        size = 1
+        for cuts in reversed(location.cuts):
+            own.append(size)
+            size *= len(cuts) + 1
+        strides.append(tuple(reversed(own)))
+        total += size
+    return tuple(bases), tuple(strides), total
+
+
+def row_of(automaton: Automaton, location: int, regions: Iterable[int]) -> int:
+    """The row of a location, for each clock of which so many of its cuts have been passed."""
+    strides = automaton.strides[location]
+    return automaton.bases[location] + sum(map(int.__mul__, regions, strides))
+
+
+_MOST = 5
+"""Orders of more locations are not looked through."""
+
+
+def moves_in_runs(automaton: Automaton) -> bool:
+    """Whether attempts can be kept in order of their triggers by location alone.
+
+    It is proved if there is one clock at most, which every attempt starts at its trigger and never
+    again, and if the locations have an order in which age decides: read from the oldest attempts
+    to the youngest, no letter ever leads a younger one to an earlier location than an older one.
+    So a run, sorted by age, moves as a whole or is cut where a region ends, and runs that meet
+    stand one behind the other.
+
+    Source: AUTOMATA 3.
+    """
+    if automaton.clocks > 1 or not _starts_once(automaton):
+        return False
+    live = [
+        location
+        for location in range(PASSED + 1, len(automaton.locations))
+        if location != automaton.initial
+    ]
+    if len(live) > _MOST:
+        return False
+    return any(_age_decides(automaton, order) for order in permutations(live))
+
+
+def _starts_once(automaton: Automaton) -> bool:
+    for location in range(PASSED + 1, len(automaton.locations)):
+        starts = location == automaton.initial
+        for row in _rows(automaton, location):
+            for kind in range(automaton.classes):
+                edge = automaton.edges[row * automaton.classes + kind]
+                if edge < 0 or automaton.targets[edge] <= PASSED:
+                    continue
+                sources = automaton.sources[edge]
+                if automaton.targets[edge] == automaton.initial:
+                    return False
+                if sources and (sources[0] == NOW) is not starts:
+                    return False
+    return True
+
+
+def _age_decides(automaton: Automaton, order: Sequence[int]) -> bool:
+    """Whether targets keep the order of the locations, given with the oldest attempts first."""
+    rank = {location: index for index, location in enumerate(order)}
+    rows = [row for location in order for row in reversed(_rows(automaton, location))]
+    rows += _rows(automaton, automaton.initial)
+    for kind in range(automaton.classes):
+        last = 0
+        for row in rows:
+            edge = automaton.edges[row * automaton.classes + kind]
+            if edge >= 0 and (target := automaton.targets[edge]) > PASSED:
+                if rank[target] < last:
+                    return False
+                last = rank[target]
+    return True
+
+
+def _rows(automaton: Automaton, location: int) -> range:
+    """The rows of a location, by the age of its attempts."""
+    first = automaton.bases[location]
+    regions = [len(cuts) + 1 for cuts in automaton.locations[location].cuts]
+    return range(first, first + (regions[0] if regions else 1))

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.automaton import Automaton, layout_of
 from rvmon.automaton.diagram import Diagrams, Node, TooManyClassesError
-from rvmon.automaton.layout import layout_of
 from rvmon.automaton.location import NOW, Location, location_of, normalise
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.core import Literal, Temporal

@@ -11,9 +11,7 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.end import end_clauses
-from rvmon.automaton.layout import layout_of
+from rvmon.automaton.automaton import Automaton, end_clauses, layout_of
 from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram
 from rvmon.automaton.location import PASSED, Location
 from rvmon.formula.residual import NO_CLOCK, Residual

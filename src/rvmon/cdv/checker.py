@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cdv.system import Values
 from rvmon.coverage.hits import Hit, Hits, illegal
-from rvmon.verdict.illegal import IllegalHit
+from rvmon.verdict.covered import IllegalHit
 from rvmon.verdict.report import Report, report_of
 
 if TYPE_CHECKING:

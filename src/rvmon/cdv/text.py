@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary, differences
 from rvmon.cdv.tables import INTERVALS, LEGEND, RobotTables
 from rvmon.report.percent import percent_text
-from rvmon.report.table_text import table_text
+from rvmon.report.table import table_text
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -12,7 +12,7 @@ from rvmon.loading import load
 from rvmon.readers.recording import FileRecording, can_be_read_again
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
-from rvmon.verdict.illegal import IllegalHit
+from rvmon.verdict.covered import IllegalHit
 
 if TYPE_CHECKING:
     import argparse

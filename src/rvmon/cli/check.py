@@ -112,7 +112,7 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
     """What an analysis finds, and in words the timelines of conflicts and what was not decided."""
     from rvmon.explain.analysed import analyse
     from rvmon.monitor import compile_spec
-    from rvmon.report.analysis_text import analysis_lines
+    from rvmon.report.explain_text import analysis_lines
 
     analysis = analyse(compile_spec(checked), seconds=seconds)
     return analysis.findings, analysis_lines(analysis, checked)

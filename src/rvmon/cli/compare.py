@@ -79,7 +79,7 @@ def _print_kind(
 ) -> None:
     from rich.text import Text
 
-    from rvmon.report.wrapped import wrapped
+    from rvmon.report.terminal import wrapped
 
     style = "bold red" if change.is_loss else "bold green" if change.is_gain else "bold"
     console.print(Text(f"{len(differences):,} {change.value}:", style=style))
@@ -90,7 +90,7 @@ def _print_kind(
 
 
 def _line(one: Difference) -> str:
-    from rvmon.report.wrapped import in_short
+    from rvmon.report.terminal import in_short
 
     if one.before is None or one.after is None:
         cause = in_short(one.reason)

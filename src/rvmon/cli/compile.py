@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
 from rvmon.cli.say import say
-from rvmon.diagnostics.shown import shown_json
+from rvmon.diagnostics.shown import shown_json, shown_line
 from rvmon.errors import RvmonError
+from rvmon.monitor.compiled.costs import CompileReport
+from rvmon.report.terminal import plain_table
+from rvmon.spec.print.printer import format_duration
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
@@ -83,7 +86,6 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
     chosen = [one for name, one in compiled.requirements.items() if ids is None or name in ids]
     if form == "costs":
         from rvmon.monitor.compiled.costs import compile_report
-        from rvmon.report.costs_text import costs_text
 
         return costs_text({one.requirement.id: compile_report(one) for one in chosen})
     if form == "hoa":
@@ -93,12 +95,11 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
     if form == "json":
         import msgspec
 
-        from rvmon.export.automaton_json import automaton_json
+        from rvmon.export.hoa import automaton_json
 
         found = [automaton_json(one, spec.checked) for one in chosen]
         return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
-    from rvmon.explain.graph import graph_of
-    from rvmon.explain.graph_text import graph_dot
+    from rvmon.explain.graph import graph_dot, graph_of
 
     texts = []
     for one in chosen:
@@ -117,3 +118,31 @@ def _write_or_print(text: str, output: str | None) -> None:
         write_whole(output, text)
     except OSError as error:
         raise RvmonError(f"cannot write {output}: {error.strerror}") from None
+
+
+_HEAD = ("", "judged by", "locations", "clocks", "letters", "decided within", "open attempts")
+
+
+def costs_text(reports: Mapping[str, CompileReport]) -> str:
+    """A line per requirement: what judges it, its size, what an open attempt costs."""
+    return plain_table([_HEAD, *(_row(name, report) for name, report in reports.items())])
+
+
+def _row(name: str, report: CompileReport) -> tuple[str, ...]:
+    name = shown_line(name)
+    reach = "any time" if report.horizon is None else format_duration(report.horizon)
+    letters = f"{report.letters:,}"
+    if not report.locations:
+        return name, report.judge, "–", "–", letters, reach, f"in one network: {report.why}"
+    sizes = (f"{report.locations}", f"{report.clocks}", letters, reach)
+    return name, report.judge, *sizes, _open(report)
+
+
+def _open(report: CompileReport) -> str:
+    """How open attempts are kept, and what a change or a due time costs."""
+    if report.horizon == 0:
+        return "none: decided at once"
+    if not report.in_runs:
+        return "one by one: a step for each that is open"
+    steps = "1 step" if report.steps == 1 else f"at most {report.steps} steps"
+    return f"in runs: {report.bytes_per_attempt} bytes each, {steps} for all together"

@@ -97,9 +97,8 @@ def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: in
 
 
 def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace) -> None:
-    from rvmon.explain.graph import graph_of
+    from rvmon.explain.graph import graph_dot, graph_of
     from rvmon.explain.graph_svg import graph_svg
-    from rvmon.explain.graph_text import graph_dot
 
     for name in ids:
         one = compiled.requirements[name]

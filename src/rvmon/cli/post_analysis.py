@@ -101,7 +101,7 @@ def _silent(report: Report) -> list[str]:
 
 
 def _goals(spec: Spec, trace: str, end: int) -> Mapping[str, Verdict]:
-    from rvmon.verdict.cover_goals import goal_verdicts, goals_as_requirements
+    from rvmon.coverage.requirements import goal_verdicts, goals_as_requirements
 
     goals = Spec(goals_as_requirements(spec.checked))
     return goal_verdicts(goals.judge(Source(spec.recording(trace), end, is_cut=True)))

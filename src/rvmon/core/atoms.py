@@ -10,7 +10,7 @@ from rvmon.core.programs import Names, Programs, exact
 from rvmon.errors import RvmonError
 from rvmon.formula.numeric import events_of, inputs_of, operands
 from rvmon.formula.state import Leaf
-from rvmon.plan.leaves import captured_names
+from rvmon.plan.graph import captured_names
 from rvmon.plan.plan import Plan
 from rvmon.spec.checked.formula import (
     Bound,

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.end import end_clauses
+from rvmon.automaton.automaton import Automaton, end_clauses
 from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram, Tree
 from rvmon.core.sections import Section, Sections
 from rvmon.formula.alphabet import Alphabet

@@ -1,16 +1,197 @@
-"""A short order of tests that covers all that the whole campaign does."""
+"""Short orders of tests that cover all that a campaign does, and the fewest that do."""
 
 from __future__ import annotations
 
 import heapq
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from rvmon.coverage.answers import Step
 from rvmon.coverage.questions import goals_of, growth, totals
 from rvmon.coverage.record import Coverage
-from rvmon.coverage.smallest import Smallest, smallest
+
+MOST_NODES = 20_000
+"""Partial choices that are looked at, about a second's worth."""
+
+MOST_COMPARED = 500
+"""Tests up to which each is compared with each."""
+
+
+@dataclass(frozen=True, slots=True)
+class Smallest:
+    """A choice of tests.
+
+    Attributes:
+        places: of the tests, ascending.
+        at_least: no choice has fewer; the number of `places` if it is known to be the smallest.
+    """
+
+    places: tuple[int, ...]
+    at_least: int
+
+
+def smallest(
+    rows: Sequence[Mapping[int, int]], goals: Mapping[int, int], most_nodes: int = MOST_NODES
+) -> Smallest:
+    """Choose the fewest tests that hit items as often as all of them do, up to their goals.
+
+    Branch and bound: the item that the fewest tests hit is given to each of them in turn. A choice
+    is left once items that no test shares ask for as many tests as the best one known has. If that
+    takes too many steps, the best choice so far and what is known about the least number are given.
+
+    Args:
+        rows: by test, how often it hits items.
+        goals: hits that each item needs; others count for nothing.
+        most_nodes: partial choices that are looked at.
+
+    Source: Garfinkel and Nemhauser, The Set-Partitioning Problem: Set Covering with Equality
+    Constraints, Operations Research 17, 1969 (dominance, branching on the scarcest row); Chvátal, A
+    Greedy Heuristic for the Set-Covering Problem, 1979 (the first choice).
+
+    >>> smallest([{1: 1, 2: 1, 3: 1}, {1: 1, 2: 1, 4: 1}, {3: 1, 4: 1}], dict.fromkeys(range(5), 1))
+    Smallest(places=(0, 1), at_least=2)
+    """
+    total: dict[int, int] = {}
+    for row in rows:
+        for item, count in row.items():
+            total[item] = min(total.get(item, 0) + count, goals.get(item, 0))
+    needed = {item: count for item, count in total.items() if count}
+    kept: dict[int, dict[int, int]] = {
+        place: {item: min(count, needed[item]) for item, count in row.items() if item in needed}
+        for place, row in enumerate(rows)
+    }
+    while True:
+        kept = _undominated(kept, needed)
+        fewer = _scarce(kept, needed)
+        if len(fewer) == len(needed):
+            break
+        needed = fewer
+        kept = {
+            place: {item: count for item, count in row.items() if item in needed}
+            for place, row in kept.items()
+        }
+    search = _Search(kept, most_nodes)
+    search.greedy(needed)
+    at_least = search.bound(needed, 0)
+    search.branch(needed, [], 0)
+    best = tuple(sorted(search.best))
+    return Smallest(best, at_least if search.stopped else len(best))
+
+
+def _undominated(
+    rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]
+) -> dict[int, dict[int, int]]:
+    """Tests without those that are needless beside another one, which alone does as they do."""
+    kept: dict[int, dict[int, int]] = {}
+    seen: set[frozenset[int]] = set()
+    for place, row in rows.items():
+        suffices = all(count == needed[item] for item, count in row.items())
+        key = frozenset(row)
+        if row and not (suffices and key in seen):
+            kept[place] = row
+            if suffices:
+                seen.add(key)
+    if len(kept) > MOST_COMPARED:
+        return kept
+    enough = {
+        place: frozenset(item for item, count in row.items() if count == needed[item])
+        for place, row in kept.items()
+    }
+    return {
+        place: row
+        for place, row in kept.items()
+        if not any(other != place and row.keys() <= alone for other, alone in enough.items())
+    }
+
+
+def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> dict[int, int]:
+    """Items without those that are hit whenever a scarcer one is."""
+    hitters = _hitters(rows)
+    kept: dict[int, int] = {}
+    for item in sorted(needed, key=lambda one: (hitters[one].bit_count(), one)):
+        own = hitters[item]
+        if needed[item] > 1 or not any(hitters[one] & own == hitters[one] for one in kept):
+            kept[item] = needed[item]
+    return kept
+
+
+def _hitters(rows: Mapping[int, dict[int, int]]) -> dict[int, int]:
+    """By item, the tests that hit it, as bits of a number."""
+    found: dict[int, int] = {}
+    for place, row in rows.items():
+        for item in row:
+            found[item] = found.get(item, 0) | 1 << place
+    return found
+
+
+class _Search:
+    """Branch and bound; sets of tests are bits of a number."""
+
+    def __init__(self, rows: Mapping[int, dict[int, int]], most_nodes: int) -> None:
+        self._rows = rows
+        self._left = most_nodes
+        self._hitters = _hitters(rows)
+        self._most: dict[int, int] = {}
+        for row in rows.values():
+            for item, count in row.items():
+                self._most[item] = max(self._most.get(item, 0), count)
+        self.best: list[int] = []
+
+    @property
+    def stopped(self) -> bool:
+        """Whether there were too many choices."""
+        return self._left <= 0
+
+    def greedy(self, needed: Mapping[int, int]) -> None:
+        """A first choice: the test that adds most, again and again."""
+        while needed:
+            gains = {
+                place: _gain(row, needed)
+                for place, row in self._rows.items()
+                if place not in self.best
+            }
+            place = max(gains, key=lambda one: (gains[one], -one))
+            self.best.append(place)
+            needed = _without(needed, self._rows[place])
+
+    def bound(self, needed: Mapping[int, int], refused: int) -> int:
+        """At least so many further tests: for items of which no test hits two."""
+        used, count = 0, 0
+        for item in sorted(needed, key=lambda one: (self._hitters[one] & ~refused).bit_count()):
+            hitters = self._hitters[item] & ~refused
+            if not hitters & used:
+                used |= hitters
+                count += -(-needed[item] // self._most[item])
+        return count
+
+    def branch(self, needed: Mapping[int, int], chosen: list[int], refused: int) -> None:
+        """Try all choices that go on from one and may be better than the best."""
+        if not needed:
+            if len(chosen) < len(self.best):
+                self.best = chosen
+            return
+        self._left -= 1
+        if self.stopped or len(chosen) + self.bound(needed, refused) >= len(self.best):
+            return
+        scarce = min(needed, key=lambda one: ((self._hitters[one] & ~refused).bit_count(), one))
+        free = self._hitters[scarce] & ~refused
+        places = [place for place in self._rows if free >> place & 1]
+        places.sort(key=lambda place: (-_gain(self._rows[place], needed), place))
+        for place in places:
+            refused |= 1 << place
+            self.branch(_without(needed, self._rows[place]), [*chosen, place], refused)
+
+
+def _gain(row: Mapping[int, int], needed: Mapping[int, int]) -> int:
+    return sum(min(count, needed[item]) for item, count in row.items() if item in needed)
+
+
+def _without(needed: Mapping[int, int], row: Mapping[int, int]) -> dict[int, int]:
+    """What is still needed behind a test."""
+    return {item: left for item, count in needed.items() if (left := count - row.get(item, 0)) > 0}
+
 
 MOST_TESTS = 1000
 """Tests among which the smallest choice is looked for."""

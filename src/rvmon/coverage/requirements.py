@@ -19,11 +19,35 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import PlannedCore, planned_as
 from rvmon.monitor.inputs.health import readers_of
-from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
+from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.verdict.cover_goals import goals_as_requirements
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
+from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
+
+
+def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
+    """A specification whose requirements are the cover goals of another, for samples in order."""
+    requirements = {
+        name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), cover.formula, span=cover.span)
+        for name, cover in spec.covers.items()
+    }
+    return replace(spec, requirements=requirements, properties={}, covers={}, max_delay=None)
+
+
+def goal_verdicts(report: Report) -> Mapping[str, Verdict]:
+    """What a run says of each goal: `P` shown, `I` still possible at its end, else `NT`.
+
+    No single run fails a goal.
+    """
+    verdicts = dict.fromkeys(report.verdicts, Verdict.NOT_TRIGGERED)
+    for attempt in report.attempts:
+        if attempt.verdict is Verdict.PASS:
+            verdicts[attempt.requirement] = Verdict.PASS
+        elif attempt.verdict is Verdict.INCONCLUSIVE and attempt.forecast is not Verdict.FAIL:
+            verdicts[attempt.requirement] = Verdict.INCONCLUSIVE
+    return verdicts
+
 
 SHOWN = "shown"
 """The only item of a cover goal."""

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from rvmon.report.markup import Child, e, page, scroll, with_code
 from rvmon.report.style import MARKS
-from rvmon.report.table_csv import plain
+from rvmon.report.table import plain
 from rvmon.report.table_html import count_cell, legend
-from rvmon.report.wrapped import in_short
+from rvmon.report.terminal import in_short
 from rvmon.results.write import csv_table
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.rows import VerdictRow

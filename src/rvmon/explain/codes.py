@@ -3,15 +3,56 @@
 from __future__ import annotations
 
 import difflib
+import tomllib
 from collections.abc import Mapping
+from functools import cache
+from importlib import resources
 
 from rvmon.analysis.rules import analysis_rules
-from rvmon.diagnostics.diagnostic import Diagnostic
-from rvmon.errors import SpecError, UnknownNameError
-from rvmon.explain.model_codes import findings_in_model, model_rules
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.errors import ModelError, SpecError, UnknownNameError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.rules.pages import all_rules, rule_page
 from rvmon.spec.rules.rule import Rule
+from rvmon.timed.model.rules import RULES
+
+_WARNINGS = ("TA010",)
+
+
+@cache
+def model_rules() -> Mapping[str, Rule]:
+    """Every rule of models by its code, in order of codes."""
+    text = resources.files("rvmon.explain").joinpath("model_codes.toml").read_text("utf-8")
+    return {
+        code: Rule(
+            code,
+            RULES[code],
+            Severity.WARNING if code in _WARNINGS else Severity.ERROR,
+            **{name: words.removeprefix("\n") for name, words in page.items()},
+        )
+        for code, page in tomllib.loads(text).items()
+    }
+
+
+def findings_in_model(text: str) -> tuple[Diagnostic, ...]:
+    """What is found in a model as its queries are decided, or as it is held against a recording.
+
+    Args:
+        text: of the model; an empty one stands for a file that is not there.
+    """
+    from rvmon.timed.conformance.conform import conform
+    from rvmon.timed.language.load import load_network, loads_network
+    from rvmon.timed.search.verify import verify
+
+    try:
+        network = loads_network(text, name="demo.ta") if text else load_network("none/demo.ta")
+        for query in network.queries:
+            verify(network, query)
+        if not network.queries:
+            conform(network, (), observed=frozenset(), end=0, tolerance=0)
+    except ModelError as error:
+        return error.diagnostics
+    return network.warnings
 
 
 def every_rule() -> Mapping[str, Rule]:

@@ -3,17 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from rvmon.explain.anatomy import Anatomy, Strand
+from rvmon.explain.example import small_step
 from rvmon.explain.late import late_arrivals
-from rvmon.explain.spans import both, outside
-from rvmon.explain.tempo import small_step
-from rvmon.explain.truth_over_trace import Eye, subformulas
+from rvmon.explain.spans import Spans, both, outside
+from rvmon.explain.truths import Eye, subformulas
 from rvmon.spec.checked.formula import BoundAtom, Constant, Formula
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
+
+
+@dataclass(frozen=True, slots=True)
+class Strand:
+    """One subformula over the window.
+
+    Attributes:
+        depth: how deep it lies; 0 for what is owed.
+        text: as in the spec.
+        part: `trigger` or `owed`.
+        true: the ticks of the window at which it is true.
+        false: those at which it is false; at the others it is not known.
+    """
+
+    depth: int
+    text: str
+    part: str
+    true: Spans
+    false: Spans
+
+
+@dataclass(frozen=True, slots=True)
+class Anatomy:
+    """An attempt taken apart.
+
+    Attributes:
+        attempt: its record.
+        start: first tick of the window that is shown.
+        end: its last tick.
+        origin: from which people count seconds, ticks.
+        late: when what it had awaited came after its deadline, ticks; `None` if it did not.
+        strands: the trigger, then what is owed, each before its parts.
+    """
+
+    attempt: Attempt
+    start: int
+    end: int
+    origin: int
+    late: int | None
+    strands: tuple[Strand, ...]
+
 
 AROUND = 0.15
 """What is shown before the trigger and after the decision, as a share of what lies between."""

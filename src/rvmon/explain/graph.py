@@ -2,21 +2,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+import textwrap
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.layout import row_of
+from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
-from rvmon.explain.cubes import ANY, Cube, cubes_of
+from rvmon.diagnostics.shown import shown
 from rvmon.formula.core import Core, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE, Shown, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.spec.print.printer import format_duration, format_formula
+
+Cube = tuple[int, ...]
+"""Per proposition 1, 0, or `ANY`."""
+
+ANY = -1
+
+
+def cubes_of(vectors: Iterable[Cube], never: Collection[Cube] = ()) -> tuple[Cube, ...]:
+    """Cubes that cover these vectors: prime ones, chosen greedily.
+
+    Source: Quine 1952, McCluskey 1956; the choice of primes is greedy.
+
+    >>> cubes_of([(0, 0), (0, 1), (1, 1)])
+    ((0, -1), (-1, 1))
+    """
+    wanted = set(vectors)
+    primes = _primes(wanted | {*never})
+    missing = set(wanted)
+    chosen: list[Cube] = []
+    while missing:
+        best = max(primes, key=lambda cube: (sum(_covers(cube, one) for one in missing), cube))
+        chosen.append(best)
+        missing = {one for one in missing if not _covers(best, one)}
+    return tuple(sorted(chosen, key=lambda cube: (cube.count(ANY), cube[::-1])))
+
+
+def _primes(vectors: set[Cube]) -> list[Cube]:
+    primes: list[Cube] = []
+    level = set(vectors)
+    while level:
+        merged: set[Cube] = set()
+        used: set[Cube] = set()
+        for cube in level:
+            for place, truth in enumerate(cube):
+                other = (*cube[:place], 1 - truth, *cube[place + 1 :])
+                if truth != ANY and other in level:
+                    merged.add((*cube[:place], ANY, *cube[place + 1 :]))
+                    used |= {cube, other}
+        primes += sorted(level - used)
+        level = merged
+    return primes
+
+
+def _covers(cube: Cube, vector: Cube) -> bool:
+    return all(own in (ANY, truth) for own, truth in zip(cube, vector, strict=True))
+
 
 MOST_PROPOSITIONS = 8
 """Conditions over more propositions are counted, not spelled out."""
@@ -272,3 +318,65 @@ def _sets(sources: tuple[int, ...]) -> str:
         elif CLOCKS[source] != clock:
             parts.append(f"{clock} := {CLOCKS[source]}")
     return ", ".join(parts)
+
+
+WIDTH = 80
+ENDS = {"P": "✓ P", "F": "✗ F"}
+
+
+def graph_lines(graph: Graph) -> list[str]:
+    """Each place with what is owed there, and below it the steps that lead on."""
+    lines: list[str] = []
+    for place in graph.places:
+        edges = [edge for edge in graph.edges if edge.source == place.name]
+        if edges:
+            lines += [*_heading(place), *_steps(edges)]
+    return lines
+
+
+def _heading(place: Place) -> list[str]:
+    if place.name == "start":
+        return ["  start, at the trigger"]
+    text = f"owed: {place.owed}"
+    return textwrap.wrap(text, WIDTH, initial_indent=f"  {place.name}  ", subsequent_indent=" " * 6)
+
+
+def _steps(edges: list[Edge]) -> Iterator[str]:
+    for index, edge in enumerate(edges):
+        last = index == len(edges) - 1
+        target = ENDS.get(edge.target, edge.target)
+        text = f"{label_of(edge)} ─▶ {target}" + (f"   ({edge.sets})" if edge.sets else "")
+        yield from textwrap.wrap(
+            text,
+            WIDTH,
+            initial_indent=f"     {'└' if last else '├'}─ ",
+            subsequent_indent=f"     {' ' if last else '│'}     ",
+        )
+
+
+def label_of(edge: Edge) -> str:
+    """The condition of an edge in one line."""
+    return ", ".join(filter(None, (edge.when, edge.condition))) or "anything"
+
+
+def graph_dot(graph: Graph, title: str) -> str:
+    """The automaton as DOT, for Graphviz."""
+    lines = [f"digraph {quoted(title)} {{", "  rankdir=LR;", '  node [fontname="sans-serif"];']
+    for place in graph.places:
+        shape = "doublecircle" if place.name in ENDS else "box"
+        text = place.name if place.name in ENDS else f"{place.name}\n{place.owed}"
+        lines.append(f"  {quoted(place.name)} [shape={shape}, label={quoted(text)}];")
+    for edge in graph.edges:
+        text = "\n".join(filter(None, (label_of(edge), edge.sets)))
+        lines.append(f"  {quoted(edge.source)} -> {quoted(edge.target)} [label={quoted(text)}];")
+    return "\n".join([*lines, "}"]) + "\n"
+
+
+def quoted(text: str) -> str:
+    r"""A string of DOT or HOA.
+
+    >>> print(quoted('say "\\x1b"'))
+    "say \"\\x1b\""
+    """
+    plain = shown(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{plain}"'

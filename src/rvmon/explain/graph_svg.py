@@ -8,8 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import dist
 
 from rvmon.diagnostics.shown import shown
-from rvmon.explain.graph import Edge, Graph, Place
-from rvmon.explain.graph_text import ENDS, label_of
+from rvmon.explain.graph import ENDS, Edge, Graph, Place, label_of
 
 COLUMN, ROW, BOX, HALF = 230, 110, 150, 28
 MARGIN, LINE, LOOP = 30, 18, 46

@@ -6,8 +6,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 
 from rvmon.explain.spans import Spans
-from rvmon.explain.truth_over_trace import subformulas
-from rvmon.explain.truths import Question, Seen, look_through
+from rvmon.explain.truths import Question, Seen, look_through, subformulas
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.checked.tense import has_future

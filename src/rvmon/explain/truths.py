@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
 from rvmon.explain.spans import FOREVER, Spans, both, outside, union
@@ -13,11 +14,12 @@ from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor.core.watching import TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
-from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
-from rvmon.spec.checked.specification import CheckedSpec, ForEach, TimeModel
+from rvmon.spec.checked.formula import Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.gaps import is_unknown
 from rvmon.trace.sample import Payload, Sample, Scalar, Value, payloads_of
+from rvmon.verdict.attempt import Attempt
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
@@ -296,3 +298,58 @@ def _reported(seen: Sequence[Payload | None]) -> Value:
     if all(one is None for one in seen):
         return None
     return tuple({} if one is None else one for one in seen)
+
+
+def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
+    """The formula, then what it is made of; a negation of an atom is not taken apart."""
+    yield depth, formula
+    match formula:
+        case Unary(operand=Unary() | Binary() as operand):
+            yield from subformulas(operand, depth + 1)
+        case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
+            yield from subformulas(operand, depth + 1)
+        case Binary(left=left, right=right):
+            yield from subformulas(left, depth + 1)
+            yield from subformulas(right, depth + 1)
+        case _:
+            pass
+
+
+class Eye:
+    """Sees the truth of what a requirement is made of over a recording."""
+
+    def __init__(
+        self,
+        spec: CheckedSpec,
+        requirement: Requirement,
+        samples: Sequence[Sample],
+        end: int,
+        attempt: Attempt,
+        names: frozenset[str] | None,
+    ) -> None:
+        self.requirement = requirement
+        self._spec = spec
+        self._samples = samples
+        self._end = end
+        self._captured = attempt.captured
+        self._names = names
+
+    @cached_property
+    def _truths(self) -> dict[int, Truth]:
+        requirement = self.requirement
+        wholes = (requirement.trigger, requirement.consequent)
+        formulas = [one for whole in wholes for _, one in subformulas(whole, 0)]
+        found = truths_of(
+            self._spec,
+            formulas,
+            self._samples,
+            self._end,
+            self._names,
+            for_each=requirement.for_each,
+            captured=self._captured,
+        )
+        return {id(formula): truth for formula, truth in zip(formulas, found, strict=True)}
+
+    def truth(self, formula: Formula) -> Truth:
+        """Where the trigger, what is owed, or a part of them, is true."""
+        return self._truths[id(formula)]

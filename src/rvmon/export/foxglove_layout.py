@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 from rvmon.export.foxglove_scene import SCENE
-from rvmon.report.concerned import thresholds
 from rvmon.report.scene import Scene
+from rvmon.report.tracks import thresholds
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.schema import Kind
 

@@ -8,14 +8,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rvmon import __version__
-from rvmon.automaton.anticipate import ltl3_monitor
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.forecast import ltl3_monitor
 from rvmon.automaton.location import FAILED, PASSED
 from rvmon.errors import RvmonError
-from rvmon.explain.graph import proposition_texts
-from rvmon.explain.graph_text import quoted
+from rvmon.explain.graph import graph_of, proposition_texts, quoted
 from rvmon.formula.state import FALSE, TRUE
 from rvmon.monitor.compiled.requirement import CompiledRequirement
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.verdict.verdict import Verdict
 
 MOST_PROPOSITIONS = 12
 
@@ -123,3 +124,39 @@ def _conjunction(cube: Cube) -> str:
         if wanted is not None
     ]
     return "&".join(parts) or "t"
+
+
+def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str, object]:
+    """Locations with what is owed there, edges with their conditions; ages in ticks.
+
+    Raises:
+        RvmonError: it has no automaton.
+    """
+    requirement, automaton = compiled.requirement, compiled.automaton
+    if automaton is None:
+        raise RvmonError(f"error: {requirement.id} has no automaton: {compiled.refusal}")
+    graph = graph_of(compiled, automaton, spec)
+    locations = [
+        {
+            "name": place.name,
+            "owed": place.owed,
+            "clock_cuts_ns": automaton.locations[place.location].cuts,
+            "verdict": {FAILED: Verdict.FAIL, PASSED: Verdict.PASS}.get(place.location),
+        }
+        for place in graph.places
+    ]
+    return {
+        "requirement": requirement.id,
+        "text": requirement.text,
+        "locations": locations,
+        "edges": [
+            {
+                "source": edge.source,
+                "target": edge.target,
+                "condition": edge.condition,
+                "ages": edge.when,
+                "sets": edge.sets,
+            }
+            for edge in graph.edges
+        ],
+    }

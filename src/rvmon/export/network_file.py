@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rvmon.errors import RvmonError
-from rvmon.explain.graph_text import quoted
+from rvmon.explain.graph import quoted
 from rvmon.export.names import Names
 from rvmon.export.uppaal import condition_text, sync_text, updates_text, uppaal_xml
 from rvmon.timed.model.network import Automaton, Network

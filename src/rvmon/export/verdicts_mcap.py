@@ -20,8 +20,8 @@ import msgspec
 from rvmon.errors import RvmonError, not_installed
 from rvmon.export.foxglove_layout import ATTEMPTS, foxglove_layout, topic_of
 from rvmon.export.foxglove_scene import SCENE, scene_updates, seconds_and_rest
-from rvmon.report.concerned import concerned_names
 from rvmon.report.scene import Scene
+from rvmon.report.tracks import concerned_names
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind

@@ -17,9 +17,8 @@ from rvmon import __version__
 from rvmon.diagnostics.span import Source, Span
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
-from rvmon.lsp.completion import proposals
+from rvmon.lsp.completion import hover, proposals
 from rvmon.lsp.document import Document
-from rvmon.lsp.hover import hover
 from rvmon.lsp.keywords import meanings
 from rvmon.lsp.text import Text
 from rvmon.spec.print.formatter import format_text

@@ -1,15 +1,15 @@
-"""A finished trace judged, whatever holds it."""
+"""A finished trace judged by the core, whatever holds it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from rvmon.diagnostics.shown import shown_path
+from rvmon.monitor.core.planned import planned_core
 from rvmon.monitor.inputs.missing import expect_names
-from rvmon.monitor.judge import Asked, judge_source
 from rvmon.readers.any_trace import recording_of
 from rvmon.readers.columns import TableRecording
 from rvmon.readers.reading import Reading
@@ -21,7 +21,41 @@ from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled.specification import CompiledSpec
+    from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec
+    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.report import Report
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What is wanted of a recording.
+
+    Attributes:
+        only: ids of the requirements; `None`: all.
+        decided: called with all attempts that were decided before a fault of the recording.
+    """
+
+    only: tuple[str, ...] | None = None
+    decided: Callable[[Sequence[Attempt]], object] = len
+
+
+def judge_source(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+    """Judge a recording: rows of columns together, samples one by one.
+
+    Args:
+        compiled: the specification.
+        source: the recording.
+        asked: what is wanted.
+
+    Raises:
+        RvmonError: a requirement is beyond the core.
+        TraceError: the recording cannot be read.
+    """
+    from rvmon.monitor.core.recording import judge_recording
+
+    planned = planned_core(compiled, asked.only)
+    return judge_recording(compiled.checked, planned, source, asked.decided)
 
 
 def open_trace(

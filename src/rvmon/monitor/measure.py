@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import planned_core
-from rvmon.monitor.evaluate import open_trace
-from rvmon.monitor.judge import Asked, judge_source
+from rvmon.monitor.evaluate import Asked, judge_source, open_trace
 from rvmon.monitor.robustness.values import FIGURES, Margins
 from rvmon.readers.reading import Reading
 from rvmon.readers.source import Source

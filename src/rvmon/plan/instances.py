@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from rvmon.formula.numeric import events_of
 from rvmon.formula.state import Lapsed, Leaf, State, StateOp
-from rvmon.plan.graph import Graph
-from rvmon.plan.leaves import captured_names
+from rvmon.plan.graph import Graph, captured_names
 from rvmon.spec.checked.formula import Captured, Compare, CompareOp, EventAtom, FieldValue
 from rvmon.spec.checked.specification import ForEach
 

@@ -8,12 +8,12 @@ from functools import cached_property
 from math import prod
 
 from rvmon.coverage.answers import Comparison, Goals, Step, Totals
-from rvmon.coverage.compare import compare
 from rvmon.coverage.hits import Score
 from rvmon.coverage.model import Group, Item
 from rvmon.coverage.questions import (
     by_strategy,
     campaigns,
+    compare,
     goals_of,
     growth,
     hitters,
@@ -24,9 +24,8 @@ from rvmon.coverage.questions import (
     totals,
     unique,
 )
-from rvmon.coverage.ranking import fewest, ranking
+from rvmon.coverage.ranking import Smallest, fewest, ranking
 from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
-from rvmon.coverage.smallest import Smallest
 from rvmon.report.percent import percent_text
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind

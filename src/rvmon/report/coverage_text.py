@@ -18,7 +18,7 @@ from rvmon.report.coverage_summary import (
     share_text,
 )
 from rvmon.report.percent import percent_text
-from rvmon.report.wrapped import wrapped
+from rvmon.report.terminal import wrapped
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict.verdict import Verdict
 
@@ -38,7 +38,7 @@ def print_overview(summary: Summary, console: Console) -> None:
     """Print the groups, the total, verdicts, and what is wrong."""
     from rich.text import Text
 
-    from rvmon.report.table_text import table_text
+    from rvmon.report.table import table_text
 
     heading = Text.assemble((summary.name, "bold"), f"  {summary.tests_text()}")
     console.print(heading, soft_wrap=True)

@@ -4,19 +4,156 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from itertools import groupby, islice
 
 from rvmon.report.markup import Child, data, e, page
-from rvmon.report.overview import overview
-from rvmon.report.panel import Panel
 from rvmon.report.panel_html import headline, panel_section
 from rvmon.report.panels_of import opening, panel_id, panels_of
-from rvmon.report.run_page import RunPage
-from rvmon.report.scene_html import scene_data, scene_svg
-from rvmon.report.tracks import Track, TrackKind
+from rvmon.report.run_page import Panel, RunPage
+from rvmon.report.scene import Outline, Scene
+from rvmon.report.style import MARKS
+from rvmon.report.timeline import axis_row
+from rvmon.report.track_rows import place_of
+from rvmon.report.tracks import PLACES, Track, TrackKind
 from rvmon.report.view import View, whole_run
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+UNITS = 1000
+"""Units of the drawing per metre, and of an angle per radian."""
+
+MILLISECOND = 1_000_000
+"""Ticks."""
+
+
+def scene_svg(scene: Scene, instant: int) -> ET.Element:
+    """Draw a scene as it was at an instant, ticks."""
+    left, bottom, right, top = (round(edge * UNITS) for edge in scene.view)
+    drawing = e(
+        "svg",
+        {"viewBox": f"{left} {-top} {right - left} {top - bottom}", "role": "img"},
+        e("title", None, "The scene at the cursor's instant"),
+    )
+    index = max(bisect_right(scene.frames, instant, key=lambda frame: frame[0]) - 1, 0)
+    pose = scene.frames[index][1] if scene.frames else ()
+    for outline in scene.outlines:
+        group = e("g", {"class": f"body {outline.role}"}, _shape(outline))
+        if outline.body in scene.bodies and pose:
+            body = scene.bodies.index(outline.body)
+            x, z, angle = pose[3 * body : 3 * body + 3]
+            group.set("data-body", str(body))
+            group.set("transform", _transform(x, z, angle))
+        drawing.append(group)
+    return drawing
+
+
+def scene_data(scene: Scene, origin: int) -> dict[str, object]:
+    """The frames as small integers: each the difference to the one before.
+
+    Times are milliseconds since `origin`, places millimetres, angles milliradians.
+    """
+    times = [(t - origin) // MILLISECOND for t, _ in scene.frames]
+    columns = zip(*(pose for _, pose in scene.frames), strict=True)
+    values = [[round(value * UNITS) for value in column] for column in columns]
+    return {"times": _differences(times), "values": [_differences(column) for column in values]}
+
+
+def _shape(outline: Outline) -> ET.Element:
+    corners = [(round(x * UNITS), round(-z * UNITS)) for x, z in outline.corners]
+    radius = round(outline.radius * UNITS)
+    match corners:
+        case [(x, y)]:
+            return e("circle", {"cx": x, "cy": y, "r": radius})
+        case [(x1, y1), (x2, y2)]:
+            width = 2 * radius
+            style = f"stroke-width:{width}" if width else None
+            return e("line", {"x1": x1, "y1": y1, "x2": x2, "y2": y2, "style": style})
+        case _:
+            points = " ".join(f"{x},{y}" for x, y in corners)
+            return e("polygon", {"points": points})
+
+
+def _transform(x: float, z: float, angle: float) -> str:
+    return f"translate({x * UNITS:.0f} {-z * UNITS:.0f}) rotate({-math.degrees(angle):.1f})"
+
+
+def _differences(values: list[int]) -> list[int]:
+    return [value - before for before, value in zip([0, *values], values, strict=False)]
+
+
+WORST_FIRST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS, Verdict.NOT_TRIGGERED)
+
+MOST_DRAWN = 5_000
+"""Attempts per requirement and verdict that are drawn: each is explained when it is looked at."""
+
+
+def overview(content: RunPage, panels: Sequence[Panel], view: View) -> ET.Element:
+    """A row per requirement, the worst first, which leads to its worst attempt.
+
+    Args:
+        content: of the page.
+        panels: that it shows.
+        view: the whole run.
+    """
+    report = content.run.report
+    worst: dict[str, Panel] = {}
+    for panel in sorted(panels, key=lambda one: WORST_FIRST.index(one.verdict)):
+        worst.setdefault(panel.requirement, panel)
+    rows: list[Child] = [
+        _row(report, name, worst[name].id, view)
+        for name in sorted(worst, key=lambda name: WORST_FIRST.index(report.verdicts[name]))
+    ]
+    marks = (e("div", {"class": "here"}), e("div", {"class": "cursor"}))
+    overlay = e("div", {"class": "overlay"}, *marks)
+    timeline = e("div", {"class": "timeline"}, *rows, axis_row(view, report.origin), overlay)
+    back = e("a", {"class": "back", "href": content.back}, "← all tests") if content.back else None
+    cut = [
+        name
+        for name, counts in report.counts.items()
+        if any(count > MOST_DRAWN for count in counts.values())
+    ]
+    sentence = f"Of {', '.join(cut)} the first {MOST_DRAWN:,} attempts of each verdict are drawn."
+    note = e("p", {"class": "soft"}, sentence) if cut else None
+    box = e("div", {"class": "all"}, timeline)
+    return e("nav", {"aria-label": "requirements"}, back, box, note)
+
+
+def _row(report: Report, name: str, address: str, view: View) -> ET.Element:
+    verdict = report.verdicts[name]
+    sign = e("span", {"class": "letter"}, f" {verdict.value} {MARKS[verdict].sign}")
+    bars = (
+        e("span", {"class": "bar", "data-verdict": shown.value, "style": place_of(left, width)})
+        for left, width, shown in _bars(report, name, view)
+    )
+    return e(
+        "a",
+        {"class": "row", "href": f"#{address}", "data-verdict": verdict.value},
+        e("span", {"class": "name"}, e("b", None, name), sign),
+        e("span", {"class": "plot"}, *bars),
+    )
+
+
+def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float, Verdict]]:
+    """Left edge, width and verdict of where attempts ran; where several did, the worst."""
+    places: list[Verdict | None] = [None] * PLACES
+    for verdict in (Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.FAIL):
+        for attempt in islice(report.of(name, verdict), MOST_DRAWN):
+            until = view.end if attempt.decided is None else attempt.decided
+            first, last = (
+                min(max(int(view.fraction(instant) * PLACES), 0), PLACES - 1)
+                for instant in (attempt.triggered, until)
+            )
+            places[first : last + 1] = [verdict] * (last + 1 - first)
+    at = 0
+    for shown, group in groupby(places):
+        count = len(list(group))
+        if shown is not None:
+            yield at / PLACES, count / PLACES, shown
+        at += count
 
 
 def run_page(content: RunPage) -> str:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from rvmon.report.markup import Child, e, page, scroll, with_code
 from rvmon.report.style import MARKS
 from rvmon.report.table_html import count_cell, legend
-from rvmon.report.wrapped import in_short
+from rvmon.report.terminal import in_short
 from rvmon.results.known import KnownFailures
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.report import Report

@@ -1,8 +1,10 @@
-"""Rich's console for texts that hold names of others."""
+"""What stands in a terminal: Rich's console for texts that hold names of others, tables, lines."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+import textwrap
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from rich.cells import cell_len
@@ -44,3 +46,59 @@ def _fits(text: Text, options: ConsoleOptions) -> bool:
         return False
     width = options.max_width
     return all(len(line) * 2 <= width or cell_len(line) <= width for line in plain.split("\n"))
+
+
+def plain_table(rows: Sequence[Sequence[str]]) -> str:
+    """A line per row, columns aligned.
+
+    Args:
+        rows: the first one is the head; all of one length.
+
+    >>> print(plain_table([("", "verdict"), ("R1", "P")]), end="")
+        verdict
+    R1  P
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = (
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )
+    return "\n".join(lines) + "\n"
+
+
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=[a-zµ])")
+_TOGETHER = "\N{NO-BREAK SPACE}"
+
+
+def wrapped(sentence: str, width: int) -> str:
+    """A sentence in lines, indented by two columns, from the second on by four.
+
+    A number stays with its unit.
+
+    Args:
+        sentence: without line breaks.
+        width: columns that a line may take.
+
+    >>> print(wrapped("`released` occurred at 4.75 s, 0.75 s after the trigger", 32))
+      `released` occurred at 4.75 s,
+        0.75 s after the trigger
+    """
+    whole = _BEFORE_UNIT.sub(_TOGETHER, sentence)
+    lines = textwrap.fill(
+        whole,
+        width,
+        initial_indent="  ",
+        subsequent_indent="    ",
+        break_on_hyphens=False,
+    )
+    return lines.replace(_TOGETHER, " ")
+
+
+def in_short(message: str) -> str:
+    r"""What is wrong, of a message that goes on with how to fix it in further lines.
+
+    >>> in_short("there is no column for what is read:\n  `go`, read by R1\n  say which it is")
+    'there is no column for what is read: `go`, read by R1'
+    """
+    first, *rest = message.split("\n")
+    return f"{first} {rest[0].strip()}" if rest and first.endswith(":") else first

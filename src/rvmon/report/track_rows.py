@@ -6,9 +6,16 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from rvmon.report.marks import Stretch, occurrences, polylines, readable, stretches
 from rvmon.report.markup import e
-from rvmon.report.tracks import Track, TrackKind
+from rvmon.report.tracks import (
+    Stretch,
+    Track,
+    TrackKind,
+    occurrences,
+    polylines,
+    readable,
+    stretches,
+)
 from rvmon.report.view import View
 
 WIDTH, HEIGHT = 1000, 100

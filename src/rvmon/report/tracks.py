@@ -1,11 +1,68 @@
-"""What a timeline shows of one signal or event: data."""
+"""What a timeline shows of signals and events: what an attempt read, and how it is drawn."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import groupby, pairwise
 
-from rvmon.trace.sample import Scalar
+from rvmon.readers.coalesce import updates_in
+from rvmon.report.view import View
+from rvmon.spec.checked.formula import Binary, Compare, Literal, SignalValue, Unary
+from rvmon.spec.checked.reads import names_read
+from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
+from rvmon.spec.checked.tense import subformulas
+from rvmon.trace.health import Health, HealthKind
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.schema import Kind
+from rvmon.verdict.attempt import Blame
+
+
+def concerned_names(requirement: Requirement) -> tuple[str, ...]:
+    """The names that a requirement reads, those of its trigger first, each once."""
+    names = (
+        name
+        for formula in (requirement.trigger, requirement.consequent)
+        for name in names_read(formula)
+    )
+    return tuple(dict.fromkeys(names))
+
+
+def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
+    """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
+    parts = subformulas(requirement.consequent)
+    owed = [part for part in parts if not isinstance(part, Unary | Binary)]
+    failed = [
+        atom
+        for atom in owed
+        if atom.span is not None and blame.start <= atom.span.start < blame.end
+    ]
+    return frozenset(name for atom in failed or owed for name in names_read(atom))
+
+
+def thresholds(requirement: Requirement, name: str) -> tuple[Threshold, ...]:
+    """The constants that a requirement compares a signal with, each once."""
+    found = [
+        threshold
+        for formula in (requirement.trigger, requirement.consequent)
+        for atom in subformulas(formula)
+        if isinstance(atom, Compare)
+        for threshold in _thresholds(atom, name)
+    ]
+    return tuple(dict.fromkeys(found))
+
+
+def _thresholds(atom: Compare, name: str) -> Iterator[Threshold]:
+    match atom.left, atom.right:
+        case SignalValue(name=read), Literal(value=value) if read == name:
+            shown = atom.op.value
+        case Literal(value=value), SignalValue(name=read) if read == name:
+            shown = atom.op.mirrored.value
+        case _:
+            return
+    if isinstance(value, int | float):
+        yield Threshold(shown, float(value))
 
 
 class TrackKind(StrEnum):
@@ -52,3 +109,169 @@ class Track:
 
         index = bisect_right(self.changes, instant, key=lambda change: change[0])
         return self.changes[index - 1][1] if index else None
+
+
+PLACES = 400
+"""Places of a track that can be distinguished; what is denser is summed up at its place."""
+
+Point = tuple[float, float]
+"""x and y as fractions of a track, y downwards."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A stretch of a view over which a signal has one value.
+
+    Attributes:
+        left: as a fraction of the view, 0 to 1.
+        right: the same.
+        value: `None` where it is unknown.
+        busy: whether it stands for several values that are too short to be drawn.
+    """
+
+    left: float
+    right: float
+    value: Scalar
+    busy: bool = False
+
+
+def stretches(track: Track, view: View, end: int) -> list[Stretch]:
+    """The values of a signal from a view's left edge to the end of the run or of the view.
+
+    Args:
+        track: of a signal.
+        view: what is shown.
+        end: the last instant of the run, ticks.
+    """
+    stop = min(view.end, end)
+    inside = [(t, value) for t, value in track.changes if view.start < t < stop]
+    changes = [(view.start, track.value_at(view.start)), *inside, (stop, None)]
+    return [
+        Stretch(view.fraction(t), view.fraction(after), value)
+        for (t, value), (after, _) in pairwise(changes)
+        if after > t
+    ]
+
+
+def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
+    """The same, with neighbours that are too narrow to be seen joined into busy ones."""
+    if len(pieces) <= PLACES:
+        return list(pieces)
+    joined: list[Stretch] = []
+    for narrow, group in groupby(pieces, key=lambda one: one.right - one.left < 1 / PLACES):
+        some = list(group)
+        if narrow and len(some) > 1:
+            joined.append(Stretch(some[0].left, some[-1].right, None, busy=True))
+        else:
+            joined.extend(some)
+    return joined
+
+
+def occurrences(track: Track, view: View) -> list[tuple[float, Scalar]]:
+    """Where in a view an event occurred (`True`), or may have (`None`); one per place."""
+    inside = [
+        (view.fraction(t), value) for t, value in track.changes if view.start <= t <= view.end
+    ]
+    if len(inside) <= PLACES:
+        return inside
+    return list({round(place * PLACES): (place, value) for place, value in inside}.values())
+
+
+def polylines(pieces: Sequence[Stretch], lowest: float, highest: float) -> list[list[Point]]:
+    """The steps of a number as lines, interrupted where it is unknown."""
+    lines = []
+    for known, group in groupby(pieces, key=lambda one: one.value is not None):
+        if known:
+            points = []
+            for piece in group:
+                value = min(max(float(piece.value or 0), lowest), highest)
+                y = (highest - value) / (highest - lowest)
+                points += [(piece.left, y), (piece.right, y)]
+            lines.append(points if len(points) <= 2 * PLACES else _outlined(points))
+    return lines
+
+
+def _outlined(points: Sequence[Point]) -> list[Point]:
+    """Of each place the first and last point and the extremes between, so that no peak is lost."""
+    kept: list[Point] = []
+    for _, group in groupby(points, key=lambda point: int(point[0] * PLACES)):
+        some = list(group)
+        extremes = (some[0], min(some, key=_height), max(some, key=_height), some[-1])
+        kept.extend(sorted(dict.fromkeys(extremes)))
+    return kept
+
+
+def _height(point: Point) -> float:
+    return point[1]
+
+
+_KINDS = {
+    Kind.BOOL: TrackKind.SWITCH,
+    Kind.INT: TrackKind.NUMBER,
+    Kind.REAL: TrackKind.NUMBER,
+    Kind.LABEL: TrackKind.LABEL,
+}
+
+
+def tracks_of(
+    spec: CheckedSpec,
+    requirement: Requirement,
+    samples: Sequence[Sample],
+    health: Sequence[Health] = (),
+) -> tuple[Track, ...]:
+    """The tracks of the signals and events that a requirement reads, in its order."""
+    updates = _updates(spec, samples, concerned_names(requirement))
+    absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
+    return tuple(
+        _signal_track(spec.signals[name], requirement, seen)
+        if name in spec.signals
+        else Track(name, TrackKind.EVENT, tuple(_occurrences(seen)), absent=name in absent)
+        for name, seen in updates.items()
+    )
+
+
+def _updates(
+    spec: CheckedSpec, samples: Iterable[Sample], names: Sequence[str]
+) -> Mapping[str, list[tuple[int, Value]]]:
+    updates: dict[str, list[tuple[int, Value]]] = {name: [] for name in names}
+    for sample in samples:
+        for name, value in updates_in(sample.values, spec.ignoring).items():
+            if name in updates:
+                updates[name].append((sample.t, value))
+    return updates
+
+
+def _occurrences(updates: Iterable[tuple[int, Value]]) -> Iterator[tuple[int, Scalar]]:
+    for t, value in updates:
+        if value is not False:
+            yield t, None if value is None else True
+
+
+def _signal_track(
+    signal: Signal, requirement: Requirement, updates: Sequence[tuple[int, Value]]
+) -> Track:
+    changes: list[tuple[int, Scalar]] = []
+    for index, (t, value) in enumerate(updates):
+        known = _known(value)
+        if not changes or changes[-1][1] != known:
+            changes.append((t, known))
+        if signal.stale_after is not None:
+            stale_at = t + signal.stale_after + 1
+            if known is not None and (
+                index + 1 == len(updates) or updates[index + 1][0] > stale_at
+            ):
+                changes.append((stale_at, None))
+    return Track(
+        signal.name,
+        _KINDS[signal.type.kind],
+        tuple(changes),
+        signal.type.unit,
+        thresholds(requirement, signal.name),
+    )
+
+
+def _known(value: Value) -> Scalar:
+    """A signal's value, `None` for what counts as unknown."""
+    if isinstance(value, float) and value != value:  # NaN
+        return None
+    return value if isinstance(value, bool | int | float | str) else None

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.covered import CoveredGroup
-from rvmon.verdict.illegal import IllegalHit
+from rvmon.verdict.covered import CoveredGroup, IllegalHit
 from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import LAW, Verdict, fold
 

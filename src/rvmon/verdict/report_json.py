@@ -11,8 +11,7 @@ from rvmon.errors import TraceError
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.attempt_json import encoded, record
-from rvmon.verdict.covered import CoveredGroup
-from rvmon.verdict.illegal import IllegalHit
+from rvmon.verdict.covered import CoveredGroup, IllegalHit
 from rvmon.verdict.verdict import LAW, Verdict
 
 if TYPE_CHECKING:

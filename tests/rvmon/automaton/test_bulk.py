@@ -7,7 +7,7 @@ from tests.tools.forms import Maker
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.automaton.bulk import moves_in_runs
+from rvmon.automaton.automaton import moves_in_runs
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
 

@@ -6,9 +6,8 @@ from random import Random
 import pytest
 from tests.tools.scale import retimed
 
-from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.automaton import Automaton, end_clauses
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
-from rvmon.automaton.end import end_clauses
 from rvmon.automaton.letter_classes import LetterDiagram
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.shapes import Shapes

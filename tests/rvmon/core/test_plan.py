@@ -35,7 +35,7 @@ from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
 from rvmon.core.programs import DEPTH, Code
 from rvmon.core.sections import RECORDS, Section, hash_of
-from rvmon.coverage.bins import Bins
+from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.specification import CompiledSpec

@@ -8,12 +8,12 @@ from tests.tools.covered import door_model, fill, hits_of, merged, random_databa
 
 from rvmon.coverage import hits as by_run
 from rvmon.coverage.answers import VerdictChange
-from rvmon.coverage.compare import compare
 from rvmon.coverage.database import Database
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.questions import (
     by_strategy,
     campaigns,
+    compare,
     growth,
     hitters,
     holes,

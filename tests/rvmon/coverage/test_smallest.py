@@ -5,7 +5,7 @@ from itertools import combinations
 
 import pytest
 
-from rvmon.coverage.smallest import smallest
+from rvmon.coverage.ranking import smallest
 
 
 def needed(rows, goals):

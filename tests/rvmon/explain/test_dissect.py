@@ -7,7 +7,7 @@ from tests.tools import build
 
 from rvmon.explain.dissect import dissect
 from rvmon.explain.spans import both, outside, union
-from rvmon.explain.truth_over_trace import Eye, subformulas
+from rvmon.explain.truths import Eye, subformulas
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec

@@ -7,9 +7,8 @@ import pytest
 from tests.tools import build
 
 from rvmon.analysis.possible import possible
-from rvmon.explain.cubes import ANY, cubes_of
 from rvmon.explain.example import Budget
-from rvmon.explain.graph import graph_of
+from rvmon.explain.graph import ANY, cubes_of, graph_of
 from rvmon.explain.search import shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
 from rvmon.testing.generate.spec import Profile, random_spec

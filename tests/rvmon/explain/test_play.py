@@ -5,8 +5,7 @@ import random
 import pytest
 
 from rvmon.analysis.choices import SILENT
-from rvmon.explain.play import Player
-from rvmon.explain.search import _choices
+from rvmon.explain.search import Player, _choices
 from rvmon.monitor import compile_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.show import show_spec

@@ -12,8 +12,7 @@ from tests.tools.hostile import FORGERIES, hostile_names
 
 import rvmon
 from rvmon.core.plan import pack
-from rvmon.export.c_files import FEWEST, c_files
-from rvmon.export.c_names import identifiers
+from rvmon.export.c_files import FEWEST, c_files, identifiers
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.native import memory_of

@@ -10,9 +10,8 @@ from pygls.uris import to_fs_path
 
 from rvmon.diagnostics.span import Source, Span
 from rvmon.explain.codes import every_rule, page_of
-from rvmon.lsp.completion import proposals
+from rvmon.lsp.completion import hover, proposals
 from rvmon.lsp.document import Document
-from rvmon.lsp.hover import hover
 from rvmon.lsp.keywords import _LINES, meanings
 from rvmon.lsp.text import Text
 from rvmon.spec.syntax.expected import accepted_terminals

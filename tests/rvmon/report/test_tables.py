@@ -9,11 +9,9 @@ from rich.console import Console
 
 from rvmon.report.markup import to_html
 from rvmon.report.style import MARKS
-from rvmon.report.table import RunGroup, VerdictTable
-from rvmon.report.table_csv import tables_csv
+from rvmon.report.table import RunGroup, VerdictTable, table_text, tables_csv
 from rvmon.report.table_html import table_html
 from rvmon.report.table_latex import escape, table_latex
-from rvmon.report.table_text import table_text
 from rvmon.verdict.verdict import Verdict
 
 

@@ -6,10 +6,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rvmon
-from rvmon.report.concerned import blamed_names, concerned_names, thresholds
-from rvmon.report.marks import PLACES, occurrences, polylines, readable, stretches
-from rvmon.report.tracks import Threshold, Track, TrackKind
-from rvmon.report.tracks_of import tracks_of
+from rvmon.report.tracks import (
+    PLACES,
+    Threshold,
+    Track,
+    TrackKind,
+    blamed_names,
+    concerned_names,
+    occurrences,
+    polylines,
+    readable,
+    stretches,
+    thresholds,
+    tracks_of,
+)
 from rvmon.report.view import View, round_instants, view_of
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample

@@ -18,8 +18,8 @@ from rvmon.cdv.execute import INTERRUPTED, outcomes
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import Job
 from rvmon.coverage.model import model_of
+from rvmon.coverage.ranking import Smallest, smallest
 from rvmon.coverage.record import Ending
-from rvmon.coverage.smallest import Smallest, smallest
 from rvmon.verdict.verdict import Verdict
 
 BATCH = 4

@@ -9,7 +9,7 @@ from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.report.coverage_summary import counted, name_of
 from rvmon.report.percent import percent_text
-from rvmon.report.wrapped import wrapped
+from rvmon.report.terminal import wrapped
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -11,7 +11,7 @@ from rvmon.cdv.mutation.spec_mutants import SpecMutant
 from rvmon.cdv.mutation.tried import How, Tried
 from rvmon.report.coverage_summary import counted
 from rvmon.report.percent import percent_text
-from rvmon.report.plain_table import plain_table
+from rvmon.report.terminal import plain_table
 
 HEAD = (
     *("suite", "third", "mutants", "equivalent", "killed", "by a requirement", "not run"),

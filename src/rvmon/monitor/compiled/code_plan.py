@@ -15,8 +15,7 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.state import State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.plan.plan import Plan, PlannedRule
-from rvmon.plan.planning import plan_in_units
+from rvmon.plan.plan import Plan, PlannedRule, plan_in_units
 from rvmon.spec.checked.selection import requirements_asked
 
 

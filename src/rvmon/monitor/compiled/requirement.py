@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.bulk import moves_in_runs
+from rvmon.automaton.automaton import Automaton, moves_in_runs
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
 from rvmon.automaton.forecast import Forecaster
 from rvmon.automaton.reduce import reduce

@@ -10,8 +10,7 @@ from rvmon.errors import SnapshotError
 from rvmon.monitor.core.losses import Losses
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.inputs.health import of_intake
-from rvmon.monitor.inputs.intake import Intake, Turn
-from rvmon.monitor.inputs.order import refuse_earlier
+from rvmon.monitor.inputs.intake import Intake, Turn, refuse_earlier
 from rvmon.monitor.inputs.validate import Validator
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import Health

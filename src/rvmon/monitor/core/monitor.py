@@ -16,10 +16,9 @@ from rvmon.monitor.core.fed import FedMonitor
 from rvmon.monitor.core.feed import Feed
 from rvmon.monitor.core.findings import health_of_run
 from rvmon.monitor.core.listeners import Callback, Listeners
-from rvmon.monitor.core.one_call import OneCall, overlap
+from rvmon.monitor.core.one_call import OneCall, capped, not_passed, overlap
 from rvmon.monitor.core.planned import VERDICTS, PlannedCore
 from rvmon.monitor.core.snapshot import Options, put_back, written
-from rvmon.monitor.core.torn import capped, not_passed
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

@@ -14,21 +14,22 @@ from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.replayed import Letters, at_decision, at_moment
-from rvmon.monitor.explained.explanation import Explanation, truths_shown, unborn_of
-from rvmon.monitor.explained.findings import Reasons
-from rvmon.monitor.explained.machine import MachineRuns, explained
-from rvmon.monitor.explained.network import explained_by_network
-from rvmon.monitor.explained.undecided import (
+from rvmon.monitor.explained.explanation import (
+    Explanation,
     Judged,
     Undecided,
     forecast_of,
+    truths_shown,
+    unborn_of,
     why_nothing,
     why_open,
     why_settled,
 )
+from rvmon.monitor.explained.machine import MachineRuns, Reasons, explained
+from rvmon.monitor.explained.network import explained_by_network
 from rvmon.monitor.reasons.doubt import Doubt, Outage
 from rvmon.monitor.reasons.sentence import Standing
-from rvmon.plan.leaves import names_of
+from rvmon.plan.graph import names_of
 from rvmon.trace.health import HealthKind
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
@@ -143,7 +144,7 @@ class Told:
         self._leaf_words = words_for(len(self._texts))
 
     def residual(self, location: int) -> Residual:
-        """See `rvmon.monitor.explained.findings.Residuals`."""
+        """See `rvmon.monitor.explained.machine.Residuals`."""
         return self.compiled.shaped_residuals[location]
 
     @cached_property

@@ -14,7 +14,7 @@ from rvmon.formula.core import Core
 from rvmon.monitor.core.packed_cache import Kept
 from rvmon.monitor.core.planned import planned_as
 from rvmon.monitor.inputs.validate import Validator
-from rvmon.plan.planning import plan_of_truths
+from rvmon.plan.plan import plan_of_truths
 from rvmon.readers.source import Source
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Scalar, Trace

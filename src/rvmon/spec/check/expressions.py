@@ -6,21 +6,23 @@ from typing import assert_never
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
-from rvmon.spec.check.comparisons import compared
-from rvmon.spec.check.durations import closed_interval, ticks_of
+from rvmon.spec.check.comparisons import closed_interval, compared, ticks_of
 from rvmon.spec.check.functions import applied
-from rvmon.spec.check.kinds import formula_of, number_of
 from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.table import Table, close_name, close_unit
-from rvmon.spec.check.values import EVERYWHERE, Closure, Quantity, Scope, Value
+from rvmon.spec.check.values import EVERYWHERE, Age, Closure, Quantity, Scope, Value
 from rvmon.spec.checked.formula import (
     Binary,
     BoundAtom,
+    Compare,
+    CompareOp,
     Constant,
     EventAtom,
     FieldValue,
     Formula,
     Interval,
+    Literal,
+    SignalAtom,
     SignalValue,
     Unary,
     UnaryOp,
@@ -56,6 +58,42 @@ from rvmon.spec.syntax.items import ConstItem, DefineItem
 from rvmon.spec.syntax.unit import PLAIN
 from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
 from rvmon.trace.schema import Kind
+
+
+def formula_of(value: Value, span: Span) -> Formula:
+    """The value as a formula.
+
+    Raises:
+        Refusal: it is a number or label.
+    """
+    match value:
+        case Quantity(node=SignalValue(name=name), truth=True):
+            return SignalAtom(name, span)
+        case Quantity(node=node, truth=True) if node is not None:
+            return Compare(CompareOp.EQ, node, Literal(True), span)
+        case Quantity(labels=labels):
+            raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
+        case Age():
+            raise Refusal(rules.age_alone(span))
+        case _:
+            return value
+
+
+def number_of(value: Value, span: Span) -> Quantity:
+    """The value as a number.
+
+    Raises:
+        Refusal: it is a formula or label.
+    """
+    match value:
+        case Quantity(truth=False, labels=()):
+            return value
+        case Quantity(truth=False):
+            raise Refusal(rules.label_use(span))
+        case Age():
+            raise Refusal(rules.age_alone(span))
+        case _:
+            raise Refusal(rules.needs_number(span))
 
 
 class Checker:

@@ -10,11 +10,14 @@ from rvmon.diagnostics.span import Span
 from rvmon.spec.check.coverage import present
 from rvmon.spec.check.expressions import Checker
 from rvmon.spec.check.linear import linear_form
-from rvmon.spec.check.normalise import normalised
+from rvmon.spec.check.normalise import (
+    derived_response,
+    normalised,
+    scoped_consequent,
+    scoped_trigger,
+)
 from rvmon.spec.check.properties import checked_property
 from rvmon.spec.check.quantities import node_of
-from rvmon.spec.check.response import derived_response
-from rvmon.spec.check.scopes import scoped_consequent, scoped_trigger
 from rvmon.spec.check.traps import capture_traps, traps_at_start, traps_at_trigger
 from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope
 from rvmon.spec.checked.ctl import Property

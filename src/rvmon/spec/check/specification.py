@@ -18,7 +18,7 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.spec.names.cycles import find_cycles
+from rvmon.spec.names.resolve import find_cycles
 from rvmon.spec.names.resolved import DeclaredEvent, DeclaredSignal, ResolvedSpec
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules

@@ -1,15 +1,17 @@
-"""From items to names: every name is declared once."""
+"""From items to names: every name is declared once, constants may be replaced, none is circular."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TypeVar, assert_never
 
+from rvmon.diagnostics.span import Source
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.names.resolved import Declared, DeclaredEvent, DeclaredSignal, ResolvedSpec
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules.findings import Findings
-from rvmon.spec.syntax.expressions import Ident
+from rvmon.spec.syntax.expressions import Call, Expression, Ident, Name
 from rvmon.spec.syntax.items import (
     ConstItem,
     CoverItem,
@@ -27,6 +29,8 @@ from rvmon.spec.syntax.items import (
     SignalItem,
     TimeItem,
 )
+from rvmon.spec.syntax.parse import parse_expression
+from rvmon.spec.syntax.walk import expressions_in
 
 _K = TypeVar("_K", RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 
@@ -128,3 +132,74 @@ class _Resolver:
         if first is not name:
             self._findings.add(rules.double(name.text, kind, name.span, first.span))
         return first is name
+
+
+def overridden(
+    files: Sequence[ParsedSpec], constants: Mapping[str, str], findings: Findings
+) -> list[ParsedSpec]:
+    """The files with the values of some constants replaced."""
+    values: dict[str, Expression] = {}
+    known = [item.name.text for file in files for item in file.items if isinstance(item, ConstItem)]
+    for name, text in constants.items():
+        if name not in known:
+            findings.add(rules.unknown_constant(name, known))
+            continue
+        value, wrong = parse_expression(Source(f"<constant {name}>", text))
+        findings.extend(wrong)
+        if value is not None:
+            values[name] = value
+    return [_with_values(file, values) for file in files]
+
+
+def _with_values(file: ParsedSpec, values: Mapping[str, Expression]) -> ParsedSpec:
+    def item_with_value(item: Item) -> Item:
+        if isinstance(item, ConstItem) and item.name.text in values:
+            return replace(item, value=values[item.name.text])
+        return item
+
+    return replace(file, items=tuple(map(item_with_value, file.items)))
+
+
+def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozenset[str]:
+    """The names from which a circle of definitions can be reached; each circle is reported."""
+    uses = {
+        name: sorted(set(_used(item)) & declared.keys())
+        for name, item in declared.items()
+        if isinstance(item, DefineItem | ConstItem)
+    }
+    caught: set[str] = set()
+    finished: set[str] = set()
+    for root in uses:
+        path: list[str] = []
+        waiting = [(root, iter(uses[root]))] if root not in finished else []
+        while waiting:
+            name, rest = waiting[-1]
+            if len(path) < len(waiting):
+                path.append(name)
+            following = next((n for n in rest if n in uses and n not in finished), None)
+            if following is None:
+                finished.add(name)
+                waiting.pop()
+                path.pop()
+                if caught & set(uses[name]):
+                    caught.add(name)
+            elif following in path:
+                circle = path[path.index(following) :]
+                caught.update(circle)
+                place = declared[circle[0]].name.span
+                findings.add(rules.recursive([*circle, circle[0]], place))
+            else:
+                waiting.append((following, iter(uses[following])))
+    return frozenset(caught)
+
+
+def _used(item: DefineItem | ConstItem) -> Iterator[str]:
+    own: frozenset[str] = frozenset()
+    body: Expression = item.value if isinstance(item, ConstItem) else item.body
+    if isinstance(item, DefineItem) and item.parameters:
+        own = frozenset(parameter.text for parameter in item.parameters)
+    for part in expressions_in(body):
+        if isinstance(part, Name) and part.text not in own:
+            yield part.text
+        elif isinstance(part, Call):
+            yield part.function.text

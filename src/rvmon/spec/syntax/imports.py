@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
@@ -12,9 +13,45 @@ from rvmon.diagnostics.text_file import text_of_file
 from rvmon.spec.rules import imports as rules
 from rvmon.spec.rules.findings import Findings
 from rvmon.spec.rules.rule import Refusal
-from rvmon.spec.syntax.import_folders import Tree, tree_of
 from rvmon.spec.syntax.items import ImportItem, ParsedSpec
 from rvmon.spec.syntax.parse import parse_spec
+
+_MARKS = (".git", "pyproject.toml")
+"""What stands in the root of a project."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """The folders that imports may lead into.
+
+    Attributes:
+        root: of the project.
+        others: that a person has allowed.
+    """
+
+    root: Path
+    others: tuple[Path, ...] = ()
+
+    def holds(self, file: Path) -> bool:
+        """Whether a file lies within, where links lead.
+
+        Raises:
+            ValueError: a null character is in the name.
+            OSError: links lead round in a circle.
+        """
+        real = file.resolve()
+        return any(real.is_relative_to(folder) for folder in (self.root, *self.others))
+
+
+def tree_of(directory: Path) -> Tree:
+    """The tree of a main file in a folder: that of its project, else the folder itself."""
+    own = directory.resolve()
+    marked = (
+        folder for folder in (own, *own.parents) if any((folder / mark).exists() for mark in _MARKS)
+    )
+    named = os.environ.get("RVMON_ALLOW_IMPORTS", "").split(os.pathsep)
+    return Tree(next(marked, own), tuple(Path(name).resolve() for name in named if name))
+
 
 LIBRARIES = ("patterns",)
 """Folders of this package with specifications that can be imported by name."""

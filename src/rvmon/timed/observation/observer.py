@@ -15,8 +15,7 @@ from enum import Enum
 from itertools import product
 from math import ceil
 
-from rvmon.automaton.automaton import Automaton
-from rvmon.automaton.layout import row_of
+from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.obligation import Obligation
 from rvmon.spec.checked.formula import Bound, BoundAtom
