@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from functools import partial
 
+import codes
 import command_line
 import pattern_library
 import specification_language
@@ -17,6 +18,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 _MADE: dict[str, Callable[[], str]] = {
+    "codes": codes.codes,
     "grammar": specification_language.grammar,
     "grammar-of-models": specification_language.model_grammar,
     "patterns": pattern_library.patterns,

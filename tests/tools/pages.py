@@ -36,7 +36,6 @@ PAGES = sorted(
 """The pages of the documentation, the README and the rules for contributors."""
 
 OWN_TESTS = {
-    "docs/codes/": "tests/rvmon/explain/test_codes.py",
     "docs/reference/what-changed-in-the-law.md": "tests/rvmon/verdict/test_law_page.py",
 }
 """Pages whose blocks stand in a form of their own, with the test that runs them."""

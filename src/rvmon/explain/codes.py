@@ -3,77 +3,40 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 
-from rvmon.analysis.rules import analysis_rules
-from rvmon.diagnostics.diagnostic import Diagnostic, Severity
-from rvmon.errors import ModelError, SpecError, UnknownNameError
-from rvmon.spec.compile import compile_text
-from rvmon.spec.rules.pages import all_rules, rule_page
+from rvmon.analysis.rules import RULES as ANALYSIS
+from rvmon.diagnostics.diagnostic import Severity
+from rvmon.errors import UnknownNameError
+from rvmon.spec.rules import (
+    goals,
+    imports,
+    names,
+    properties,
+    syntax,
+    time,
+    traps,
+    triggers,
+    types,
+)
 from rvmon.spec.rules.rule import Rule
-from rvmon.timed.model.rules import RULES
+from rvmon.timed.model.rules import RULES as MODELS
 
+_FAMILIES = (syntax, names, imports, types, time, triggers, traps, properties, goals)
 _WARNINGS = ("TA010",)
 
 
 @cache
-def model_rules() -> Mapping[str, Rule]:
-    """Every rule of models by its code, in order of codes."""
-    text = resources.files("rvmon.explain").joinpath("model_codes.toml").read_text("utf-8")
-    return {
-        code: Rule(
-            code,
-            RULES[code],
-            Severity.WARNING if code in _WARNINGS else Severity.ERROR,
-            **{name: words.removeprefix("\n") for name, words in page.items()},
-        )
-        for code, page in tomllib.loads(text).items()
-    }
-
-
-def findings_in_model(text: str) -> tuple[Diagnostic, ...]:
-    """What is found in a model as its queries are decided, or as it is held against a recording.
-
-    Args:
-        text: of the model; an empty one stands for a file that is not there.
-    """
-    from rvmon.timed.conformance.conform import conform
-    from rvmon.timed.language.load import load_network, loads_network
-    from rvmon.timed.search.verify import verify
-
-    try:
-        network = loads_network(text, name="demo.ta") if text else load_network("none/demo.ta")
-        for query in network.queries:
-            verify(network, query)
-        if not network.queries:
-            conform(network, (), observed=frozenset(), end=0, tolerance=0)
-    except ModelError as error:
-        return error.diagnostics
-    return network.warnings
-
-
 def every_rule() -> Mapping[str, Rule]:
     """Every rule by its code, in order of codes."""
-    return {**all_rules(), **analysis_rules(), **model_rules()}
-
-
-def findings_about(rule: Rule, text: str) -> tuple[Diagnostic, ...]:
-    """What is found in a text by the pass that a rule belongs to: check, analysis, or a model's."""
-    if rule.code in model_rules():
-        return findings_in_model(text)
-    try:
-        checked, found = compile_text(text, name="demo.rv")
-    except SpecError as error:
-        return tuple(error.diagnostics)
-    if rule.code not in analysis_rules():
-        return tuple(found)
-    from rvmon.explain.analysed import analyse
-    from rvmon.monitor.compiled.specification import compile_spec
-
-    return analyse(compile_spec(checked), timelines=0).findings
+    rules = [*(rule for family in _FAMILIES for rule in family.RULES), *ANALYSIS]
+    rules += [
+        Rule(code, name, Severity.WARNING if code in _WARNINGS else Severity.ERROR)
+        for code, name in MODELS.items()
+    ]
+    return {rule.code: rule for rule in sorted(rules, key=lambda rule: rule.code)}
 
 
 def page_of(code: str) -> str:
@@ -91,7 +54,8 @@ def page_of(code: str) -> str:
     rule = rules.get(code.upper()) or named.get(code.lower())
     if rule is None:
         raise UnknownNameError(_unknown(code, rules))
-    return rule_page(rule, findings_about(rule, rule.example))
+    page = resources.files("rvmon.explain") / "pages" / f"{rule.code}.md"
+    return page.read_text("utf-8")
 
 
 def code_list() -> str:

@@ -7,19 +7,20 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.tools.code_pages import PAGES, page
 
 from rvmon.diagnostics.render import render_concise, render_full, render_json
 from rvmon.errors import SpecError
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.formatter import format_text
-from rvmon.spec.rules.pages import all_rules
 
 ROOT = Path(__file__).parents[3]
+RULES = [page(path.stem) for path in sorted(PAGES.glob("RV*.md"))]
 SEEDS = [
     *(path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("specs/*.rv"))),
     *(path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("src/rvmon/spec/*/*.rv"))),
-    *(rule.example for rule in all_rules().values() if len(rule.example) < 500),
-    *(rule.instead for rule in all_rules().values()),
+    *(page.example for page in RULES if len(page.example) < 500),
+    *(page.instead for page in RULES),
 ]
 WORD = re.compile(r"\w+|[^\w\s]+|\s+")
 WORDS = [

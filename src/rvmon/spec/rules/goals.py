@@ -12,45 +12,9 @@ from rvmon.spec.rules.rule import Breach, Rule, finding
 MOST_COMBINATIONS = 10_000
 """Crosses with more combinations are refused."""
 
-BIN = Rule(
-    "RV060",
-    "bin",
-    Severity.ERROR,
-    "The values of a bin do not fit its coverpoint.",
-    "A bin is a value, a range or a formula of the present and past; without values it is the "
-    "label of its own name.",
-    """spec demo
-signal speed : real [m/s]
+BIN = Rule("RV060", "bin", Severity.ERROR)
 
-coverpoint pace = speed {slow, fast}
-""",
-    """spec demo
-signal speed : real [m/s]
-
-coverpoint pace = speed {slow: [0 m/s, 250 mm/s), fast: [250 mm/s, inf)}
-""",
-)
-
-CROSS = Rule(
-    "RV061",
-    "cross",
-    Severity.ERROR,
-    "A cross names what is no coverpoint, or has a clause that does not fit.",
-    "A cross combines the bins of coverpoints; what it ignores is written over their bins.",
-    """spec demo
-signal gaze_ok, pressure_ok : bool
-
-coverpoint gaze = gaze_ok {yes: true, no: false}
-cross both = gaze, pressure_ok
-""",
-    """spec demo
-signal gaze_ok, pressure_ok : bool
-
-coverpoint gaze = gaze_ok {yes: true, no: false}
-coverpoint pressure = pressure_ok {yes: true, no: false}
-cross both = gaze, pressure
-""",
-)
+CROSS = Rule("RV061", "cross", Severity.ERROR)
 
 RULES = (BIN, CROSS)
 

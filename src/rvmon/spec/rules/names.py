@@ -9,23 +9,7 @@ from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Rule, finding
 
-RESERVED_NAME = Rule(
-    "RV010",
-    "reserved-name",
-    Severity.ERROR,
-    "A word of the language is used as a name.",
-    "Words such as `next`, `time` or `F` always keep their meaning, so that a formula reads the "
-    "same in every file.",
-    """spec demo
-signal next : bool
-""",
-    """spec demo
-signal `next` : bool
-
-requirement R1
-  always `next`
-""",
-)
+RESERVED_NAME = Rule("RV010", "reserved-name", Severity.ERROR)
 
 
 def reserved(span: Span) -> Diagnostic:
@@ -38,141 +22,17 @@ def reserved(span: Span) -> Diagnostic:
     )
 
 
-DOUBLE_NAME = Rule(
-    "RV011",
-    "double-name",
-    Severity.ERROR,
-    "Two declarations have the same name.",
-    "Signals, events, constants and macros share one space of names, requirements and properties "
-    "another, so that a name means one thing.",
-    """spec demo
-signal door : bool
-event door
-""",
-    """spec demo
-signal door_closed : bool
-event door
+DOUBLE_NAME = Rule("RV011", "double-name", Severity.ERROR)
 
-requirement R1
-  upon door
-  then within 2 s door_closed
-""",
-)
+UNKNOWN_NAME = Rule("RV012", "unknown-signal", Severity.ERROR)
 
-UNKNOWN_NAME = Rule(
-    "RV012",
-    "unknown-signal",
-    Severity.ERROR,
-    "No signal, event, constant, macro or parameter has that name.",
-    "A misspelled name must not become a proposition that is never true.",
-    """spec demo
-event asked, released
+UNKNOWN_LABEL = Rule("RV013", "unknown-label", Severity.ERROR)
 
-requirement R1
-  upon asked
-  then within 3 s relased
-""",
-    """spec demo
-event asked, released
+UNKNOWN_FUNCTION = Rule("RV014", "unknown-function", Severity.ERROR)
 
-requirement R1
-  upon asked
-  then within 3 s released
-""",
-)
+RECURSIVE = Rule("RV015", "recursive-definition", Severity.ERROR)
 
-UNKNOWN_LABEL = Rule(
-    "RV013",
-    "unknown-label",
-    Severity.ERROR,
-    "The signal has no such label.",
-    "A comparison with a label that never occurs would be false throughout.",
-    """spec demo
-signal state : {idle, moving}
-
-requirement R1
-  upon start
-  then eventually state == moveing
-""",
-    """spec demo
-signal state : {idle, moving}
-
-requirement R1
-  upon start
-  then eventually state == moving
-""",
-)
-
-UNKNOWN_FUNCTION = Rule(
-    "RV014",
-    "unknown-function",
-    Severity.ERROR,
-    "No function or macro of that name exists.",
-    "A name right before a bracket is a call. Where an operator is meant, as in `a and (b or c)`, "
-    "it is a word of the language with a space behind it.",
-    """spec demo
-signal door : bool
-
-requirement R1
-  upon rize(door)
-  then within 3 s not door
-""",
-    """spec demo
-signal door : bool
-
-requirement R1
-  upon rise(door)
-  then within 3 s not door
-""",
-)
-
-RECURSIVE = Rule(
-    "RV015",
-    "recursive-definition",
-    Severity.ERROR,
-    "A macro or constant is defined by itself.",
-    "Macros are written out where they are used; one that uses itself would never end.",
-    """spec demo
-signal a : bool
-define p = a or q
-define q = p
-
-requirement R1
-  always p
-""",
-    """spec demo
-signal a, b : bool
-define p = a or q
-define q = b
-
-requirement R1
-  always p
-""",
-)
-
-UNUSED = Rule(
-    "RV017",
-    "unused-name",
-    Severity.WARNING,
-    "A macro, constant or captured value is defined and used nowhere.",
-    "It may be a leftover, or what was to use it uses something else by mistake.",
-    """spec demo
-event asked, released
-const T = 3 s
-
-requirement R1
-  upon asked
-  then within 2 s released
-""",
-    """spec demo
-event asked, released
-const T = 3 s
-
-requirement R1
-  upon asked
-  then within T released
-""",
-)
+UNUSED = Rule("RV017", "unused-name", Severity.WARNING)
 
 RULES = (
     RESERVED_NAME,

@@ -8,121 +8,15 @@ from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
-PATH_OUTSIDE = Rule(
-    "RV050",
-    "path-quantifier",
-    Severity.ERROR,
-    "A path quantifier (`A[]`, `E<>`, `AG`, …) stands outside a `property`.",
-    "A monitor sees one run; what holds on all or some runs is for a model checker, or is "
-    "turned into a monitor on purpose.",
-    """spec demo
-signal a : bool
+PATH_OUTSIDE = Rule("RV050", "path-quantifier", Severity.ERROR)
 
-requirement R1
-  AG a
-""",
-    """spec demo
-signal a : bool
+BARE_TIME = Rule("RV051", "time-without-quantifier", Severity.ERROR)
 
-requirement R1
-  always a
-  property AG a
-""",
-)
+FOREIGN_NAME = Rule("RV052", "name-of-a-model", Severity.WARNING)
 
-BARE_TIME = Rule(
-    "RV051",
-    "time-without-quantifier",
-    Severity.ERROR,
-    "In a property an operator of time stands without `A` or `E`.",
-    "Properties are written in CTL: each operator of time says whether it means all paths or some "
-    "path.",
-    """spec demo
-signal a, b : bool
+NO_RESPONSE = Rule("RV053", "role-split", Severity.ERROR)
 
-property P1: A[] (a -> eventually b)
-""",
-    """spec demo
-signal a, b : bool
-
-property P1: A[] (a -> AF b)
-""",
-)
-
-FOREIGN_NAME = Rule(
-    "RV052",
-    "name-of-a-model",
-    Severity.WARNING,
-    "A property reads a name that the spec does not declare and that is like one it does.",
-    "Properties may read clocks and locations of a model, so an unknown name is no error there; "
-    "one that is almost a signal probably is a slip.",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-  property E<> relased
-""",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-  property E<> released
-""",
-)
-
-NO_RESPONSE = Rule(
-    "RV053",
-    "role-split",
-    Severity.ERROR,
-    "`monitor as response` cannot split the property into an "
-    "environment part and an obligation of the system.",
-    "The derived monitor is triggered by the `input` part of `E<> (p and q and …)` and awaits the "
-    "`output` part. Each conjunct has to belong to one side, and one at least to the output.",
-    """spec demo
-signal ready : bool input
-event released output
-
-requirement R1
-  monitor as response within 3 s
-  property E<> (ready or released)
-""",
-    """spec demo
-signal ready : bool input
-event released output
-
-requirement R1
-  monitor as response within 3 s
-  property E<> (ready and released)
-""",
-)
-
-NOT_LINEAR = Rule(
-    "RV054",
-    "not-on-one-run",
-    Severity.ERROR,
-    "`monitor as written` cannot evaluate the property on single runs.",
-    "A monitor sees one run. A property on all paths can be evaluated on each if it means the "
-    "same there: what is to come is about one instant, and of two ways one is open at a time. "
-    "What is on some path (`AG EF reset`) needs a model.",
-    """spec demo
-signal safe : bool
-
-requirement R1
-  monitor as written
-  property AF AG safe
-""",
-    """spec demo
-signal safe : bool
-
-requirement R1
-  monitor as written
-  property AG AF safe
-""",
-)
+NOT_LINEAR = Rule("RV054", "not-on-one-run", Severity.ERROR)
 
 RULES = (PATH_OUTSIDE, BARE_TIME, FOREIGN_NAME, NO_RESPONSE, NOT_LINEAR)
 

@@ -10,25 +10,17 @@ from rvmon.diagnostics.span import Span
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A rule and its page in the documentation.
+    """A rule; `rvmon/explain/pages` says why it matters, with an example.
 
     Attributes:
         code: stable, never used again for another rule.
         name: the code in words.
         severity: what a breach is.
-        what: one sentence: what is found.
-        why: why it matters.
-        example: a specification that breaks the rule.
-        instead: the same fixed.
     """
 
     code: str
     name: str
     severity: Severity
-    what: str
-    why: str
-    example: str
-    instead: str
 
 
 class Refusal(Exception):  # noqa: N818 - it carries a finding through a parser, no caller sees it

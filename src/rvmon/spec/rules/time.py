@@ -6,140 +6,17 @@ from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
-NO_DURATION = Rule(
-    "RV030",
-    "no-duration",
-    Severity.ERROR,
-    "A duration is needed: a constant with a unit of time.",
-    "`within 3 released` leaves open whether seconds or milliseconds are meant.",
-    """spec demo
-event asked, released
+NO_DURATION = Rule("RV030", "no-duration", Severity.ERROR)
 
-requirement R1
-  upon asked
-  then within 3 (released or asked)
-""",
-    """spec demo
-event asked, released
+PART_OF_TICK = Rule("RV031", "part-of-a-tick", Severity.ERROR)
 
-requirement R1
-  upon asked
-  then within 3 s (released or asked)
-""",
-)
+EMPTY_INTERVAL = Rule("RV032", "empty-interval", Severity.ERROR)
 
-PART_OF_TICK = Rule(
-    "RV031",
-    "part-of-a-tick",
-    Severity.ERROR,
-    "A duration is no whole number of nanoseconds.",
-    "Time is counted in ticks of 1 ns and durations are converted exactly, never rounded.",
-    """spec demo
-event asked, released
+LATE_WEAK_WINDOW = Rule("RV033", "window-after-now", Severity.ERROR)
 
-requirement R1
-  upon asked
-  then within 0.5 ns released
-""",
-    """spec demo
-event asked, released
+STEP_IN_HELD_TIME = Rule("RV034", "step-in-held-time", Severity.ERROR)
 
-requirement R1
-  upon asked
-  then within 1 ns released
-""",
-)
-
-EMPTY_INTERVAL = Rule(
-    "RV032",
-    "empty-interval",
-    Severity.ERROR,
-    "An interval holds no tick, or starts before 0.",
-    "An operator over no instant at all would be decided by convention, not by what happens.",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then eventually[3 s, 2 s] released
-""",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then eventually[2 s, 3 s] released
-""",
-)
-
-LATE_WEAK_WINDOW = Rule(
-    "RV033",
-    "window-after-now",
-    Severity.ERROR,
-    "`W`, `unless` and `M` take no window that starts after 0.",
-    "Their usual definitions disagree for such windows; `R` and `U` are unambiguous.",
-    """spec demo
-signal a, b : bool
-
-requirement R1
-  upon start
-  then a unless[1 s, 2 s] b
-""",
-    """spec demo
-signal a, b : bool
-
-requirement R1
-  upon start
-  then a unless[0 s, 2 s] b
-""",
-)
-
-STEP_IN_HELD_TIME = Rule(
-    "RV034",
-    "step-in-held-time",
-    Severity.ERROR,
-    "`next` and `previous` are used in `time held`.",
-    "In held time every nanosecond is a position, so `next` would mean: one nanosecond later.",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then next released
-""",
-    """spec demo
-time sampled
-event asked, released
-
-requirement R1
-  upon asked
-  then next released
-""",
-)
-
-NO_WINDOW = Rule(
-    "RV035",
-    "operator-without-window",
-    Severity.ERROR,
-    "An interval is given to an operator that takes none.",
-    "`next` and `previous` speak of the neighbouring position, whenever that is.",
-    """spec demo
-time sampled
-event asked, released
-
-requirement R1
-  upon asked
-  then next[0 s, 1 s] released
-""",
-    """spec demo
-time sampled
-event asked, released
-
-requirement R1
-  upon asked
-  then eventually[0 s, 1 s] released
-""",
-)
+NO_WINDOW = Rule("RV035", "operator-without-window", Severity.ERROR)
 
 RULES = (
     NO_DURATION,

@@ -9,195 +9,21 @@ from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
-FUTURE_TRIGGER = Rule(
-    "RV040",
-    "future-in-trigger",
-    Severity.ERROR,
-    "A trigger speaks of the future.",
-    "Whether a requirement is triggered has to be known at once; what lies ahead belongs behind "
-    "`then`.",
-    """spec demo
-event asked, released
+FUTURE_TRIGGER = Rule("RV040", "future-in-trigger", Severity.ERROR)
 
-requirement R1
-  upon asked and within 1 s released
-  then within 3 s asked
-""",
-    """spec demo
-event asked, released
+END_NOT_ALONE = Rule("RV041", "end-not-alone", Severity.ERROR)
 
-requirement R1
-  upon asked and once[0, 1 s] released
-  then within 3 s asked
-""",
-)
+ONE_INSTANT = Rule("RV042", "one-instant", Severity.WARNING)
 
-END_NOT_ALONE = Rule(
-    "RV041",
-    "end-not-alone",
-    Severity.ERROR,
-    "`end` stands elsewhere than alone behind `upon`.",
-    "No instant is known to be the last one, so `end` is evaluated only when the "
-    "trace is finished.",
-    """spec demo
-signal done : bool
+MIXED_TRIGGER = Rule("RV043", "pulse-or-level", Severity.WARNING)
 
-requirement R1
-  always (end -> done)
-""",
-    """spec demo
-signal done : bool
+DOUBLE_CLAUSE = Rule("RV044", "double-clause", Severity.ERROR)
 
-requirement R1
-  upon end
-  then immediately done
-""",
-)
+UNKNOWN_POLICY = Rule("RV045", "unknown-policy", Severity.ERROR)
 
-ONE_INSTANT = Rule(
-    "RV042",
-    "one-instant",
-    Severity.WARNING,
-    "The consequent has no temporal operator, so that a single instant is checked.",
-    "`upon asked then released` demands the release at the very nanosecond of the asking. If that "
-    "is meant, `immediately` says so. A requirement that is one formula without a temporal "
-    "operator, as `not (stop and go)`, is checked at the start of the run only.",
-    """spec demo
-event asked, released
+NEVER_READ = Rule("RV046", "never-read", Severity.WARNING)
 
-requirement R1
-  upon asked
-  then released
-""",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-""",
-)
-
-MIXED_TRIGGER = Rule(
-    "RV043",
-    "pulse-or-level",
-    Severity.WARNING,
-    "A trigger joins an event and a state by `or`.",
-    "An event triggers at each occurrence, a state where it becomes true. The disjunction counts "
-    "as a state, so an event that occurs while the state holds triggers nothing.",
-    """spec demo
-event asked, released
-signal waiting : bool
-
-requirement R1
-  upon asked or waiting
-  then within 3 s released
-""",
-    """spec demo
-event asked, released
-signal waiting : bool
-
-requirement R1
-  upon asked or rise(waiting)
-  then within 3 s released
-""",
-)
-
-DOUBLE_CLAUSE = Rule(
-    "RV044",
-    "double-clause",
-    Severity.ERROR,
-    "A requirement has two clauses of a kind of which it takes one.",
-    "Which of the two holds would depend on their order.",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-  source "a"
-  source "b"
-""",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-  source "a, b"
-""",
-)
-
-UNKNOWN_POLICY = Rule(
-    "RV045",
-    "unknown-policy",
-    Severity.ERROR,
-    "`at end` names no policy.",
-    "The policies are `default`, `strict`, `weak`, `strong`, `pass` and `fail`.",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then eventually released
-  at end: week
-""",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then eventually released
-  at end: weak
-""",
-)
-
-NEVER_READ = Rule(
-    "RV046",
-    "never-read",
-    Severity.WARNING,
-    "A signal or event is declared and read by no requirement.",
-    "It may be a leftover, or the requirement that was to read it reads another by mistake.",
-    """spec demo
-event asked, released, cancelled
-
-requirement R1
-  upon asked
-  then within 3 s released
-""",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-""",
-)
-
-RUN_SHARE = Rule(
-    "RV075",
-    "bad-run-share",
-    Severity.ERROR,
-    "A share of runs is no percentage between 0 and 100.",
-    "What has to hold in every run, or in none, is the requirement itself or its negation; a share "
-    "of runs is decided by a test that can err.",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-  in at least 100 % of runs
-""",
-    """spec demo
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-  in at least 99 % of runs
-""",
-)
+RUN_SHARE = Rule("RV075", "bad-run-share", Severity.ERROR)
 
 RULES = (
     FUTURE_TRIGGER,

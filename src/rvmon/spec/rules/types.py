@@ -6,180 +6,21 @@ from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.rules.rule import Breach, Rule, finding, short
 
-WRONG_TYPE = Rule(
-    "RV020",
-    "wrong-type",
-    Severity.ERROR,
-    "A formula stands where a number is needed, or the other way round.",
-    "Signals of type `bool`, events and comparisons are true or false; `int` and `real` signals "
-    "are numbers, and become a formula by a comparison.",
-    """spec demo
-signal speed : real [m/s]
+WRONG_TYPE = Rule("RV020", "wrong-type", Severity.ERROR)
 
-requirement R1
-  always not speed
-""",
-    """spec demo
-signal speed : real [m/s]
+WRONG_ARGUMENTS = Rule("RV021", "wrong-arguments", Severity.ERROR)
 
-requirement R1
-  always not speed > 0 m/s
-""",
-)
+UNIT_MISMATCH = Rule("RV022", "unit-mismatch", Severity.ERROR)
 
-WRONG_ARGUMENTS = Rule(
-    "RV021",
-    "wrong-arguments",
-    Severity.ERROR,
-    "A function or macro gets other arguments than it takes.",
-    "Each function takes a fixed number of arguments, some only the name of a signal.",
-    """spec demo
-signal x : real
+MISSING_UNIT = Rule("RV023", "missing-unit", Severity.ERROR)
 
-requirement R1
-  always sqrt(x, 2) < 3
-""",
-    """spec demo
-signal x : real
+UNKNOWN_UNIT = Rule("RV024", "unknown-unit", Severity.ERROR)
 
-requirement R1
-  always sqrt(x) < 3
-""",
-)
+OUT_OF_RANGE = Rule("RV025", "number-out-of-range", Severity.ERROR)
 
-UNIT_MISMATCH = Rule(
-    "RV022",
-    "unit-mismatch",
-    Severity.ERROR,
-    "Values of different kinds of unit are compared, added or subtracted.",
-    "A force is never less than a distance. Units of one kind (`cm` and `m`) are converted "
-    "exactly; others are mistakes.",
-    """spec demo
-signal grip : real [N]
+LABELS = Rule("RV026", "label-use", Severity.ERROR)
 
-requirement R1
-  always grip < 5 cm
-""",
-    """spec demo
-signal grip : real [N]
-
-requirement R1
-  always grip < 5 N
-""",
-)
-
-MISSING_UNIT = Rule(
-    "RV023",
-    "missing-unit",
-    Severity.ERROR,
-    "A number stands without its unit.",
-    "`hand_distance < 5` is true of 5 m and of 5 cm, and people have been hurt by less. Only 0 "
-    "needs no unit.",
-    """spec demo
-signal hand_distance : real [m]
-
-requirement R1
-  always hand_distance > 5
-""",
-    """spec demo
-signal hand_distance : real [m]
-
-requirement R1
-  always hand_distance > 5 cm
-""",
-)
-
-UNKNOWN_UNIT = Rule(
-    "RV024",
-    "unknown-unit",
-    Severity.ERROR,
-    "There is no unit of that name.",
-    "Only units with an exact factor to the base units are known. A name behind a number is "
-    "always its unit.",
-    """spec demo
-signal x : real [metres]
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 released
-
-requirement R2
-  always x > 0
-""",
-    """spec demo
-signal x : real [m]
-event asked, released
-
-requirement R1
-  upon asked
-  then within 3 s released
-
-requirement R2
-  always x > 0
-""",
-)
-
-OUT_OF_RANGE = Rule(
-    "RV025",
-    "number-out-of-range",
-    Severity.ERROR,
-    "A number is too large, or a constant expression has no value.",
-    "Values are double-precision numbers; a division by the constant 0 has no value.",
-    """spec demo
-signal x : real
-
-requirement R1
-  always x < 1e999
-""",
-    """spec demo
-signal x : real
-
-requirement R1
-  always x < 1e300
-""",
-)
-
-LABELS = Rule(
-    "RV026",
-    "label-use",
-    Severity.ERROR,
-    "A label is used other than in `==` and `!=` with its signal.",
-    "Labels have no order and no arithmetic.",
-    """spec demo
-signal state : {idle, moving}
-
-requirement R1
-  always state < moving
-""",
-    """spec demo
-signal state : {idle, moving}
-
-requirement R1
-  always state != moving
-""",
-)
-
-IGNORED_NAN = Rule(
-    "RV027",
-    "nan-of-no-real",
-    Severity.ERROR,
-    "`ignore NaN` is given for a signal that is not `real`.",
-    "Only real numbers have NaN. `null` of a `bool`, `int` or label signal says that the value is "
-    "lost, and stays that.",
-    """spec demo
-signal people : int  ignore NaN
-
-requirement R1
-  always people < 3
-""",
-    """spec demo
-signal people : int
-
-requirement R1
-  always people < 3
-""",
-)
+IGNORED_NAN = Rule("RV027", "nan-of-no-real", Severity.ERROR)
 
 RULES = (
     WRONG_TYPE,
