@@ -21,7 +21,6 @@ from tests.tools.plan_reader import (
     layouts,
     size_of,
     size_of_form,
-    walk,
 )
 
 import rvmon
@@ -35,10 +34,10 @@ from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
 from rvmon.core.programs import DEPTH, Code
 from rvmon.core.sections import RECORDS, Section, hash_of
-from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.core.planned import planned_core
 from rvmon.plan.plan import Plan as Planned
 from rvmon.testing.generate.spec import Profile, random_spec
 
@@ -118,44 +117,10 @@ def drawn(seed: int) -> Planned | None:
 
 
 @pytest.mark.parametrize("path", WRITTEN, ids=lambda path: path.stem)
-def test_every_index_of_a_written_specification_is_in_its_bounds(path):
-    """What the demonstration and the examples specify is packed whole."""
+def test_the_core_takes_a_written_specification(path):
+    """What the demonstration and the examples specify is packed whole, by the core's own check."""
     spec = rvmon.load(path)
-    if not spec.requirements:
-        pytest.skip("it has no requirements")
-    walk(Plan(pack(plan_alone(spec._compiled)).data))
-
-
-@pytest.mark.law
-@pytest.mark.parametrize("part", range(4))
-def test_every_index_of_random_specifications_is_in_its_bounds(part):
-    """Every record leads where it should, and all are somebody's."""
-    plans = [drawn(seed) for seed in range(20 * part, 20 * (part + 1))]
-    assert sum(plan is not None for plan in plans) >= 15
-    for plan in filter(None, plans):
-        walk(Plan(pack(plan).data))
-
-
-@pytest.mark.parametrize("section", list(SECTIONS))
-def test_the_walk_finds_an_index_out_of_its_bounds(section):
-    """It fails where a number of a record is changed to a large one, for each kind of record."""
-    if section in ("WATCHES", "GROUPS"):
-        data = pack(Bins(rvmon.loads(COUNTED).checked).plan).data
-    else:
-        data = packed(EVERYTHING, measured=True).data
-    plan = Plan(data)
-    begin, end = plan.places[plan.names.index(section)]
-    size = size_of(SECTIONS[section])
-    assert end > begin
-    found = 0
-    for at in range(begin, begin + size, 4):
-        changed = bytearray(data)
-        changed[at : at + 4] = (1 << 30).to_bytes(4, sys.byteorder)
-        try:
-            walk(Plan(bytes(changed)), is_whole=False)
-        except (AssertionError, IndexError):
-            found += 1
-    assert found >= 1
+    planned_core(spec._compiled, measured=True).monitor(frozenset())
 
 
 @pytest.mark.law
@@ -204,7 +169,6 @@ def test_letters_of_many_propositions_are_classed_by_a_diagram():
     """A diagram leads each letter to the class that the automaton has it in."""
     plan = planned(DIAGRAM)
     read = Plan(pack(plan).data)
-    walk(read)
     (rule,) = plan.rules
     assert rule.automaton is not None
     (judge, *_) = read.records["JUDGES"]
@@ -321,7 +285,7 @@ def test_expressions_deeper_than_the_stack_are_refused():
         deep = "".join("1 + (x * (" for _ in range(depth // 2)) + "x" + "))" * (depth // 2)
         return f"spec s\nsignal x : real\nrequirement R\n  always {deep} > x\n"
 
-    walk(Plan(packed(nested(30)).data))
+    rvmon.loads(nested(30)).monitor()
     with pytest.raises(RvmonError, match="nested deeper than 31"):
         packed(nested(32))
 
@@ -331,7 +295,7 @@ def test_comparisons_of_too_many_events_are_refused():
     declared = "spec s\n" + "".join(f"event e{n}(k: int)\n" for n in range(9))
     eight = " + ".join(f"e{n}.k" for n in range(8))
     text = declared + "requirement R\n  always not ({} > 3)\n"
-    walk(Plan(packed(text.format(eight)).data))
+    rvmon.loads(text.format(eight)).monitor()
     with pytest.raises(RvmonError, match="more than 8 events"):
         packed(text.format(f"{eight} + e8.k"))
 
