@@ -37,7 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)"
     )
     add_const(parser)
-    parser.add_argument("--svg", metavar="FILE", help="write the automaton as a picture")
+    parser.add_argument("--svg", metavar="FILE", help="have Graphviz draw the automaton")
     parser.add_argument("--dot", action="store_true", help="print the automaton as DOT, no more")
     parser.add_argument(
         "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
@@ -98,7 +98,7 @@ def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: in
 
 def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace) -> None:
     from rvmon.explain.graph import graph_dot, graph_of
-    from rvmon.explain.graph_svg import graph_svg
+    from rvmon.export.network_file import svg_of
 
     for name in ids:
         one = compiled.requirements[name]
@@ -111,6 +111,6 @@ def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace)
             if len(ids) > 1:
                 raise RvmonError("error: --svg draws one requirement: name it after the file")
             try:
-                write_whole(arguments.svg, graph_svg(graph, name))
+                write_whole(arguments.svg, svg_of(graph_dot(graph, name)))
             except OSError as error:
                 raise RvmonError(f"error: {arguments.svg}: {error.strerror or error}") from None

@@ -32,7 +32,7 @@ def write_network(network: Network, path: str | Path) -> None:
         case ".dot":
             text = network_dot(network)
         case ".svg":
-            text = network_svg(network)
+            text = svg_of(network_dot(network))
         case _:
             raise RvmonError(f"{path}: end the name in .xml (for UPPAAL), .dot or .svg")
     try:
@@ -41,8 +41,8 @@ def write_network(network: Network, path: str | Path) -> None:
         raise RvmonError(f"{path}: {error.strerror or error}") from None
 
 
-def network_svg(network: Network) -> str:
-    """The drawing of `network_dot`, laid out by Graphviz.
+def svg_of(dot: str) -> str:
+    """A drawing in DOT, laid out by Graphviz.
 
     Raises:
         RvmonError: its program `dot` is not installed, or fails.
@@ -52,9 +52,9 @@ def network_svg(network: Network) -> str:
         fix = "install Graphviz (such as: apt-get install graphviz), or write a .dot file"
         raise RvmonError(f"there is no program `dot` to draw with: {fix}")
     try:
-        drawn = subprocess.run(  # noqa: S603 - the model is its input, never an argument
+        drawn = subprocess.run(  # noqa: S603 - the drawing is its input, never an argument
             [program, "-Tsvg"],
-            input=network_dot(network).encode("utf-8"),
+            input=dot.encode("utf-8"),
             capture_output=True,
             check=True,
             timeout=PATIENCE_S,
