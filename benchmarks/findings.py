@@ -114,7 +114,6 @@ class Findings:
         agreements: by contender and workload.
         differences: lines of the table of readings.
         files: lines of the table of whole files.
-        r2u2: lines of the table of `benchmarks.r2u2`.
         absent: what was not measured, and why.
     """
 
@@ -126,5 +125,4 @@ class Findings:
     agreements: tuple[Agreement, ...] = ()
     differences: tuple[str, ...] = ()
     files: tuple[str, ...] = ()
-    r2u2: tuple[str, ...] = ()
     absent: dict[str, str] = field(default_factory=dict)

@@ -302,12 +302,3 @@ SENTIL = Dialect(
     split=True,
 )
 """The instant of the right operand of an `until` is not the left one's, as in ours."""
-
-LTLF = Dialect(
-    "ltlf2dfa",
-    lambda name: name,
-    None,
-    ("(!({0}))", "(({0}) & ({1}))", "(({0}) | ({1}))"),
-    {UnaryOp.NEXT: "(X({0}))", UnaryOp.EVENTUALLY: "(F({0}))", UnaryOp.ALWAYS: "(G({0}))"},
-    {BinaryOp.UNTIL: "(({0}) U ({1}))"},
-)

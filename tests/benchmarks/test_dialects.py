@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 from benchmarks.peers.dialects import (
-    LTLF,
     MSTLO,
     REELAY_DENSE,
     REELAY_DISCRETE,
@@ -52,7 +51,6 @@ from rvmon.spec.checked.specification import TimeModel
         (MSTLO, true, "(v_one > 0.5)"),
         (SENTIL, following(p), "(next((v_p > 0.5)))"),
         (SENTIL, once(p, 2, 3), "(once[2, 3]((v_p > 0.5)))"),
-        (LTLF, two(p, "U", following(q)), "((v_p) U ((X(v_q))))"),
     ],
 )
 def test_text(dialect: Dialect, formula: Formula, text: str) -> None:
@@ -69,7 +67,6 @@ def test_text(dialect: Dialect, formula: Formula, text: str) -> None:
         (MSTLO, eventually(p)),
         (MSTLO, once(p, 0, 3)),
         (RTAMT_DISCRETE, probe("updated", "p")),
-        (LTLF, compared(x, ">", 0.5)),
         (RTAMT_DISCRETE, compared(x, "==", 1)),
     ],
 )
