@@ -38,9 +38,8 @@ from rvmon.export.uppaal import uppaal_xml
 from rvmon.report.junit import junit_xml
 from rvmon.report.markup import data, e, page, to_html
 from rvmon.report.run_text import print_reports
-from rvmon.report.table import RunGroup, VerdictTable, tables_csv
+from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
 from rvmon.report.table_html import table_html
-from rvmon.report.table_latex import table_latex
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind

@@ -21,7 +21,7 @@ from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.span import Source
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
-from rvmon.spec.rules.findings import Findings
+from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.imports import load_files
 from rvmon.writing import beside
 

@@ -129,7 +129,7 @@ class Spec:
         Raises:
             SnapshotError: they are none, damaged, of another specification, or of another rvmon.
         """
-        from rvmon.monitor.restore import restore
+        from rvmon.monitor.build import restore
 
         return restore(self._compiled, data)
 

@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any
 
 from rvmon.diagnostics.span import Source, Span
-from rvmon.spec.rules.findings import Findings
+from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.parse import grammar, parse_spec
 from rvmon.testing.generate.rng import Rng, chance, pick
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.analysis import rules
 from rvmon.analysis.examine import Examination
 from rvmon.analysis.subject import Conflict, Implication
-from rvmon.diagnostics.diagnostic import Diagnostic, Label
+from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Unary
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
 from rvmon.spec.checked.tense import FUTURE, subformulas
 from rvmon.spec.print.printer import format_duration
-from rvmon.spec.rules.rule import finding
+from rvmon.spec.rules.rule import Rule, finding
 
 
 def findings_of(spec: CheckedSpec, found: Examination) -> list[Diagnostic]:
@@ -33,7 +32,7 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
     can, place = found.possible[name], _places(spec, name)
     if can.trigger is False:
         yield finding(
-            rules.NEVER_TRIGGERS,
+            NEVER_TRIGGERS,
             f"nothing can trigger {name}",
             *place,
             fix="its trigger contradicts itself: look at the comparisons in it",
@@ -41,14 +40,14 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
         return
     if can.fail is False:
         yield finding(
-            rules.NEVER_FAILS,
+            NEVER_FAILS,
             f"{name} can never fail, whatever comes",
             *place,
             fix=_can_fail(spec.requirements[name]),
         )
     if can.pass_ is False:
         yield finding(
-            rules.NEVER_PASSES,
+            NEVER_PASSES,
             f"{name} can never pass, whatever comes",
             *place,
             fix=_can_pass(spec.requirements[name]),
@@ -57,7 +56,7 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
 
 def _implied(spec: CheckedSpec, found: Implication) -> Diagnostic:
     return finding(
-        rules.IMPLIED,
+        IMPLIED,
         f"{found.implied} fails only where {_listed(found.by, 'or')} fails: it adds nothing",
         *_places(spec, found.implied, *found.by),
         fix=f"drop {found.implied}, or look whether it was meant otherwise",
@@ -79,7 +78,7 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
         triggered = any(_has_trigger(spec.requirements[name]) for name in conflict.ids)
         narrow = "narrow one of the triggers" if triggered else "change a bound of one of them"
         fix = f"{narrow}, or settle which one yields"
-    return finding(rules.CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), fix=fix)
+    return finding(CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), fix=fix)
 
 
 def _can_fail(requirement: Requirement) -> str:
@@ -147,3 +146,16 @@ def _head(requirement: Requirement) -> Span | None:
         return None
     first = span.text.split("\n", 1)[0].rstrip()
     return Span(span.source, span.start, span.start + len(first))
+
+
+NEVER_TRIGGERS = Rule("RV070", "never-triggers", Severity.WARNING)
+
+NEVER_FAILS = Rule("RV071", "never-fails", Severity.WARNING)
+
+NEVER_PASSES = Rule("RV072", "never-passes", Severity.WARNING)
+
+CONFLICT = Rule("RV073", "conflict", Severity.WARNING)
+
+IMPLIED = Rule("RV074", "implied", Severity.WARNING)
+
+RULES = (NEVER_TRIGGERS, NEVER_FAILS, NEVER_PASSES, CONFLICT, IMPLIED)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
-from rvmon.automaton.letter_classes import LetterClasses
+from rvmon.automaton.diagram import LetterClasses
 from rvmon.automaton.location import NOW, PASSED, Location
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.core import Release

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.automaton.automaton import Automaton, end_clauses, layout_of
-from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram
+from rvmon.automaton.diagram import LetterClasses, LetterDiagram
 from rvmon.automaton.location import PASSED, Location
 from rvmon.formula.residual import NO_CLOCK, Residual
 

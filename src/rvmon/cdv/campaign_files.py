@@ -13,8 +13,7 @@ from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables, named_tables
 from rvmon.cdv.text import print_summary
-from rvmon.report.table import tables_csv
-from rvmon.report.table_latex import table_latex
+from rvmon.report.table import table_latex, tables_csv
 from rvmon.writing import write_whole
 
 TESTS = "tests"

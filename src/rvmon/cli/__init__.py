@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
-from rvmon.cli.memory import at_most
+from rvmon.cli.options import at_most
 from rvmon.cli.reading import with_values
 from rvmon.cli.reproduced import relax
 from rvmon.cli.say import rendered, spell, warn

@@ -8,9 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import duration
-from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.options import add_const, add_max_memory, constants_of
 from rvmon.cli.progress import busy
 from rvmon.cli.reading import add_binding
 from rvmon.cli.say import rendered, say, say_json, warn

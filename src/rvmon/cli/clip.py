@@ -8,10 +8,18 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from rvmon.cli.attempts import ATTEMPT_HELP, chosen_attempt, named_attempt
 from rvmon.cli.numbers import span, ticks
 from rvmon.cli.options import add_const, constants_of, refuse_over
-from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
+from rvmon.cli.reading import (
+    ATTEMPT_HELP,
+    add_allow_missing,
+    add_reading,
+    allowed_names,
+    chosen_attempt,
+    named_attempt,
+    opened,
+    reading_spec,
+)
 from rvmon.cli.reproduced import ENDING
 from rvmon.cli.say import say, warn
 from rvmon.errors import RvmonError

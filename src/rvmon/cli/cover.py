@@ -6,9 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import percentage
-from rvmon.cli.options import add_format
+from rvmon.cli.options import add_format, add_max_memory
 from rvmon.cli.progress import busy
 from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError

@@ -3,10 +3,28 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+import random
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
+
+from rvmon.cli.beside import spec_and_options
+from rvmon.cli.evidence_write import is_recording, rows_of_judged
+from rvmon.cli.judging import judge_all
 from rvmon.cli.numbers import positive
+from rvmon.cli.options import constants_of
+from rvmon.cli.progress import bar
+from rvmon.cli.say import say
+from rvmon.evidence.archive import TamperedError
+from rvmon.evidence.keep import Kept, derived_entries, opened_evidence, own_program, sha256_of
+from rvmon.evidence.matrix import Row, rows_by_item
+from rvmon.loading import load
+from rvmon.results.write import csv_bytes
+from rvmon.verdict.rows import VerdictRow
+from rvmon.verdict.verdict import LAW
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign
@@ -46,6 +64,130 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> int:
     """Verify, say what was found, and return the exit code."""
-    from rvmon.cli.evidence_verify import verify
-
     return verify(arguments)
+
+
+Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]
+"""Judges recordings, or plays tests, again, on so many processes."""
+
+
+def verify(arguments: argparse.Namespace) -> int:
+    """Verify, say what was found, and return the exit code.
+
+    Args:
+        arguments: of `rvmon evidence verify`.
+
+    Raises:
+        RvmonError: it is no evidence.
+    """
+    differ: list[str] = []
+    unchecked: list[str] = []
+    try:
+        with opened_evidence(arguments.file) as kept:
+            _verify(kept, arguments, differ, unchecked)
+    except TamperedError as error:
+        differ.append(str(error))
+    for heading, found in (("differs", differ), ("not checked", unchecked)):
+        for one in found:
+            say(f"{heading}: {one}")
+    if differ:
+        say("It does not hold.")
+        return 1
+    say("What could be checked holds." if unchecked else "It holds.")
+    return 2 if unchecked else 0
+
+
+def _verify(
+    kept: Kept, arguments: argparse.Namespace, differ: list[str], unchecked: list[str]
+) -> None:
+    about = kept.about
+    say(f"{arguments.file}: {about.name}, evaluated by rvmon {about.rvmon}, law {about.law}")
+    there = set(kept.items)
+    for name, sha256 in _shown(about.recordings):
+        if not is_recording(name):
+            unchecked.append(f"{name} is not there")
+        elif sha256_of(Path(name)) != sha256:
+            differ.append(f"{name} is not the recording that was evaluated")
+        else:
+            continue
+        there.discard(name)
+    if about.law != LAW:
+        unchecked.append(f"verdicts, which are of law {about.law}: this rvmon has law {LAW}")
+        return
+    is_same = about.programs.get("rvmon") == own_program()
+    if is_same:
+        _expect_derived(kept)
+    else:
+        unchecked.append("the matrix and the words of reasons: another rvmon wrote them")
+    again: Again = _judged_again
+    if about.judging is None:
+        if arguments.made is None:
+            program = f"{' '.join(about.command[:1])} evidence verify {arguments.file}"
+            unchecked.append(f"tests: the program that played them does: `{program}`")
+            return
+        from rvmon.cli.campaign_evidence import as_kept, played_again, programs_of
+
+        campaign = as_kept(arguments.made(), kept)
+        again = partial(played_again, campaign)
+        if not programs_of(campaign).items() <= about.programs.items():
+            say(f"{campaign.name} has changed since: its tests are played as it is now")
+    size = len(there) if arguments.sample is None else min(arguments.sample, len(there))
+    chosen = random.Random(arguments.seed).sample(sorted(there), size)  # noqa: S311 - no secret
+    now = rows_by_item(csv_bytes(again(kept, chosen, arguments.jobs)))
+    columns = [one for one in VerdictRow._fields if is_same or one not in ("reason", "error")]
+    for item in chosen:
+        differ += _differences(item, kept.items[item], now.get(item, ()), columns)
+    say(f"evaluated again: {size:,} of {len(kept.items):,}")
+
+
+def _shown(recordings: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Each recording with its hash, and how many have been looked at."""
+    with bar("recordings", len(recordings)) as show:
+        for count, one in enumerate(recordings.items(), start=1):
+            yield one
+            show(count)
+
+
+def _expect_derived(kept: Kept) -> None:
+    """See that the matrix follows from requirements and verdicts.
+
+    Raises:
+        TamperedError: it does not.
+    """
+    const = constants_of(kept.about.judging.const if kept.about.judging else ())
+    specs = {robot: load(path, const=const) for robot, path in kept.specs.items()}
+    try:
+        derived = derived_entries(kept.about, specs, kept.items)
+    except ValueError as error:
+        raise TamperedError(f"a verdict is none: {error}") from None
+    if not derived.items() <= kept.entries.items():
+        raise TamperedError("the matrix does not follow from requirements and verdicts")
+
+
+def _judged_again(kept: Kept, chosen: Sequence[str], jobs: int) -> Iterator[VerdictRow]:
+    options_kept = msgspec.structs.asdict(kept.about.judging) if kept.about.judging else {}
+    options_kept |= {"spec": kept.specs[""], "binding": kept.binding, "coverage": None}
+    spec, options = spec_and_options(argparse.Namespace(**options_kept))
+    return rows_of_judged(list(judge_all(spec, chosen, options, jobs)))
+
+
+def _differences(
+    item: str, before: Sequence[Row], now: Sequence[Row], columns: Sequence[str]
+) -> Iterator[str]:
+    """What is judged otherwise of a recording or a test, a sentence for each attempt."""
+    was, found = _by_attempt(before), _by_attempt(now)
+    for name in {**was, **found}:
+        old, new = was.get(name), found.get(name)
+        if old is None or new is None:
+            yield f"{name} in {item} {'was not there before' if old is None else 'is gone'}"
+            continue
+        other = [column for column in columns if old[column] != new[column]]
+        if other:
+            column = "verdict" if "verdict" in other else other[0]
+            yield f"{name} in {item}: {column} was {old[column]}, is {new[column]}"
+
+
+def _by_attempt(rows: Sequence[Row]) -> dict[str, Row]:
+    return {
+        one["attempt"] or one["requirement"] or one["reason"] or one["error"]: one for one in rows
+    }

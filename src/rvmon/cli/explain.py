@@ -7,9 +7,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import positive
-from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.options import add_const, add_max_memory, constants_of
 from rvmon.cli.say import say
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole

@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.memory import add_max_memory
 from rvmon.cli.numbers import instant, positive, shard
 from rvmon.cli.options import (
     add_const,
     add_dask,
     add_format,
+    add_max_memory,
     add_only,
     ids_of,
     refuse_over,

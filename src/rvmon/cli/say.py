@@ -49,8 +49,7 @@ def spell() -> None:
 
 def rendered(findings: Sequence[Diagnostic]) -> str:
     """Findings in full, as wide as the terminal is."""
-    from rvmon.diagnostics.render import render_full
-    from rvmon.diagnostics.snippet import WIDEST
+    from rvmon.diagnostics.render import WIDEST, render_full
 
     return render_full(findings, get_terminal_size((WIDEST, 0)).columns)
 

@@ -5,11 +5,19 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from rvmon.cli.attempts import ATTEMPT_HELP, chosen_attempt, named_attempt
 from rvmon.cli.numbers import instant
 from rvmon.cli.options import add_const, add_format, constants_of
 from rvmon.cli.progress import busy, shown_while_reading
-from rvmon.cli.reading import add_allow_missing, add_reading, allowed_names, opened, reading_spec
+from rvmon.cli.reading import (
+    ATTEMPT_HELP,
+    add_allow_missing,
+    add_reading,
+    allowed_names,
+    chosen_attempt,
+    named_attempt,
+    opened,
+    reading_spec,
+)
 from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.cli.say import say_json
 from rvmon.errors import RvmonError

@@ -10,8 +10,7 @@ from collections.abc import Iterable, Iterator
 from io import TextIOWrapper
 from pathlib import Path
 
-from rvmon.clipping.piece import Copied, Piece
-from rvmon.clipping.stamps import stamp_number, stamp_text
+from rvmon.clipping.piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.jsonl_rows import jsonl_samples
 from rvmon.readers.line_chunks import bounded_lines

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.automaton.automaton import Automaton, end_clauses
-from rvmon.automaton.letter_classes import LetterClasses, LetterDiagram, Tree
+from rvmon.automaton.diagram import LetterClasses, LetterDiagram, Tree
 from rvmon.core.sections import Section, Sections
 from rvmon.formula.alphabet import Alphabet
 

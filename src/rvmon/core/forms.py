@@ -8,7 +8,7 @@ from typing import assert_never
 
 from rvmon.core.sections import Listed, Section, Sections
 from rvmon.dataflow.chain import Chain, reach_of
-from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
+from rvmon.dataflow.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 

@@ -12,8 +12,7 @@ from rvmon.core.forms import add_form
 from rvmon.core.measures import add_margin
 from rvmon.core.sections import Section, Sections
 from rvmon.dataflow.chain import Chain, chain_of
-from rvmon.dataflow.network_plan import plan_of
-from rvmon.dataflow.nodes import NetworkPlan
+from rvmon.dataflow.network_plan import NetworkPlan, plan_of
 from rvmon.formula.state import State
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.specification import EndPolicy, Mode

@@ -7,7 +7,7 @@ from enum import IntEnum, auto
 
 from rvmon.core.forms import add_operators
 from rvmon.core.sections import Section, Sections
-from rvmon.dataflow.nodes import NetworkPlan
+from rvmon.dataflow.network_plan import NetworkPlan
 from rvmon.formula.core import Constant, Literal, Sense
 from rvmon.formula.numeric import events_of
 from rvmon.formula.state import State

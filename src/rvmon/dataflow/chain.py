@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.dataflow.nodes import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
+from rvmon.dataflow.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.formula.core import Constant, Sense
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 
-from rvmon.analysis.rules import RULES as ANALYSIS
+from rvmon.analysis.findings import RULES as ANALYSIS
 from rvmon.diagnostics.diagnostic import Severity
 from rvmon.errors import UnknownNameError
 from rvmon.spec.rules import (

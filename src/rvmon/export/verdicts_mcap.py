@@ -18,8 +18,14 @@ from typing import Any
 import msgspec
 
 from rvmon.errors import RvmonError, not_installed
-from rvmon.export.foxglove_layout import ATTEMPTS, foxglove_layout, topic_of
-from rvmon.export.foxglove_scene import SCENE, scene_updates, seconds_and_rest
+from rvmon.export.foxglove_layout import (
+    ATTEMPTS,
+    SCENE,
+    foxglove_layout,
+    scene_updates,
+    seconds_and_rest,
+    topic_of,
+)
 from rvmon.report.scene import Scene
 from rvmon.report.tracks import concerned_names
 from rvmon.spec.checked.specification import CheckedSpec

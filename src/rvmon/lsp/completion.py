@@ -8,8 +8,7 @@ from itertools import product
 
 from rvmon.diagnostics.span import Span
 from rvmon.explain.words import requirement_in_words
-from rvmon.lsp.keywords import about_word
-from rvmon.lsp.names import Names
+from rvmon.lsp.names import Names, about_word
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
 from rvmon.spec.syntax.expected import accepted_terminals

@@ -1,9 +1,10 @@
-"""A document compiled as far as it goes, and what editors ask about it."""
+"""A document compiled as far as it goes, its places, and what editors ask about it."""
 
 from __future__ import annotations
 
 import os
 import re
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache, cached_property
@@ -12,6 +13,13 @@ from itertools import islice
 from pathlib import Path
 
 from lsprotocol import types as lsp
+from lsprotocol.types import (
+    Position,
+    PositionEncodingKind,
+    Range,
+    TextDocumentContentChangeEvent,
+    TextDocumentContentChangePartial,
+)
 from pygls.uris import from_fs_path, to_fs_path
 
 from rvmon.cache import cache_folder
@@ -21,12 +29,78 @@ from rvmon.diagnostics.shown import shown
 from rvmon.diagnostics.span import Source, Span
 from rvmon.explain.codes import page_of
 from rvmon.lsp.names import Names
-from rvmon.lsp.text import Text
 from rvmon.spec.compile import Compilation, compilation
 from rvmon.spec.syntax.expressions import Ident
 from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem
 from rvmon.spec.syntax.split import split_items
 from rvmon.writing import write_whole
+
+_WIDTHS = {
+    PositionEncodingKind.Utf8: (0x80, 0x800, 0x10000),
+    PositionEncodingKind.Utf16: (0x10000,),
+    PositionEncodingKind.Utf32: (),
+}
+"""The characters from which on one takes a unit more."""
+
+
+class Text:
+    """A text with its lines; pygls would end them at a form feed or U+2028, which no editor does.
+
+    Args:
+        raw: as the editor has it.
+        encoding: in whose units columns are counted.
+
+    Source: Language Server Protocol 3.17, Text Documents and Position.
+    """
+
+    def __init__(self, raw: str, encoding: str = PositionEncodingKind.Utf16) -> None:
+        self.raw = raw
+        self.encoding = encoding
+        self._widths = _WIDTHS[PositionEncodingKind(encoding)]
+        self._starts = [0, *(end.end() for end in re.finditer(r"\r\n|\r|\n", raw))]
+
+    @property
+    def code(self) -> str:
+        """What is compiled: every line ends as the language has it, all offsets stay."""
+        return self.raw.replace("\r\n", " \n").replace("\r", "\n")
+
+    def position(self, offset: int) -> Position:
+        r"""Where a character is.
+
+        >>> Text("# 😋\nspec a").position(3).character
+        4
+        """
+        line = bisect_right(self._starts, offset) - 1
+        column = sum(map(self._width, self.raw[self._starts[line] : offset]))
+        return Position(line, column)
+
+    def range(self, start: int, end: int) -> Range:
+        """Where some characters are."""
+        return Range(self.position(start), self.position(end))
+
+    def offset(self, position: Position) -> int:
+        """The character at a position, at the end of its line at most."""
+        if position.line >= len(self._starts):
+            return len(self.raw)
+        place = self._starts[position.line]
+        units = 0
+        for char in self.raw[place : place + position.character]:
+            units += self._width(char)
+            if units > position.character or char in "\r\n":
+                break
+            place += 1
+        return place
+
+    def changed(self, change: TextDocumentContentChangeEvent) -> Text:
+        """The text after an edit."""
+        if not isinstance(change, TextDocumentContentChangePartial):
+            return Text(change.text, self.encoding)
+        start, end = self.offset(change.range.start), self.offset(change.range.end)
+        return Text(self.raw[:start] + change.text + self.raw[end:], self.encoding)
+
+    def _width(self, char: str) -> int:
+        return 1 + bisect_right(self._widths, ord(char))
+
 
 MOST_FIXES = 5
 """Of so many findings at a place it is tried whether what they propose helps."""

@@ -18,9 +18,8 @@ from rvmon.diagnostics.span import Source, Span
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
 from rvmon.lsp.completion import hover, proposals
-from rvmon.lsp.document import Document
-from rvmon.lsp.keywords import meanings
-from rvmon.lsp.text import Text
+from rvmon.lsp.document import Document, Text
+from rvmon.lsp.names import meanings
 from rvmon.spec.print.formatter import format_text
 
 QUIET = 0.2

@@ -1,14 +1,14 @@
-"""The monitor of a specification."""
+"""The monitor of a specification, made anew or from a snapshot."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.errors import RvmonError, SnapshotError, UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.monitor import Monitor
 from rvmon.monitor.core.planned import planned_core
-from rvmon.monitor.core.snapshot import Options
+from rvmon.monitor.core.snapshot import Options, document_of
 from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
 from rvmon.spec.checked.selection import requirements_asked
 
@@ -43,3 +43,29 @@ def build_monitor(
     given = None if sources is None else frozenset(sources)
     planned = planned_core(compiled, requirements_asked(compiled.checked, only))
     return Monitor(planned, compiled, Options(settle, given, keep))
+
+
+def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
+    """The monitor that a snapshot was taken of.
+
+    Raises:
+        SnapshotError: the bytes are no snapshot, or one of another specification or version.
+    """
+    document = document_of(compiled, data)
+    try:
+        sources = document["sources"]
+        if sources is not None and not all(isinstance(one, str) for one in sources):
+            raise TypeError("names are texts")
+        monitor = build_monitor(
+            compiled,
+            only=document["only"],
+            settle=document["settle"],
+            sources=sources,
+            keep=document["keep"],
+        )
+        monitor.take_up(document)
+    except SnapshotError:
+        raise
+    except (RvmonError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+        raise SnapshotError("the snapshot is damaged: what it holds fits no monitor") from None
+    return monitor

@@ -11,8 +11,7 @@ from rvmon.report.markup import Child, asset, e, to_html, with_code
 from rvmon.report.panel_html import spec_lines
 from rvmon.report.panels_of import shown_attempts
 from rvmon.report.style import MARKS, verdict_colours
-from rvmon.report.timeline import axis_row, timeline
-from rvmon.report.track_rows import place_of
+from rvmon.report.timeline import axis_row, place_of, timeline
 from rvmon.report.view import View, view_of, whole_run
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.attempt import Attempt

@@ -11,8 +11,7 @@ from rvmon.report.afterword import forecast_sentence, with_afterword, without_at
 from rvmon.report.markup import Child, e, with_code
 from rvmon.report.run_page import Panel, RunPage
 from rvmon.report.style import MARKS
-from rvmon.report.timeline import axis_row, guides_of, timeline
-from rvmon.report.track_rows import truth_row
+from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names
 from rvmon.report.view import View, moment, with_moments
 from rvmon.spec.checked.specification import Requirement

@@ -14,8 +14,7 @@ from rvmon.report.panels_of import opening, panel_id, panels_of
 from rvmon.report.run_page import Panel, RunPage
 from rvmon.report.scene import Outline, Scene
 from rvmon.report.style import MARKS
-from rvmon.report.timeline import axis_row
-from rvmon.report.track_rows import place_of
+from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Track, TrackKind
 from rvmon.report.view import View, whole_run
 from rvmon.trace.sample import Scalar

@@ -12,9 +12,8 @@ from rvmon.report.terminal import wrapped
 from rvmon.spec.checked.goals import BinKind
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredBin, CoveredGroup
-from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 
@@ -197,7 +196,7 @@ def _silence_text(name: str, verdict: Verdict, why: str, width: int) -> Text:
 def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, width: int) -> Text:
     from rich.text import Text
 
-    from rvmon.diagnostics.snippet import snippet
+    from rvmon.diagnostics.render import snippet
     from rvmon.report.style import verdict_text
 
     when = f"attempt {attempt.numbered}, triggered {format_ticks(attempt.triggered)}"

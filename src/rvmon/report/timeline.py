@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,10 +10,194 @@ from dataclasses import dataclass
 from rvmon.report.afterword import duration_text
 from rvmon.report.markup import Child, e
 from rvmon.report.style import MARKS
-from rvmon.report.track_rows import place_of, track_row
-from rvmon.report.tracks import Track
+from rvmon.report.tracks import (
+    Stretch,
+    Track,
+    TrackKind,
+    occurrences,
+    polylines,
+    readable,
+    stretches,
+)
 from rvmon.report.view import View, moment, round_instants, with_moments
 from rvmon.verdict.attempt import Attempt
+
+WIDTH, HEIGHT = 1000, 100
+"""Units of a number's drawing, which is stretched to the width of the page."""
+
+SIGNS = {"<=": "≤", ">=": "≥", "==": "=", "!=": "≠"}
+"""Comparisons as people write them."""
+
+EDGE = 0.12
+"""Of a number's range, left free above and below."""
+
+LABELLED = 0.25
+"""Share of the width, at the right, beside the label of a threshold."""
+
+LOWEST_UNDER = 0.75
+"""From the top of a track: a label has room under a threshold that is not lower."""
+
+
+def track_row(
+    track: Track,
+    view: View,
+    end: int,
+    blamed: Sequence[int],
+    ghost: Track | None,
+    ghost_end: int,
+) -> ET.Element:
+    """Draw one track.
+
+    Args:
+        track: what to draw.
+        view: the stretch of time that is shown.
+        end: the last instant of the run, ticks.
+        blamed: instants of the offending samples.
+        ghost: the same signal in another run, drawn behind, dashed.
+        ghost_end: the last instant of that run.
+    """
+    plot = e("div", {"class": f"plot {track.kind.value}"})
+    if track.absent:
+        plot.append(_unknown(0.0, 1.0))
+    elif track.kind is TrackKind.EVENT:
+        _add_event(plot, track, view, blamed, ghost)
+    elif track.kind is TrackKind.NUMBER:
+        _add_number(plot, track, view, end, blamed, ghost, ghost_end)
+    else:
+        _add_stretches(plot, stretches(track, view, end))
+        for instant in blamed:
+            if view.start <= instant <= view.end:
+                plot.append(_ring(view.fraction(instant)))
+        if ghost is not None:
+            _add_stretches(plot, stretches(ghost, view, ghost_end), " ghost")
+    unit = e("small", None, f" [{track.unit}]") if track.unit else None
+    name = e("div", {"class": "name"}, e("span", None, e("code", None, track.name), unit))
+    if track.kind is not TrackKind.EVENT:
+        name.append(e("output", {"data-track": track.name}))
+    return e("div", {"class": "row"}, name, plot)
+
+
+def truth_row(label: ET.Element, track: Track, view: View, end: int) -> ET.Element:
+    """Draw when a formula was true.
+
+    Args:
+        label: stands beside it.
+        track: its truth, as a switch.
+        view: the stretch of time that is shown.
+        end: the last instant of the run, ticks.
+    """
+    plot = e("div", {"class": "plot switch truth"})
+    _add_stretches(plot, stretches(track, view, end + 1))
+    return e("div", {"class": "row"}, e("div", {"class": "name"}, label), plot)
+
+
+def _add_event(
+    plot: ET.Element, track: Track, view: View, blamed: Sequence[int], ghost: Track | None
+) -> None:
+    if ghost is not None:
+        for place, _ in occurrences(ghost, view):
+            plot.append(e("span", {"class": "mark ghost", "style": f"left:{place:.2%}"}, "◇"))
+    offending = {round(view.fraction(t), 9) for t in blamed}
+    for place, value in occurrences(track, view):
+        sign = "?" if value is None else "◆"
+        plot.append(e("span", {"class": "mark", "style": f"left:{place:.2%}"}, sign))
+        if round(place, 9) in offending:
+            plot.append(_ring(place))
+
+
+def _add_stretches(plot: ET.Element, pieces: Sequence[Stretch], extra: str = "") -> None:
+    for piece in readable(pieces):
+        width = piece.right - piece.left
+        place = {"style": place_of(piece.left, width)}
+        if piece.busy:
+            plot.append(e("div", {"class": f"busy{extra}", "title": "changes too fast", **place}))
+        elif piece.value is None:
+            if not extra:
+                plot.append(_unknown(piece.left, width))
+        elif piece.value is True:
+            plot.append(e("div", {"class": f"on{extra}", **place}))
+        elif isinstance(piece.value, str):
+            plot.append(e("div", {"class": f"state{extra}", **place}, piece.value))
+
+
+def _add_number(
+    plot: ET.Element,
+    track: Track,
+    view: View,
+    end: int,
+    blamed: Sequence[int],
+    ghost: Track | None,
+    ghost_end: int,
+) -> None:
+    pieces = stretches(track, view, end)
+    others = [] if ghost is None else stretches(ghost, view, ghost_end)
+    low, high = _range([*pieces, *others], track)
+    edge = (high - low) * EDGE
+    lowest, highest = low - edge, high + edge
+    drawing = e(
+        "svg",
+        {"viewBox": f"0 0 {WIDTH} {HEIGHT}", "preserveAspectRatio": "none", "aria-hidden": "true"},
+    )
+    for kind, some in (("ghost", others), ("line", pieces)):
+        for points in polylines(some, lowest, highest):
+            drawing.append(e("polyline", {"class": kind, "points": _points(points)}))
+    plot.append(drawing)
+    constants = {threshold.value for threshold in track.thresholds}
+    for bound in sorted({low, high} - constants):
+        top = (highest - bound) / (highest - lowest)
+        plot.append(e("span", {"class": "scale", "style": f"top:{top:.2%}"}, f"{bound:.3g}"))
+    for piece in pieces:
+        if piece.value is None:
+            plot.append(_unknown(piece.left, piece.right - piece.left))
+    for threshold in track.thresholds:
+        top = (highest - threshold.value) / (highest - lowest)
+        text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g}{_unit(track)}"
+        side = " under" if top < LOWEST_UNDER and _is_above(pieces, threshold.value) else ""
+        line = {"class": f"threshold{side}", "style": f"top:{top:.2%}"}
+        plot.append(e("div", line, e("span", None, text)))
+    for instant in blamed:
+        at = track.value_at(instant)
+        if isinstance(at, int | float) and view.start <= instant <= view.end:
+            x, y = view.fraction(instant), (highest - at) / (highest - lowest)
+            plot.append(e("span", {"class": "sample", "style": f"left:{x:.2%};top:{y:.2%}"}, "✗"))
+
+
+def _is_above(pieces: Sequence[Stretch], value: float) -> bool:
+    """Whether a number is above a value where the value's label stands."""
+    there = [one.value for one in pieces if one.right > 1 - LABELLED]
+    return any(isinstance(one, int | float) and one > value for one in there)
+
+
+def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
+    """What a number's track spans: all finite values in sight, and the thresholds."""
+    values = [float(one.value) for one in pieces if isinstance(one.value, int | float)]
+    values = [value for value in values if math.isfinite(value)]
+    values += [threshold.value for threshold in track.thresholds]
+    low, high = min(values, default=0.0), max(values, default=1.0)
+    return (low, high) if low < high else (low - 1.0, high + 1.0)
+
+
+def _ring(place: float) -> ET.Element:
+    """A ring around the sample that is to blame."""
+    return e("span", {"class": "mark offending", "style": f"left:{place:.2%}"})
+
+
+def _points(points: Sequence[tuple[float, float]]) -> str:
+    return " ".join(f"{x * WIDTH:.4g},{y * HEIGHT:.3g}" for x, y in points)
+
+
+def place_of(left: float, width: float) -> str:
+    """Position of something within a track, from fractions of its width."""
+    return f"left:{left:.3%};width:{width:.3%}"
+
+
+def _unknown(left: float, width: float) -> ET.Element:
+    return e("div", {"class": "unknown", "title": "unknown", "style": place_of(left, width)})
+
+
+def _unit(track: Track) -> str:
+    return f" {track.unit}" if track.unit else ""
+
 
 LABEL = 0.44
 """Share of the width that a label takes on a phone: those that would meet there get a row each."""

@@ -16,7 +16,7 @@ from rvmon.spec.check.specification import check
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.names.resolve import overridden, resolve
 from rvmon.spec.names.unused import unused_names
-from rvmon.spec.rules.findings import MOST, Enough, Findings
+from rvmon.spec.rules.rule import MOST, Enough, Findings
 from rvmon.spec.rules.syntax import empty_file, too_many
 from rvmon.spec.syntax.imports import load_files
 from rvmon.spec.syntax.items import ParsedSpec

@@ -1,8 +1,9 @@
-"""The record of one attempt."""
+"""The record of one attempt; attempts that are made when someone looks at them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from importlib import import_module
@@ -213,3 +214,39 @@ def _measured_details(_: Attempt, noted: tuple[Attempt, float | None]) -> Mappin
 _LATE = (  # the fields that `decided_attempt` leaves out
     *("reason", "deadline", "at_trigger", "at_decision", "owed", "captured", "blame", "forecast"),
 )
+
+
+_SHOWN = 3
+"""So many attempts stand in the text of many."""
+
+
+class LazyAttempts(Sequence[Attempt]):
+    """Equal to any sequence of the same attempts; its text shows the first few."""
+
+    @abstractmethod
+    def __iter__(self) -> Iterator[Attempt]:
+        """The attempts, each made as it is asked for."""
+
+    @abstractmethod
+    def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
+        """Those of a requirement with one verdict, in their order, each made as it is asked for."""
+
+    @abstractmethod
+    def texts(self, origin: int) -> Iterator[tuple[str, str]]:
+        """The requirement and the JSON text of each, as `rvmon.verdict.attempt_json` writes it.
+
+        Args:
+            origin: the instant from which people count seconds, ticks.
+        """
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Sequence):
+            return NotImplemented
+        return tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        first = ", ".join([*map(repr, self[:_SHOWN]), *["…"][: len(self) - _SHOWN]])
+        word = "attempt" if len(self) == 1 else "attempts"
+        return f"<{len(self)} {word}: {first}>"

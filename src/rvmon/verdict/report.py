@@ -9,9 +9,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rvmon.trace.health import Health
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.attempt import Attempt, LazyAttempts
 from rvmon.verdict.covered import CoveredGroup, IllegalHit
-from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.verdict import LAW, Verdict, fold
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from tests.tools.progression import Progression
 from tests.tools.stepped import TableMachine, run
 
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
-from rvmon.automaton.letter_classes import LetterDiagram
+from rvmon.automaton.diagram import LetterDiagram
 from rvmon.automaton.location import PASSED
 from rvmon.automaton.reduce import reduce
 from rvmon.formula.alphabet import alphabet_of

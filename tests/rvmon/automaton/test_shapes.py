@@ -8,7 +8,7 @@ from tests.tools.scale import retimed
 
 from rvmon.automaton.automaton import Automaton, end_clauses
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
-from rvmon.automaton.letter_classes import LetterDiagram
+from rvmon.automaton.diagram import LetterDiagram
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.shapes import Shapes
 from rvmon.formula.alphabet import Alphabet, alphabet_of

@@ -10,7 +10,7 @@ import rvmon
 from rvmon.cli import main
 from rvmon.execute import journal
 from rvmon.results.read import read_results
-from rvmon.verdict.lazy import LazyAttempts
+from rvmon.verdict.attempt import LazyAttempts
 
 SPEC = """signal p : bool
 requirement R1

@@ -3,8 +3,7 @@
 import json
 
 from rvmon.diagnostics import Diagnostic, Label, Severity, Source, Span
-from rvmon.diagnostics.render import render_concise, render_full, render_json
-from rvmon.diagnostics.snippet import snippet
+from rvmon.diagnostics.render import render_concise, render_full, render_json, snippet
 
 SOURCE = Source("specs/demo.rv", "spec demo\nevent released\n  then\twithin 3 s relased\n")
 PLACE = SOURCE.text.index("relased")

@@ -10,7 +10,7 @@ from tests.tools.bags import START, write_ros1
 
 import rvmon
 from rvmon.cli import main
-from rvmon.export.foxglove_scene import scene_updates
+from rvmon.export.foxglove_layout import scene_updates
 from rvmon.report.scene import Outline, Scene
 
 pytest.importorskip("mcap")

@@ -12,9 +12,8 @@ from tests.tools.code_pages import page
 from rvmon.diagnostics.span import Source, Span
 from rvmon.explain.codes import every_rule, page_of
 from rvmon.lsp.completion import hover, proposals
-from rvmon.lsp.document import Document
-from rvmon.lsp.keywords import _LINES, meanings
-from rvmon.lsp.text import Text
+from rvmon.lsp.document import Document, Text
+from rvmon.lsp.names import _LINES, meanings
 from rvmon.spec.syntax.expected import accepted_terminals
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.split import split_items

@@ -11,7 +11,7 @@ from rvmon.evidence.matrix import Traced, matrix_page
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
 from rvmon.report.run_html import run_page
-from rvmon.report.run_index import Listed, run_index
+from rvmon.report.run_pages import Listed, run_index
 from rvmon.results.known import NONE_KNOWN
 
 

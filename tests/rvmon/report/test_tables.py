@@ -9,9 +9,8 @@ from rich.console import Console
 
 from rvmon.report.markup import to_html
 from rvmon.report.style import MARKS
-from rvmon.report.table import RunGroup, VerdictTable, table_text, tables_csv
+from rvmon.report.table import RunGroup, VerdictTable, escape, table_latex, table_text, tables_csv
 from rvmon.report.table_html import table_html
-from rvmon.report.table_latex import escape, table_latex
 from rvmon.verdict.verdict import Verdict
 
 

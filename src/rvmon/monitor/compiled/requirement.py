@@ -11,8 +11,7 @@ from rvmon.automaton.forecast import Forecaster
 from rvmon.automaton.reduce import reduce
 from rvmon.automaton.shapes import Shapes
 from rvmon.dataflow.chain import reach_of
-from rvmon.dataflow.network_plan import plan_of
-from rvmon.dataflow.nodes import NetworkPlan
+from rvmon.dataflow.network_plan import NetworkPlan, plan_of
 from rvmon.errors import RvmonError
 from rvmon.formula.alphabet import Alphabet, alphabet_of
 from rvmon.formula.core import Core

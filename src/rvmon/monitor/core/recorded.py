@@ -9,9 +9,8 @@ import numpy as np
 
 from rvmon import native
 from rvmon.monitor.core.planned import DECISIONS, VERDICTS, PlannedCore
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdict.attempt import Attempt, Decision, LazyAttempts
 from rvmon.verdict.attempt_json import attempt_text
-from rvmon.verdict.lazy import LazyAttempts
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 

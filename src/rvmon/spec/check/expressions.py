@@ -33,8 +33,7 @@ from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import properties as property_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
-from rvmon.spec.rules.findings import Findings
-from rvmon.spec.rules.rule import Refusal, Reported
+from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.effort import Cost, Effort
 from rvmon.spec.syntax.expressions import (
     Call,

@@ -24,8 +24,7 @@ from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import names as rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as type_rules
-from rvmon.spec.rules.findings import Findings
-from rvmon.spec.rules.rule import Refusal, Reported
+from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.expressions import Expression, Name
 from rvmon.spec.syntax.items import ConstItem, DefineItem, TypeSyntax
 from rvmon.spec.syntax.unit import Unit

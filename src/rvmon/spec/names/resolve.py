@@ -10,7 +10,7 @@ from rvmon.diagnostics.span import Source
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.names.resolved import Declared, DeclaredEvent, DeclaredSignal, ResolvedSpec
 from rvmon.spec.rules import names as rules
-from rvmon.spec.rules.findings import Findings
+from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.expressions import Call, Expression, Ident, Name
 from rvmon.spec.syntax.items import (
     ConstItem,

@@ -11,7 +11,7 @@ from rvmon.diagnostics.span import Source
 from rvmon.errors import SpecError
 from rvmon.spec.print.format_words import Piece, pieces_of
 from rvmon.spec.print.layout import WIDTH, lines_of, text_of
-from rvmon.spec.rules.findings import Findings
+from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.parse import parse_spec
 from rvmon.spec.syntax.split import split_items
 

@@ -11,8 +11,7 @@ from pathlib import Path
 from rvmon.diagnostics.span import Source
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.spec.rules import imports as rules
-from rvmon.spec.rules.findings import Findings
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Findings, Refusal
 from rvmon.spec.syntax.items import ImportItem, ParsedSpec
 from rvmon.spec.syntax.parse import parse_spec
 

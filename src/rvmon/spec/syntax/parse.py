@@ -14,8 +14,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.rules import syntax as rules
-from rvmon.spec.rules.findings import Findings
-from rvmon.spec.rules.rule import Refusal
+from rvmon.spec.rules.rule import Findings, Refusal
 from rvmon.spec.syntax.build import Builder
 from rvmon.spec.syntax.effort import LARGEST
 from rvmon.spec.syntax.expected import explain_unexpected
