@@ -20,7 +20,7 @@ from rvmon.cli.reading import with_values
 from rvmon.cli.reproduced import relax
 from rvmon.cli.say import rendered, spell, warn
 from rvmon.errors import EXTRAS, DiagnosedError, RvmonError, not_installed
-from rvmon.execute.interrupt import interrupted_by_sigterm
+from rvmon.execute.ended import interrupted_by_sigterm
 
 if TYPE_CHECKING:
     import argparse

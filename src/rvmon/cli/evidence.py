@@ -18,8 +18,14 @@ from rvmon.cli.numbers import positive
 from rvmon.cli.options import constants_of
 from rvmon.cli.progress import bar
 from rvmon.cli.say import say
-from rvmon.evidence.archive import TamperedError
-from rvmon.evidence.keep import Kept, derived_entries, opened_evidence, own_program, sha256_of
+from rvmon.evidence.keep import (
+    Kept,
+    TamperedError,
+    derived_entries,
+    opened_evidence,
+    own_program,
+    sha256_of,
+)
 from rvmon.evidence.matrix import Row, rows_by_item
 from rvmon.loading import load
 from rvmon.results.write import csv_bytes

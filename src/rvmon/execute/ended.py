@@ -1,7 +1,11 @@
-"""A task that came to no result, as its process was ended: data."""
+"""What ends a task without a result: its process was ended, or somebody interrupts all."""
 
 from __future__ import annotations
 
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 
@@ -18,3 +22,19 @@ class Ended:
     timed_out: bool
     why: str
     seconds: float
+
+
+@contextmanager
+def interrupted_by_sigterm() -> Iterator[None]:
+    """A request to end interrupts as Ctrl-C does: what was begun is ended, and cleaned up.
+
+    Only the main thread can say so.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    known = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL if known is None else known)

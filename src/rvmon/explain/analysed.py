@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.analysis.examine import Examination, examine
-from rvmon.analysis.findings import findings_of
+from rvmon.analysis.findings import Examination, examine, findings_of
 from rvmon.analysis.subject import Conflict, Subject
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.explain.example import Budget, Example

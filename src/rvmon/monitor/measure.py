@@ -6,16 +6,20 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import planned_core
 from rvmon.monitor.evaluate import Asked, judge_source, open_trace
-from rvmon.monitor.robustness.values import FIGURES, Margins
+from rvmon.monitor.robustness.values import FIGURES, Key, Margins, Robustness, Stream
 from rvmon.readers.reading import Reading
 from rvmon.readers.source import Source
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from rvmon.readers.batch import Batch
 
 _ROWS = 4096
@@ -84,7 +88,6 @@ class _Run:
         self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
     ) -> None:
         from rvmon.monitor.core.recording import RecordingRun
-        from rvmon.monitor.robustness.recorded import RecordedMargins
 
         planned = planned_core(compiled, only, measured=True)
         self._run = RecordingRun(compiled.checked, planned, source, finds=False)
@@ -104,3 +107,58 @@ class _Run:
         self._run.core.finish(self._end)
         self._found.add(self._run.core.margins())
         return self._found.margins()
+
+
+_FIGURES = ("low", "high", "kept")
+
+MARGIN = np.dtype(
+    [
+        ("t", np.int64),
+        *((name, np.float64) for name in _FIGURES),
+        *(("requirement", np.int32), ("number", np.uint32)),
+        *((name, np.uint8) for name in ("in_doubt", "of_position")),
+    ],
+    align=True,
+)
+"""`rv_margin` of `core.h`."""
+
+
+class RecordedMargins:
+    """The figures of a run.
+
+    Args:
+        ids: of requirements, by number.
+    """
+
+    def __init__(self, ids: Sequence[str]) -> None:
+        self._ids = ids
+        self._attempts: dict[Key, Robustness] = {}
+        self._doubtful: dict[Key, Robustness] = {}
+        self._parts: dict[int, list[Sequence[NDArray[Any]]]] = {}
+
+    def add(self, found: bytes) -> None:
+        """Take figures as bytes of `MARGIN`."""
+        margins = np.frombuffer(found, MARGIN)
+        of_position = margins["of_position"] == 1
+        if not of_position.all():
+            self._add_attempts(margins[~of_position])
+            margins = margins[of_position]
+        several = len(self._ids) > 1
+        numbers = np.unique(margins["requirement"]).tolist() if several else [0]
+        for number in numbers if len(margins) else ():
+            own = margins[margins["requirement"] == number] if several else margins
+            columns = [own[name].copy() for name in ("t", *_FIGURES)]
+            self._parts.setdefault(number, []).append(columns)
+
+    def _add_attempts(self, margins: NDArray[Any]) -> None:
+        for _, low, high, kept, requirement, number, in_doubt, _ in margins.tolist():
+            figures = self._doubtful if in_doubt else self._attempts
+            figures[self._ids[requirement], number] = Robustness(low, high, kept)
+
+    def margins(self) -> Margins:
+        """All of them."""
+        streams = {
+            self._ids[number]: Stream(*map(np.concatenate, zip(*parts, strict=True)))
+            for number, parts in self._parts.items()
+        }
+        return Margins(self._attempts, self._doubtful, streams)

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 from rvmon.errors import TraceError
 from rvmon.readers.batch import NotPlainError
 from rvmon.readers.csv_rows import Layout, layout_of, row_values
-from rvmon.readers.doubtful_unit import doubt_unit
+from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.naming import stamps_among
 from rvmon.readers.rows import Row, Rows
-from rvmon.readers.steps import LOOKED_AT
 from rvmon.readers.tables import cells_of
 from rvmon.readers.values import plain
 from rvmon.trace.health import Health

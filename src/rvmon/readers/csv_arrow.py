@@ -16,7 +16,7 @@ from rvmon.readers.cells import array_of, batch_of, cells_of_arrow
 from rvmon.readers.csv_rows import Layout
 from rvmon.readers.decimals import PLACES
 from rvmon.readers.line_chunks import is_long_celled
-from rvmon.readers.ticks import ticks_in_range
+from rvmon.readers.table_batch import ticks_in_range
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS
 from rvmon.trace.schema import Kind
 

@@ -26,7 +26,7 @@ from rvmon.readers.jsonl_rows import count_of_names, jsonl_samples, names_in
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.rows import Row
-from rvmon.readers.ticks import ticks_of_column
+from rvmon.readers.table_batch import ticks_of_column
 from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 

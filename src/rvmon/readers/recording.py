@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING, BinaryIO, TextIO
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
-from rvmon.readers.doubtful_unit import doubt_unit
+from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMATS, is_bag_folder
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
-from rvmon.readers.steps import LOOKED_AT
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.alternation import Alternations
 from rvmon.readers.coalesce import Conflicts, coalesce, merged, updates_in
-from rvmon.readers.steps import LOOKED_AT
+from rvmon.readers.doubtful_unit import LOOKED_AT
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema

@@ -1,4 +1,4 @@
-"""Tables in memory as columns, without copies if possible."""
+"""Tables in memory, and their stamps, as columns, without copies if possible."""
 
 from __future__ import annotations
 
@@ -11,12 +11,78 @@ from rvmon.errors import TraceError
 from rvmon.readers.batch import Batch, NotPlainError
 from rvmon.readers.cells import batch_of, cells_of_column
 from rvmon.readers.csv_rows import Layout
-from rvmon.readers.ticks import ticks_of_column
 from rvmon.trace.gaps import NO_GAPS
 from rvmon.trace.schema import Kind, Stamps
+from rvmon.trace.stamps import ticks_of_stamp
+from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT, whole_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+
+def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
+    """A column of stamps as ticks, each rounded once as `ticks_of_stamp` does.
+
+    Args:
+        values: int[n] or float[n]; of ticks themselves, int[n].
+        stamps: says their unit, not `iso`.
+
+    Raises:
+        TraceError: a number is not finite or out of range.
+    """
+    if not len(values):
+        return np.empty(0, np.int64)
+    if stamps.unit == "ns":
+        return ticks_in_range(values)
+    scale = TICKS_PER_UNIT[stamps.unit]
+    most = TIME_LIMIT // scale
+    if values.dtype.kind == "i":
+        _refuse(values, most, stamps)
+        return values.astype(np.int64) * scale
+    ticks = np.empty(len(values), np.int64)
+    for start in range(0, len(values), _PIECE):
+        piece = slice(start, start + _PIECE)
+        ticks[piece] = _rounded(values[piece].astype(np.float64, copy=False), stamps, scale, most)
+    return ticks_in_range(ticks)
+
+
+_PIECE = 1 << 14
+"""Instants that are worked out together, near the processor."""
+
+
+def _rounded(
+    values: NDArray[np.float64], stamps: Stamps, scale: int, most: int
+) -> NDArray[np.int64]:
+    """Instants in units of so many ticks as ticks."""
+    _refuse(values, most + 1, stamps)
+    whole = np.floor(values)
+    parts = (values - whole) * float(scale)
+    ticks = whole.astype(np.int64) * scale + np.rint(parts).astype(np.int64)
+    for row in np.flatnonzero(np.abs(parts - np.floor(parts) - 0.5) < 1e-5):
+        ticks[row] = ticks_of_stamp(float(values[row]), stamps)
+    return ticks
+
+
+def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
+    """Integers as ticks.
+
+    Only the ends are looked at: if these are in range, and whoever judges the column finds that it
+    ascends, all are. To read all of a long column costs as much as to judge it.
+
+    Raises:
+        TraceError: the first or the last is out of range.
+    """
+    made = ticks.astype(np.int64, copy=False)
+    for end in made[:: max(len(made) - 1, 1)].tolist():
+        whole_ticks(end)
+    return made
+
+
+def _refuse(values: NDArray[Any], most: int, stamps: Stamps) -> None:
+    """Refuse stamps beyond those bounds, and what is no number."""
+    if not -most <= values.min() <= values.max() <= most:
+        fine = (values >= -most) & (values <= most)
+        ticks_of_stamp(values[~fine][0].item(), stamps)
 
 
 def batch_of_table(columns: Mapping[str, Any], layout: Layout) -> Batch:

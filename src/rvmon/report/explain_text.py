@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 from rvmon.analysis.possible import Possible, possible
 from rvmon.explain.analysed import Analysis
 from rvmon.explain.example import Budget, Example, Found
-from rvmon.explain.facts import facts_of
 from rvmon.explain.graph import graph_lines, graph_of
 from rvmon.explain.search import difference_of, shortest_examples, verdict_of
-from rvmon.explain.words import requirement_in_words
+from rvmon.explain.words import facts_of, requirement_in_words
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.spec.checked.formula import BoundAtom, Constant

@@ -14,8 +14,7 @@ from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
 from rvmon.spec.check.specification import check
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.names.resolve import overridden, resolve
-from rvmon.spec.names.unused import unused_names
+from rvmon.spec.names.resolve import overridden, resolve, unused_names
 from rvmon.spec.rules.rule import MOST, Enough, Findings
 from rvmon.spec.rules.syntax import empty_file, too_many
 from rvmon.spec.syntax.imports import load_files

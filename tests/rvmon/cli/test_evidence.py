@@ -12,8 +12,7 @@ import pytest
 
 import rvmon
 from rvmon.cli import main
-from rvmon.evidence.archive import pack, unpack
-from rvmon.evidence.keep import About, derived_entries
+from rvmon.evidence.keep import About, derived_entries, pack, unpack
 from rvmon.evidence.matrix import rows_by_item
 
 COMMON = "signal speed : real\nevent go\n"

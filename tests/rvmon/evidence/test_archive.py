@@ -8,8 +8,8 @@ import zipfile
 import pytest
 
 from rvmon.errors import RvmonError
-from rvmon.evidence import archive
-from rvmon.evidence.archive import TamperedError, pack, unpack
+from rvmon.evidence import keep
+from rvmon.evidence.keep import TamperedError, pack, unpack
 
 ENTRIES = {"verdicts.csv": b"R1,P\n", "spec/a.rv": "requirement é\n".encode(), "empty": b""}
 
@@ -120,7 +120,7 @@ def test_a_hostile_one_is_refused(file, data, told):
 def test_one_that_is_too_large_is_not_read(file, monkeypatch):
     """Neither written."""
     data = pack(ENTRIES)
-    monkeypatch.setattr(archive, "MOST_BYTES", 100)
+    monkeypatch.setattr(keep, "MOST_BYTES", 100)
     with pytest.raises(RvmonError, match="larger than"):
         unpack(file(data))
     with pytest.raises(RvmonError, match="too much"):

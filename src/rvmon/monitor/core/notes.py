@@ -15,8 +15,10 @@ from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.replayed import Letters, at_decision, at_moment
 from rvmon.monitor.explained.explanation import (
+    Doubt,
     Explanation,
     Judged,
+    Outage,
     Undecided,
     forecast_of,
     truths_shown,
@@ -27,7 +29,6 @@ from rvmon.monitor.explained.explanation import (
 )
 from rvmon.monitor.explained.machine import MachineRuns, Reasons, explained
 from rvmon.monitor.explained.network import explained_by_network
-from rvmon.monitor.reasons.doubt import Doubt, Outage
 from rvmon.monitor.reasons.sentence import Standing
 from rvmon.plan.graph import names_of
 from rvmon.trace.health import HealthKind
