@@ -138,7 +138,7 @@ class SpecCoverage:
         self.spec = spec
 
     def __reduce__(self) -> tuple[type[SpecCoverage], tuple[CheckedSpec]]:
-        # What was generated here stays here.
+        # What was made here stays here.
         return SpecCoverage, (self.spec,)
 
     @cached_property

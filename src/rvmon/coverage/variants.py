@@ -68,7 +68,7 @@ def variants_of(requirement: Requirement) -> list[Variant]:
         text = format_formula(part)
         counts[text] += 1
         name = text if counts[text] == 1 else f"{text} ({counts[text]})"
-        found.append(Variant(name, replace(other, property="", ctl=None), by_failure))
+        found.append(Variant(name, replace(other, ctl=None), by_failure))
     return found
 
 

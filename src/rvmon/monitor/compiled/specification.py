@@ -17,7 +17,7 @@ class CompiledSpec:
     Attributes:
         checked: as checked.
         is_kept: whether what is dear to make of it is kept in the user's cache folder.
-        forms: what was generated for its monitors, by what it depends on.
+        forms: what was made for its monitors, by what it depends on.
     """
 
     def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
@@ -43,7 +43,7 @@ class CompiledSpec:
         return [one for name, one in self.requirements.items() if name in wanted]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Compiled again elsewhere: what was generated here, and tables in hand, stay here.
+        # Compiled again elsewhere: what was made here stays here.
         again = partial(CompiledSpec, is_kept=self.is_kept)
         return again, (self.checked,)
 

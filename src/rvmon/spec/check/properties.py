@@ -49,7 +49,7 @@ def checked_property(checker: Checker, name: str, expression: Expression) -> Pro
     except Reported:
         return None
     span = expression.span
-    return Property(name, span.text, formula, tuple(sorted(names)), span)
+    return Property(name, span.text, formula, span)
 
 
 def _foreign(checker: Checker, expression: Expression) -> list[Name]:

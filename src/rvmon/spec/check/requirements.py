@@ -101,7 +101,6 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         rationale=texts.get("rationale", ""),
         severity=texts.get("severity", ""),
         tags=tuple(tag for clause in _clauses(item, TagsClause) for tag in clause.tags),
-        property=ctl.text if ctl else "",
         span=item.span,
         ctl=ctl,
         scope=scopes[0] if scopes else "",

@@ -30,7 +30,6 @@ class Operation:
         most: so many at most; `None`: any number, folded from the left.
         unit: of the result.
         apply: yields the result, of exact fractions too; an error of arithmetic is unknown.
-        numpy: the name of its ufunc, if that has the digits of `apply`.
         whole: whether the result of whole numbers is one.
         doc: its value in a few words.
     """
@@ -39,20 +38,8 @@ class Operation:
     most: int | None
     unit: UnitRule
     apply: Callable[..., float]
-    numpy: str | None
     whole: bool
     doc: str
-
-    @property
-    def python(self) -> str:
-        """What generated Python calls."""
-        prefix = "math." if self.of_mathematics else ""
-        return f"{prefix}{self.apply.__name__}"
-
-    @property
-    def of_mathematics(self) -> bool:
-        """Whether Python has it in `math`."""
-        return self.apply.__module__ == "math"
 
 
 class NumericOp(StrEnum):
@@ -76,55 +63,18 @@ class NumericOp(StrEnum):
         """The one that is written so."""
         return next(one for one in cls if one.value == sign)
 
-    ADD = (
-        "+",
-        Operation(2, 2, UnitRule.SAME, operator.add, "add", True, "the sum"),
-    )
-    SUB = (
-        "-",
-        Operation(2, 2, UnitRule.SAME, operator.sub, "subtract", True, "a difference"),
-    )
-    MUL = (
-        "*",
-        Operation(
-            *(2, 2, UnitRule.PRODUCT, operator.mul, "multiply", True),
-            "the product",
-        ),
-    )
-    DIV = (
-        "/",
-        Operation(
-            *(2, 2, UnitRule.QUOTIENT, operator.truediv, "divide", False),
-            "the quotient",
-        ),
-    )
-    NEG = (
-        "neg",
-        Operation(1, 1, UnitRule.SAME, operator.neg, "negative", True, "the opposite"),
-    )
-    ABS = (
-        "abs",
-        Operation(1, 1, UnitRule.SAME, abs, "abs", True, "the magnitude"),
-    )
-    MIN = (
-        "min",
-        Operation(2, None, UnitRule.SAME, min, "minimum", True, "the least"),
-    )
-    MAX = (
-        "max",
-        Operation(2, None, UnitRule.SAME, max, "maximum", True, "the greatest"),
-    )
-    SQRT = (
-        "sqrt",
-        Operation(1, 1, UnitRule.ROOT, math.sqrt, "sqrt", False, "the square root"),
-    )
-    # NumPy's differs from Python's in the last digit.
+    ADD = "+", Operation(2, 2, UnitRule.SAME, operator.add, True, "the sum")
+    SUB = "-", Operation(2, 2, UnitRule.SAME, operator.sub, True, "a difference")
+    MUL = "*", Operation(2, 2, UnitRule.PRODUCT, operator.mul, True, "the product")
+    DIV = "/", Operation(2, 2, UnitRule.QUOTIENT, operator.truediv, False, "the quotient")
+    NEG = "neg", Operation(1, 1, UnitRule.SAME, operator.neg, True, "the opposite")
+    ABS = "abs", Operation(1, 1, UnitRule.SAME, abs, True, "the magnitude")
+    MIN = "min", Operation(2, None, UnitRule.SAME, min, True, "the least")
+    MAX = "max", Operation(2, None, UnitRule.SAME, max, True, "the greatest")
+    SQRT = "sqrt", Operation(1, 1, UnitRule.ROOT, math.sqrt, False, "the square root")
     HYPOT = (
         "hypot",
-        Operation(
-            *(2, 2, UnitRule.SAME, math.hypot, None, False),
-            "the length of a vector of two sides",
-        ),
+        Operation(2, 2, UnitRule.SAME, math.hypot, False, "the length of a vector of two sides"),
     )
 
     @property

@@ -84,12 +84,10 @@ class Property:
         id: of its own, or of its requirement.
         text: as written.
         formula: the property.
-        foreign: names that the spec does not declare: clocks and locations of a model.
         span: where it is written.
     """
 
     id: str
     text: str
     formula: StateFormula
-    foreign: tuple[str, ...] = ()
     span: Span | None = None

@@ -88,35 +88,31 @@ class CompareOp(StrEnum):
     """Comparisons of numbers; labels know only `==` and `!=`.
 
     Attributes:
-        python: the name of the function in `operator`.
+        holds: compares two numbers, or arrays of them.
         said: it as an English verb.
 
     >>> CompareOp.LE.holds(2, 3), CompareOp.LE.mirrored, CompareOp.LE.denied
     (True, <CompareOp.GE: '>='>, <CompareOp.GT: '>'>)
     """
 
-    LT = "<", "lt", "is below"
-    LE = "<=", "le", "is at most"
-    EQ = "==", "eq", "is"
-    NE = "!=", "ne", "is not"
-    GE = ">=", "ge", "is at least"
-    GT = ">", "gt", "is above"
+    LT = "<", operator.lt, "is below"
+    LE = "<=", operator.le, "is at most"
+    EQ = "==", operator.eq, "is"
+    NE = "!=", operator.ne, "is not"
+    GE = ">=", operator.ge, "is at least"
+    GT = ">", operator.gt, "is above"
 
-    python: str
+    holds: Callable[[Any, Any], Any]
     said: str
 
-    def __new__(cls, sign: str, python: str = "", said: str = "") -> CompareOp:
-        """A member: its sign, with how others write it."""
+    def __new__(
+        cls, sign: str, holds: Callable[[Any, Any], Any] = operator.eq, said: str = ""
+    ) -> CompareOp:
+        """A member: its sign, with the comparison, and how it is said."""
         made = str.__new__(cls, sign)
         made._value_ = sign
-        made.python, made.said = python, said
+        made.holds, made.said = holds, said
         return made
-
-    @property
-    def holds(self) -> Callable[[Any, Any], Any]:
-        """Compares two numbers, or arrays of them."""
-        found: Callable[[Any, Any], Any] = getattr(operator, self.python)
-        return found
 
     @property
     def mirrored(self) -> CompareOp:

@@ -129,7 +129,6 @@ class Requirement:
         text: the requirement in words.
         at_end: policy for undecided attempts.
         pulse: whether the trigger is a pulse (SEMANTICS 3): it starts an attempt wherever it holds.
-        property: the CTL property's text, if it has one.
         ctl: the same, checked.
         scope: the `scope` clause as written; trigger and consequent have it worked in.
         run_share: in what share of runs it is to hold; `None`: in each.
@@ -149,7 +148,6 @@ class Requirement:
     rationale: str = ""
     severity: str = ""
     tags: tuple[str, ...] = ()
-    property: str = ""
     span: Span | None = None
     ctl: Property | None = None
     scope: str = ""

@@ -63,7 +63,6 @@ def test_leads_to(checked):
 def test_names_of_a_model(checked, codes):
     """Clocks and locations are kept as written; what is like a signal is warned of."""
     found = checked("property P: E<> a and Robot.done and t < 5").properties["P"]
-    assert found.foreign == ("Robot.done", "t")
     left, right = found.formula.operand.left, found.formula.operand.right
     assert (left.left, right) == (
         StateAtom(left.left.formula, left.left.span),

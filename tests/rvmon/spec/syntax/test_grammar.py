@@ -189,7 +189,7 @@ def test_tables_of_words_and_grammar_agree(words):
 def test_property_is_a_clause_or_an_item(checked):
     """`property` with a name and a colon is an item, else a clause of the requirement above."""
     spec = checked("requirement R\n  always a\nproperty AG a\nproperty P: AG b")
-    assert spec.requirements["R"].property == "AG a"
+    assert spec.requirements["R"].ctl.text == "AG a"
     assert spec.properties["P"].text == "AG b"
 
 
