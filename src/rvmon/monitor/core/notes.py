@@ -9,7 +9,6 @@ from struct import Struct, unpack_from
 from typing import Any
 
 from rvmon.automaton.location import Token
-from rvmon.formula.residual import Residual
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, State
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
@@ -144,13 +143,9 @@ class Told:
         self._propositions = compiled.alphabet.propositions
         self._leaf_words = words_for(len(self._texts))
 
-    def residual(self, location: int) -> Residual:
-        """See `rvmon.monitor.explained.machine.Residuals`."""
-        return self.compiled.shaped_residuals[location]
-
     @cached_property
     def _reasons(self) -> Reasons:
-        return Reasons(self.compiled, self)
+        return Reasons(self.compiled)
 
     def _then(self, note: Note) -> tuple[int, ...]:
         return truths(note.words[_HEAD:], len(self._texts))
@@ -274,7 +269,12 @@ class Told:
         reached, gap = (note.at - 1) // 2, self._gap or 1
         worse, at = _token(words, at, words[3] & 0xFFFFFFFF)
         better, at = _token(words, at, words[3] >> 32)
-        return MachineRuns(self, reached // gap * gap, self._gap), worse, better, at
+        return (
+            MachineRuns(self.compiled.shaped_residuals, reached // gap * gap, self._gap),
+            worse,
+            better,
+            at,
+        )
 
     def _outages(self, words: Sequence[int]) -> Sequence[Outage]:
         """What was not known."""

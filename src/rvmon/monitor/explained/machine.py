@@ -5,7 +5,6 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
 
 from rvmon.automaton.location import FAILED, PASSED, Token, location_of
 from rvmon.formula.progress import after, value
@@ -25,16 +24,6 @@ from rvmon.monitor.reasons.obligation_words import deadline, settled_alone
 from rvmon.monitor.reasons.sentence import Sentence, Standing, rendered
 from rvmon.verdict.verdict import Verdict
 
-Instant = TypeVar("Instant")
-"""In ticks: one, or an array of them."""
-
-
-class Residuals(Protocol):
-    """What runs stand in the locations of."""
-
-    def residual(self, location: int) -> Residual:
-        """What is owed in a location."""
-
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -48,7 +37,7 @@ class Finding:
     cause: Cause | None
     sentence: Sentence
 
-    def start(self, anchors: Sequence[Instant], t: Instant, triggered: Instant) -> Instant:
+    def start(self, anchors: Sequence[int], t: int, triggered: int) -> int:
         """The instant at which what decided was instantiated."""
         clock = self.cause.start if self.cause else NO_CLOCK
         if clock == NO_CLOCK:
@@ -62,10 +51,10 @@ class Reasons:
     What was owed, in which of its windows, and the letter: more makes no difference to a reason.
     """
 
-    def __init__(self, compiled: CompiledRequirement, machine: Residuals) -> None:
+    def __init__(self, compiled: CompiledRequirement) -> None:
         self.words = compiled.words
         self._alphabet = compiled.alphabet
-        self._machine = machine
+        self._residuals = compiled.shaped_residuals
         self._cuts: dict[int, tuple[tuple[int, ...], ...]] = {}
         self._found: dict[tuple[int, ...], Finding] = {}
         self._deadlines: dict[int, int | None] = {}
@@ -74,7 +63,7 @@ class Reasons:
         """For each clock of a location, the ages at which a window opens or is over, ascending."""
         cuts = self._cuts.get(location)
         if cuts is None:
-            cuts = self._cuts[location] = location_of(self._machine.residual(location)).cuts
+            cuts = self._cuts[location] = location_of(self._residuals[location]).cuts
         return cuts
 
     def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
@@ -88,7 +77,7 @@ class Reasons:
         return found
 
     def _find(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
-        residual = self._machine.residual(before[0])
+        residual = self._residuals[before[0]]
         ages = [t - anchor for anchor in before[1]]
         by_time = value(after(residual, ages)) != UNKNOWN
         valuation = self._alphabet.valuation(letter)
@@ -101,9 +90,9 @@ class Reasons:
         """The last instant before time alone settles what was owed; see `Attempt`."""
         location, anchors = before
         if len(anchors) != 1:
-            return deadline(self._machine.residual(location), anchors)
+            return deadline(self._residuals[location], anchors)
         if location not in self._deadlines:
-            self._deadlines[location] = deadline(self._machine.residual(location), (0,))
+            self._deadlines[location] = deadline(self._residuals[location], (0,))
         after_start = self._deadlines[location]
         return None if after_start is None else anchors[0] + after_start
 
@@ -143,12 +132,12 @@ class MachineRuns:
     """Runs of an automaton, as `rvmon.monitor.explained.explanation.Judged`.
 
     Attributes:
-        machine: says what is owed in its locations.
+        residuals: what is owed in its locations.
         position: the last one that the runs were stepped at; letters stay behind it.
         gap: ticks between two positions; `None` if only samples are positions.
     """
 
-    machine: Residuals
+    residuals: Sequence[Residual]
     position: int
     gap: int | None
 
@@ -160,7 +149,7 @@ class MachineRuns:
         location, anchors = token
         ages = [now // 2 - anchor for anchor in anchors]
         compiled = attempt.compiled
-        owed = compiled.words.owed(after(self.machine.residual(location), ages), anchors)
+        owed = compiled.words.owed(after(self.residuals[location], ages), anchors)
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
         lasting = longer(compiled.obligation.owed, attempt.triggered, end)
         reason = f"{still_owed(owed, end)}{lasting}{doubt}{unborn(attempt.unborn, end)}"
@@ -171,7 +160,7 @@ class MachineRuns:
         """What time alone makes of a run, and the last instant before that."""
         if token[0] <= PASSED:
             return None
-        return settled_alone(self.machine.residual(token[0]), token[1])
+        return settled_alone(self.residuals[token[0]], token[1])
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
         """`P` or `F` if every continuation brings an attempt to it; never folded into its verdict.
@@ -192,5 +181,5 @@ class MachineRuns:
         gap = self.gap or 1
         at = self.position + max(known - self.position, 0) // gap * gap
         ages = [at - anchor for anchor in anchors]
-        residual = self.machine.residual(location)
+        residual = self.residuals[location]
         return attempt.compiled.forecaster.of(residual, ages, self.gap)
