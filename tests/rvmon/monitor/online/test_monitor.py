@@ -91,30 +91,6 @@ def test_open_attempts_say_what_they_wait_for(monitor):
     assert "within 3 s released" in attempt.owed
 
 
-BAD_SAMPLES = {
-    "unknown name": {"relased": True},
-    "text in a number": {"distance": "far"},
-    "truth in a number": {"distance": True},
-    "number in a truth": {"ready": 1},
-    "unknown label": {"mode": "asleep"},
-    "event with a number": {"sensed": 3},
-    "unknown field": {"pick": {"x": 1}},
-    "fraction in a whole number": {"pick": {"id": 1.5}},
-    "two payloads": {"pick": ({"id": 1}, {"id": 2})},
-}
-
-
-@pytest.mark.parametrize("name", BAD_SAMPLES)
-def test_a_bad_sample_is_named_and_changes_nothing(monitor, name):
-    """The error names the sample's time and the name; the monitor goes on as if it had not come."""
-    monitor.step(0, {"ready": True})
-    with pytest.raises(TraceError, match="sample at 1 s") as caught:
-        monitor.step(1, {"sensed": True, **BAD_SAMPLES[name]})
-    assert next(key for key in BAD_SAMPLES[name]) in str(caught.value)
-    assert monitor.step(1, {}) == ()
-    assert monitor.finish().attempts == ()
-
-
 @pytest.mark.parametrize("t", [math.inf, math.nan, 1e300])
 def test_an_impossible_time_is_an_error(monitor, t):
     """A time that is no finite number of ticks is refused by every call."""
@@ -186,14 +162,6 @@ def test_what_has_no_automaton_is_judged():
     monitor.step_ns(0, {"a": True})
     monitor.step_ns(1, {"a": True})
     assert brief(monitor.step_ns(99, {})) == [("R", 1, "F", 91)]
-
-
-def test_numpy_scalars_are_numbers(monitor):
-    """Values as they come out of arrays are taken."""
-    numpy = pytest.importorskip("numpy")
-    monitor.step(0, {"ready": numpy.bool_(True), "distance": numpy.float32(0.5)})
-    monitor.step(1, {"sensed": True, "pick": {"id": numpy.int64(4)}, "distance": numpy.int8(1)})
-    assert monitor.finish().verdicts["R3"] is Verdict.PASS
 
 
 def test_the_compile_report_says_what_became_of_a_requirement():
