@@ -29,7 +29,7 @@ from tests.tools.put_away import HEAD, Twins, actions_of
 from tests.tools.watched import is_small, truths_plan
 
 from rvmon.core.plan import pack
-from rvmon.coverage.monitor import Bins
+from rvmon.coverage.bins import Bins
 from rvmon.errors import RvmonError
 from rvmon.monitor import compile_spec
 from rvmon.monitor.compiled.code_plan import plan_alone
