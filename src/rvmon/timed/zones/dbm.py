@@ -138,11 +138,6 @@ class _Tidy(dict[float, float]):
 _TIDY = _Tidy()
 
 
-def is_within(zone: Zone, other: Zone) -> bool:
-    """Whether a zone is a subset of another."""
-    return all(mine <= theirs for mine, theirs in zip(zone, other, strict=True))
-
-
 CoverTest = tuple[tuple[int, float], ...]
 """`(entry, least)`: a zone that simulates another has at least these numbers there."""
 
