@@ -12,7 +12,6 @@ def search(
     most_states: int,
     most_bytes: int,
     proper_only: bool,
-    wide: bool,
     /,
 ) -> tuple[int, int, int, int, int, int, int, int, bytes, bytes]:
     """Search a plan.
@@ -26,7 +25,6 @@ def search(
         most_states: to visit; -1: no limit.
         most_bytes: of memory; -1: no limit.
         proper_only: whether a way to stay counts only if time passes on it without bound.
-        wide: whether to begin with bounds of 64 bits.
 
     Returns:
         State, ending, loop, whether a way was passed by, states visited, stored, discrete ones,

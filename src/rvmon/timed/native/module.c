@@ -95,7 +95,7 @@ static bool taken(const Py_buffer *plan, const Py_buffer *costs, int32_t **numbe
     return state == PLAN_GOOD;
 }
 
-/* search(plan, costs, goes_on, counts, most_states, most_bytes, proper_only, wide): as zones.h says.
+/* search(plan, costs, goes_on, counts, most_states, most_bytes, proper_only): as zones.h says.
  * Gives state, ending, loop, improper, visited, stored, discrete states, most bytes in use, path and
  * parts as bytes. */
 static PyObject *zones_search(PyObject *module, PyObject *args)
@@ -107,13 +107,12 @@ static PyObject *zones_search(PyObject *module, PyObject *args)
     long long most_states;
     long long most_bytes;
     int proper_only;
-    int wide;
     int32_t *numbers_of = NULL;
     double *costs_of = NULL;
     PyObject *made = NULL;
     (void)module;
-    if (!PyArg_ParseTuple(args, "y*y*OOLLii", &plan, &costs, &c.goes_on, &c.counts, &most_states,
-                          &most_bytes, &proper_only, &wide)) {
+    if (!PyArg_ParseTuple(args, "y*y*OOLLi", &plan, &costs, &c.goes_on, &c.counts, &most_states,
+                          &most_bytes, &proper_only)) {
         return NULL;
     }
     if (taken(&plan, &costs, &numbers_of, &costs_of)) {
@@ -125,7 +124,7 @@ static PyObject *zones_search(PyObject *module, PyObject *args)
         from.most_bytes = (most_bytes < 0) ? UINT64_MAX : (uint64_t)most_bytes;
         from.proper_only = proper_only != 0;
         c.thread = PyEval_SaveThread();
-        found = (wide ? search_wide : search)(numbers_of, costs_of, &from);
+        found = search(numbers_of, costs_of, &from);
         PyEval_RestoreThread(c.thread);
         if (PyErr_Occurred() == NULL) {
             made = told(&found);

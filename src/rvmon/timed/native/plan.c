@@ -165,7 +165,8 @@ static bool limits_fit(const checker *c, int section)
     int32_t i;
     for (i = 0; i < rows(c, section); i++, row += LIMIT_SIZE) {
         const int32_t clocks = c->plan[HEAD_CLOCKS] + c->plan[HEAD_TIMER];
-        if ((row[LIMIT_CLOCK] < 1) || (row[LIMIT_CLOCK] > clocks) || (row[LIMIT_NUMBER] < 0)) {
+        if ((row[LIMIT_CLOCK] < 1) || (row[LIMIT_CLOCK] > clocks) || (row[LIMIT_NUMBER] < 0)
+            || (row[LIMIT_NUMBER] == INT32_MAX)) {
             return false;
         }
     }
@@ -294,7 +295,8 @@ static bool head_fits(const int32_t *plan)
     if ((kind < 0) || (kind >= SEEK_KINDS) || (plan[HEAD_POLICY] < 0)
         || (plan[HEAD_POLICY] >= POLICIES) || ((plan[HEAD_POLICY] != POLICY_SHORTEST) && !plain)
         || (plan[HEAD_CLOCKS] < 0) || (plan[HEAD_CLOCKS] > MOST_CLOCKS) || (plan[HEAD_TIMER] < 0)
-        || (plan[HEAD_TIMER] > 1) || (plan[HEAD_BOUND] < 0) || (plan_count(plan, AT_AUTOMATA) < 1)
+        || (plan[HEAD_TIMER] > 1) || (plan[HEAD_BOUND] < 0)
+        || (plan[HEAD_BOUND] == INT32_MAX) || (plan_count(plan, AT_AUTOMATA) < 1)
         || ((late || (plan[HEAD_POLICY] == POLICY_FASTEST)) && (plan[HEAD_TIMER] == 0))
         || (plan_count(plan, AT_TREE) > MOST_TREE_ROWS)
         || (plan_count(plan, AT_INSIDE) > MOST_PIECES)

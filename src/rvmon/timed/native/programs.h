@@ -164,7 +164,7 @@ static bool holds(engine *h, int32_t program, const int32_t *places, const int32
 /* A number of units of time; if it is none the search fails, if it is large another has to do it. */
 static bool is_time(engine *h, int64_t number)
 {
-    if ((number < 0) || (number > INT32_MAX)) {
+    if ((number < 0) || (number >= INT32_MAX)) {
         h->failed = true;
         return false;
     }

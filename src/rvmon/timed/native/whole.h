@@ -227,11 +227,31 @@ static void begin(engine *h)
     }
 }
 
+/* Whether all numbers that clocks are compared with are small enough for these bounds. */
+static bool limits_fit(const engine *h)
+{
+    const int sections[2] = {AT_LIMITS, AT_EXTRA};
+    int s;
+    for (s = 0; s < 2; s++) {
+        const int32_t *row = plan_rows(h->plan, sections[s]);
+        int32_t i;
+        for (i = 0; i < plan_count(h->plan, sections[s]); i++, row += LIMIT_SIZE) {
+            if (row[LIMIT_NUMBER] > h->most_time) {
+                return false;
+            }
+        }
+    }
+    return h->plan[HEAD_BOUND] <= h->most_time;
+}
+
 static void run(engine *h)
 {
     const bool late = (h->kind == SEEK_LATE) || (h->kind == SEEK_LATE_AFTER);
     walk *w = &h->out;
     begin(h);
+    if (runs(h) && !limits_fit(h)) {
+        h->state = SEARCH_TOO_LARGE;
+    }
     if (!runs(h) || !invariant_data_holds(h, w->target, w->changed)) {
         return;
     }

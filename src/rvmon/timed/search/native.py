@@ -71,7 +71,6 @@ def seek(
     meter: Meter,
     *,
     proper_only: bool = False,
-    wide: bool = False,
 ) -> Answer:
     """Search for a run.
 
@@ -80,7 +79,6 @@ def seek(
         sought: where it leads, or stays.
         meter: counts the states, and ends the search.
         proper_only: whether a way to stay counts only if time passes on it without bound.
-        wide: whether numbers are taken to be large from the start.
 
     Raises:
         ModelError: a run of it leaves a variable's range, or numbers are too large.
@@ -93,7 +91,7 @@ def seek(
         return time_passes(steps, _zone(array("q", head)), paths.dim)
 
     state, ending, loop, improper, visited, stored, _, _, path, parts = search(
-        plan.numbers, plan.costs, meter.look, counts, meter.left, -1, proper_only, wide
+        plan.numbers, plan.costs, meter.look, counts, meter.left, -1, proper_only
     )
     meter.add(visited, stored)
     match _State(state):

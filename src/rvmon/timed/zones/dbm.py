@@ -16,7 +16,7 @@ from math import ceil, inf
 
 Zone = list[float]
 
-STRICT = 2.0**-20
+STRICT = 2.0**-12
 """What a strict bound lacks; sums of hundreds of bounds below `MAX_TIME` stay exact."""
 
 MOST_TIDY = 1 << 16
