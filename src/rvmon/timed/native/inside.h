@@ -165,7 +165,6 @@ static void succeed(engine *h, uint32_t state, const bound *z)
         (void)memset(h->colours + had, 0, h->colour_room - had);
         h->exact[at] = n;
         h->exact_count++;
-        h->stored++;
     }
     if (ROOM(h, h->successors, h->successor_room, (uint64_t)h->successor_count + 1)) {
         h->successors[h->successor_count++] = (successor){n, h->link};

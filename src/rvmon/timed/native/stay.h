@@ -146,6 +146,7 @@ static void stay_at(engine *h, successor at)
     const int k = piece_of(h, at.node);
     frame *top;
     visit(h);
+    h->stored++;
     if (!runs(h) || !ROOM(h, h->frames, h->frame_room, (uint64_t)h->frame_count + 1)) {
         return;
     }
