@@ -45,7 +45,15 @@ def main() -> int:
     }
     # Only what Python prints is held back: a finding ends the program, and must be read.
     options = ["--capture=sys", "-n", "auto", "-m", "not compiler"]
-    tests = [sys.executable, "-m", "pytest", *options, "tests/rvmon/core", "tests/rvmon/timed/search", *sys.argv[1:]]
+    tests = [
+        sys.executable,
+        "-m",
+        "pytest",
+        *options,
+        "tests/rvmon/core",
+        "tests/rvmon/timed/search",
+        *sys.argv[1:],
+    ]
     return subprocess.run(tests, cwd=ROOT, env=environment, check=False).returncode
 
 

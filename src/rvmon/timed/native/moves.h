@@ -150,6 +150,7 @@ static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges,
 static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink take)
 {
     const int32_t *s = edge_at(h, sender);
+    bool ok = !committed || w->committed[s[EDGE_AUTOMATON]];
     int groups = 0;
     int n = 0;
     int a;
@@ -165,20 +166,19 @@ static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink t
             }
         }
         if (n > start) {
+            ok = ok || w->committed[a];
             w->pick[groups] = 0;
             w->first[groups++] = start;
             w->first[groups] = n;
         }
     }
-    for (;;) {
-        bool ok = !committed || w->committed[s[EDGE_AUTOMATON]];
+    while (ok) {
         int g;
         w->chosen[0] = sender;
         for (g = 0; g < groups; g++) {
             w->chosen[1 + g] = w->group[w->first[g] + w->pick[g]];
-            ok = ok || w->committed[edge_at(h, w->chosen[1 + g])[EDGE_AUTOMATON]];
         }
-        if (h->failed || (ok && !take(h, w, w->chosen, 1 + groups))) {
+        if (h->failed || !take(h, w, w->chosen, 1 + groups)) {
             return false;
         }
         g = groups - 1;
@@ -186,9 +186,10 @@ static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink t
             w->pick[g--] = 0;
         }
         if (g < 0) {
-            return true;
+            break;
         }
     }
+    return !h->failed;
 }
 
 static bool pairs(engine *h, walk *w, int32_t sender, bool committed, sink take)

@@ -20,6 +20,10 @@ static bool each_stand(engine *h, const bound *z, int k, bool delays, int level,
     h->been[k] = 1;
     for (m = 0; on && (m < 2 * h->inside_count); m++) {
         bound *to = h->between + (size_t)level * (size_t)h->entries;
+        labour(h);
+        if (!runs(h)) {
+            break;
+        }
         if (h->been[m / 2] || !has_piece(h, m / 2, w->places, w->values)
             || !cross(h, to, z, k, m / 2, m % 2 == 1, w->places, w->values)) {
             continue;

@@ -146,7 +146,7 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
     if (w->delays) {
         before(z, h->dim);
     }
-    return (bounds >= 0) && fits(h, z) && push_zone(h, &h->alive, z);
+    return (bounds >= 0) && fits(h, z) && push_zone(h, &h->alive, z) && runs(h);
 }
 
 /* The part of a zone from which no edge can ever be taken, as `dead`; false if that failed. */
@@ -185,8 +185,11 @@ static bool in_rows(engine *h, const bound *z, int section, const int32_t *place
     const int32_t *row = plan_rows(h->plan, section);
     int32_t k;
     for (k = 0; k < plan_count(h->plan, section); k++, row += ROW_SIZE) {
+        if (!holds(h, row[ROW_CONDITION], places, values) || h->failed) {
+            continue;
+        }
         copy_zone(h, h->copy, z);
-        if (!cut_row(h, h->copy, row, places, values)) {
+        if (!cut_atoms(h, h->copy, row[ROW_ATOM], row[ROW_ATOMS], places, values)) {
             continue;
         }
         if (row[ROW_ATOMS] == 0) {

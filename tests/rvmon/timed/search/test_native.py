@@ -8,6 +8,7 @@ from threading import Thread
 
 import pytest
 from tests.tools.timed_generate import random_model
+from tests.tools.timed_plans import search_plans
 
 from rvmon.native.zones import search
 from rvmon.timed.language.load import load_network, loads_network
@@ -18,10 +19,8 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import LeadsToFormula
 from rvmon.timed.model.refine import finer
-from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
 from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"
@@ -64,26 +63,6 @@ def test_large_numbers_change_no_answer(factor):
             ), (seed, query.text)
 
 
-def plans(seeds):
-    """A plan of each kind for some random networks."""
-    for seed in seeds:
-        network = loads_network(random_model(seed))
-        some, other = (network.queries[k].formula.body for k in (0, 1))
-        nested = normal_form(network.queries[10].formula.body, positive=False)
-        some, other = normal_form(some), normal_form(other)
-        for sought in (
-            *(Sought(Seek.GOAL, some, choose=choose) for choose in Choose),
-            Sought(Seek.GOAL, some, bound=3),
-            Sought(Seek.DEADLOCK, some, other),
-            Sought(Seek.STAY, None, other),
-            Sought(Seek.STAY_AFTER, some, other),
-            Sought(Seek.LATE, None, other, bound=2),
-            Sought(Seek.LATE_AFTER, some, other, bound=2),
-            Sought(Seek.NESTED, nested=nested),
-        ):
-            yield Plan(network, sought)
-
-
 def asked(plan, numbers=None, most_bytes=-1, most_states=-1):
     """What the native search says, with loops that all count."""
     numbers = plan.numbers if numbers is None else numbers
@@ -96,7 +75,7 @@ def asked(plan, numbers=None, most_bytes=-1, most_states=-1):
 def test_a_damaged_plan_is_refused_or_does_no_harm():
     """Whatever number of a plan is changed, the search refuses it or ends."""
     random, states = Random(5), set()
-    for plan in plans(range(30)):
+    for plan in search_plans(range(30)):
         for _ in range(20):
             numbers = array("i", plan.numbers)
             at = random.randrange(len(numbers))
@@ -120,7 +99,7 @@ def test_what_is_no_plan_is_refused(numbers):
 def test_memory_that_ends_anywhere_is_an_answer():
     """With any amount of memory the search says the same or that there is none."""
     random, without = Random(6), 0
-    for plan in plans(range(12)):
+    for plan in search_plans(range(12)):
         answer = asked(plan)
         for _ in range(25):
             given = asked(plan, most_bytes=int(2 ** random.uniform(4, 18)))
