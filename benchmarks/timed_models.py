@@ -141,7 +141,7 @@ def _measure(network: Network, query: Query, repeat: int, limit: float) -> None:
 
 def _print(name: str, size: int, told: dict[str, float]) -> None:
     label = f"{name} {size}" if size else f"{name} {told['query']}"
-    held = f"{told['bytes']:8.0f}" if told["stored"] > 5_000 else f"{'':8}"
+    held = f"{told['bytes']:8.0f}" if size and told["stored"] > 5_000 else f"{'':8}"
     figures = f"{told['visited']:10,} {told['stored']:10,} {told['seconds']:9.3f} {held}"
     unknown = "" if told["holds"] is not None else "not decided"
     print(f"{label:22} {figures}   {PEER.get((name, size), '')}{unknown}".rstrip(), flush=True)
