@@ -92,7 +92,7 @@ typedef struct {
     uint64_t bytes, peak, work, visited, stored;
     field *fields;
     /* discrete states */
-    uint32_t *bits, *heads, *table, table_size, state_count, state_room, heads_room, delays_room,
+    uint32_t *bits, *heads, *table, table_size, state_count, heads_room, delays_room,
         bits_room;
     uint8_t *delays;
     uint32_t *packed;
@@ -109,7 +109,7 @@ typedef struct {
     bound *lower, *upper;
     int32_t *lowers, *uppers, lower_count, upper_count;
     int32_t *test_entries, *tightest;
-    bound *test_least, *tightest_bound, *top, *spare, *inside, *crossed, *copy;
+    bound *test_least, *tightest_bound, *top, *spare, *inside, *copy;
     walk out, look; /* the second looks for deadlocks while the first goes over moves */
     federation alive, dead, rest;
     uint32_t from_node, link, found;

@@ -365,7 +365,6 @@ static answer search_here(const int32_t *plan, const double *costs, const caller
     told.visited = h->visited;
     told.stored = h->stored;
     told.states = h->state_count;
-    told.bytes = h->bytes;
     told.peak = h->peak;
     told.path = h->path;
     told.dim = (uint32_t)h->dim;

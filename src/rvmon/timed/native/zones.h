@@ -34,7 +34,6 @@ typedef struct {
     uint64_t visited;
     uint64_t stored;
     uint64_t states;
-    uint64_t bytes;
     uint64_t peak;
     numbers path;
     int64_t *parts;
