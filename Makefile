@@ -5,8 +5,8 @@ BIN := $(VENV)/bin
 # What Python makes of files is kept, whatever is the custom here: else each program that tests start makes it anew.
 TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
-# What the native core is built from: where one of these changed, it is built anew.
-CORE := $(wildcard src/rvmon/core/*.[ch]) src/rvmon/core/amalgamate.py hatch_build.py
+# What the native code is built from: where one of these changed, it is built anew.
+CORE := $(wildcard src/rvmon/core/*.[ch] src/rvmon/timed/native/*.[ch]) src/rvmon/core/amalgamate.py hatch_build.py
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -pedantic -Werror
 
 .PHONY: help demo core test quick check sanitize docs format bench claims fuzz release clean
@@ -17,7 +17,7 @@ help:  ## show this list
 demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; results in out/demo
 	@$(BIN)/handover demo --out out/demo
 
-core: | $(BIN)/python  ## compile the native core in place, 4 seconds; warnings are errors
+core: | $(BIN)/python  ## compile the native code in place, 6 seconds; warnings are errors
 	@CFLAGS="$(WARNINGS) $$CFLAGS" $(BIN)/python hatch_build.py
 
 test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the seconds of each folder

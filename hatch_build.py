@@ -1,7 +1,8 @@
-"""Compiles the native core when the package is built, and in place: `python hatch_build.py`.
+"""Compiles the native code when the package is built, and in place: `python hatch_build.py`.
 
 The binding, `src/rvmon/core/module.c`, and all other `src/rvmon/core/*.c` as one unit, which makes
-them faster, are compiled and linked to one extension, `rvmon.native._core`. The compiler is `$CC`,
+them faster, are compiled and linked to one extension, `rvmon.native._core`; the files of
+`src/rvmon/timed/native`, each by itself, to another, `rvmon.native._zones`. The compiler is `$CC`,
 Python's own, `cc`, `gcc` or `clang`; where none works, the build asks for the package `ziglang`,
 which brings one. Where Python's headers are missing, the C takes its own declarations
 (`python_abi.h`). `$CFLAGS` and `$LDFLAGS` are added.
@@ -31,6 +32,7 @@ except ImportError:  # run as a program, which needs Python alone
     BuildHookInterface = object
 
 CORE = Path(__file__).resolve().parent / "src" / "rvmon" / "core"
+ZONES = CORE.with_name("timed") / "native"
 NATIVE = CORE.with_name("native")
 ZIG = "ziglang>=0.13,<1"
 LIMITED_API = "0x030B0000"
@@ -53,10 +55,12 @@ class CoreBuildHook(BuildHookInterface):
         """Compile before the files of the wheel are collected."""
         if version == "editable":
             build(NATIVE)
+            build_zones(NATIVE)
             return
         self._made = tempfile.TemporaryDirectory()
-        made = build(Path(self._made.name))
-        build_data["force_include"][str(made)] = f"rvmon/native/{made.name}"
+        for make in (build, build_zones):
+            made = make(Path(self._made.name))
+            build_data["force_include"][str(made)] = f"rvmon/native/{made.name}"
         build_data["pure_python"] = False
         build_data["tag"] = wheel_tag()
 
@@ -94,11 +98,11 @@ def free_threaded() -> bool:
     return bool(sysconfig.get_config_var("Py_GIL_DISABLED"))
 
 
-def file_name() -> str:
-    """The name of the extension: of the stable ABI, or of this Python alone if free-threaded."""
+def file_name(module: str = "_core") -> str:
+    """The name of an extension: of the stable ABI, or of this Python alone if free-threaded."""
     if free_threaded():
-        return "_core" + importlib.machinery.EXTENSION_SUFFIXES[0]
-    return "_core.pyd" if os.name == "nt" else "_core.abi3.so"
+        return module + importlib.machinery.EXTENSION_SUFFIXES[0]
+    return module + (".pyd" if os.name == "nt" else ".abi3.so")
 
 
 def wheel_tag() -> str:
@@ -118,28 +122,41 @@ def build(folder: Path) -> Path:
     Raises:
         SystemExit: the compiler failed; the text is what it said.
     """
-    command = compiler() or [sys.executable, "-m", "ziglang", "cc", "-g0"]  # it debugs unasked
-    flags = [*shlex.split(os.environ.get("CFLAGS", "")), *FLAGS, *_flags_of_python(), *_machine()]
-    target = folder / file_name()
-    with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made, _threads() as threads:
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made:
         unit = Path(made, "unit.c")
         unit.write_text(_unit(), encoding="utf-8")
-        objects = [str(Path(made, name)) for name in ("module.o", "unit.o")]
-        lines = [
-            [*command, *flags, "-I.", "-c", source, "-o", object_]
-            for source, object_ in zip(("module.c", str(unit)), objects, strict=True)
-        ]
-        list(threads.map(_run, lines))
-        linked = Path(made, target.name)
-        _run([*command, *flags, *_link(), *objects, "-o", str(linked), "-lm", *_link_last()])
-        os.replace(linked, target)  # programs that run keep the old one whole
+        return _extension(folder / file_name(), CORE, ["module.c", str(unit)], Path(made))
+
+
+def build_zones(folder: Path) -> Path:
+    """Compile the search through zones into a folder, likewise."""
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made:
+        sources = sorted(source.name for source in ZONES.glob("*.c"))
+        return _extension(folder / file_name("_zones"), ZONES, sources, Path(made))
+
+
+def _extension(target: Path, home: Path, sources: Sequence[str], made: Path) -> Path:
+    """Compile sources, which are seen from their home, and link them, by way of a folder."""
+    command = compiler() or [sys.executable, "-m", "ziglang", "cc", "-g0"]  # it debugs unasked
+    flags = [*shlex.split(os.environ.get("CFLAGS", "")), *FLAGS, *_flags_of_python(home)]
+    flags += _machine()
+    objects = [str(made / f"{Path(source).stem}.o") for source in sources]
+    lines = [
+        [*command, *flags, "-I.", "-c", source, "-o", object_]
+        for source, object_ in zip(sources, objects, strict=True)
+    ]
+    with ThreadPoolExecutor(os.cpu_count() or 1) as threads:
+        list(threads.map(lambda line: _run(line, home), lines))
+    linked = made / target.name
+    _run([*command, *flags, *_link(), *objects, "-o", str(linked), "-lm", *_link_last()], home)
+    os.replace(linked, target)  # programs that run keep the old one whole
     return target
 
 
-def _flags_of_python() -> list[str]:
+def _flags_of_python(home: Path) -> list[str]:
     """Where the headers of Python are and which ABI is meant."""
     include = {sysconfig.get_path("include"), sysconfig.get_path("platinclude")}
-    flags = [f'-DRVMON_SOURCE_HASH="{_source_hash()}"']
+    flags = [f'-DRVMON_SOURCE_HASH="{_source_hash(home)}"']
     if any(Path(folder, "Python.h").exists() for folder in include):
         flags += [part for folder in sorted(include) for part in ("-isystem", folder)]
     elif free_threaded():
@@ -151,9 +168,9 @@ def _flags_of_python() -> list[str]:
     return flags if free_threaded() else [*flags, f"-DPy_LIMITED_API={LIMITED_API}"]
 
 
-def _source_hash() -> str:
+def _source_hash(home: Path) -> str:
     """As the package computes it at import; the package itself needs what is not installed yet."""
-    return str(runpy.run_path(str(NATIVE / "sources.py"))["source_hash"](str(CORE)))
+    return str(runpy.run_path(str(NATIVE / "sources.py"))["source_hash"](str(home)))
 
 
 def _unit() -> str:
@@ -184,12 +201,8 @@ def _link_last() -> list[str]:
     return [*flags, f"-L{Path(sys.base_prefix, 'libs')}", f"-l{library}"]
 
 
-def _threads() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(os.cpu_count() or 1)
-
-
-def _run(line: Sequence[str]) -> None:
-    done = subprocess.run(line, cwd=CORE, capture_output=True, text=True, check=False)
+def _run(line: Sequence[str], home: Path) -> None:
+    done = subprocess.run(line, cwd=home, capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"rvmon: the native core did not compile\n{shlex.join(line)}\n{done.stderr}")
 
@@ -197,4 +210,5 @@ def _run(line: Sequence[str]) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Compile the native core.")
     parser.add_argument("--into", type=Path, default=NATIVE, metavar="FOLDER", help="else in place")
-    print(build(parser.parse_args().into))
+    into = parser.parse_args().into
+    print(build(into), build_zones(into), sep="\n")

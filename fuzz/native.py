@@ -1,11 +1,12 @@
-"""The core under AFL++, each block of its memory watched: any plans, samples and snapshots.
+"""The native code under AFL++, each block of its memory watched: plans, samples and snapshots.
 
     python -m fuzz.native --seconds 3600 --out out/fuzz-native
 
 Bytes of a plan, or a snapshot, get a hash that fits, so that what is fuzzed is what is behind it.
 What is accepted judges some samples. Each run is repeated after a reset and has to say the same, if
 others go on with it from snapshots as well; then with memory that ends somewhere, and must not be
-green. Prints what AFL++ counted and the inputs at which the core crashed, hung, or was found out by
+green. Plans of the search of models are searched by bounds of both sizes, which have to agree.
+Prints what AFL++ counted and the inputs at which the core crashed, hung, or was found out by
 AddressSanitizer or UBSan; exits 1 if there are any.
 Needs the Debian packages afl++ and libclang-rt-14-dev.
 """
@@ -26,6 +27,7 @@ from pathlib import Path
 from tests.tools.coverage import with_random_coverage
 from tests.tools.guarded import guarded_memory
 from tests.tools.put_away import HEAD, Twins, actions_of
+from tests.tools.timed_plans import search_plans
 from tests.tools.watched import is_small, truths_plan
 
 from rvmon.core.plan import pack
@@ -39,14 +41,16 @@ from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 HARNESS = Path(__file__).with_name("harness.c")
+ZONES_HARNESS = HARNESS.with_name("zones.c")
 CORE = HARNESS.parents[1] / "src" / "rvmon" / "core"
+ZONES = CORE.with_name("timed") / "native"
 COMPILER = "afl-clang-fast"
 FLAGS = (
-    *("-std=c99", "-g", "-O1", "-fno-omit-frame-pointer", "-ffp-contract=off", f"-I{CORE}"),
+    *("-std=c99", "-g", "-O1", "-fno-omit-frame-pointer", "-ffp-contract=off"),
     *("-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"),
 )
 
-TARGETS = {"plans": ("-DPLANS",), "samples": (), "snapshots": ("-DSNAPSHOTS",)}
+TARGETS = {"plans": ("-DPLANS",), "samples": (), "snapshots": ("-DSNAPSHOTS",), "models": ()}
 """What is fuzzed, and how the harness is compiled for it."""
 
 SMALL = 6_000
@@ -125,11 +129,16 @@ def compiled(folder: Path, target: str, *, compiler: str = COMPILER) -> Path:
     Raises:
         CalledProcessError: the compiler failed.
     """
-    memory, program = folder / "memory.c", folder / target
-    memory.write_text(guarded_memory(), encoding="utf-8")
-    sources = [path for path in CORE.glob("*.c") if path.name not in ("memory.c", "module.c")]
-    sources += [HARNESS, memory]
-    words = [compiler, *FLAGS, *TARGETS[target], *map(str, sources), "-lm", "-o", str(program)]
+    program, home = folder / target, ZONES if target == "models" else CORE
+    sources = [path for path in home.glob("*.c") if path.name not in ("memory.c", "module.c")]
+    if target == "models":
+        sources.append(ZONES_HARNESS)
+    else:
+        memory = folder / "memory.c"
+        memory.write_text(guarded_memory(), encoding="utf-8")
+        sources += [HARNESS, memory]
+    flags = [*FLAGS, f"-I{home}", *TARGETS[target]]
+    words = [compiler, *flags, *map(str, sources), "-lm", "-o", str(program)]
     subprocess.run(words, check=True, capture_output=True)
     return program
 
@@ -140,6 +149,10 @@ def begun_with(folder: Path, target: str) -> None:
     if target == "plans":
         for number, data in enumerate(plans("plans", most=60, limit=SMALL)):
             (folder / "in" / str(number)).write_bytes(data)
+        return
+    if target == "models":
+        for number, plan in enumerate(search_plans(range(12))):
+            (folder / "in" / str(number)).write_bytes(plan.numbers)
         return
     if target == "snapshots":
         held = []

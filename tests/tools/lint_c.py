@@ -1,4 +1,4 @@
-"""Compile all C of the core, by gcc, by clang, and for 32 bits.
+"""Compile all C of the extensions, by gcc, by clang, and for 32 bits.
 
     python -m tests.tools.lint_c [WARNING …]
 
@@ -17,7 +17,8 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-CORE = Path(__file__).parents[2] / "src" / "rvmon" / "core"
+PACKAGE = Path(__file__).parents[2] / "src" / "rvmon"
+FOLDERS = PACKAGE / "core", PACKAGE / "timed" / "native"
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # some warnings come with optimising alone
 TRIAL = "#include <stdint.h>\n#include <stdlib.h>\nint main(void) { return 0; }\n"
 COMPILERS = {"gcc": "gcc", "clang": "clang", "gcc -m32 -msse2 -mfpmath=sse": "gcc-multilib"}
@@ -33,8 +34,8 @@ def main(warnings: list[str]) -> int:
             missing.append(f"C is not checked with `{command}`: no such compiler ({package})")
             continue
         start = [*command.split(), *FLAGS, *warnings, "-c"]
-        for source in sorted(path.name for path in CORE.glob("*.c")):
-            lines += [[*start, source, *way] for way in _ways(source, command)]
+        for source in sorted(path for folder in FOLDERS for path in folder.glob("*.c")):
+            lines += [[*start, str(source), *way] for way in _ways(source.name, command)]
     with ThreadPoolExecutor(os.cpu_count() or 1) as threads:
         failures = [text for text in threads.map(_complaint, lines) if text]
     print(*missing, *failures, sep="\n", end="\n" if missing or failures else "")
@@ -66,9 +67,7 @@ def _compiles(command: str) -> bool:
 
 
 def _complaint(line: list[str]) -> str:
-    done = subprocess.run(
-        [*line, "-o", os.devnull], cwd=CORE, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([*line, "-o", os.devnull], capture_output=True, text=True, check=False)
     return f"{shlex.join(line)}\n{done.stderr}" if done.returncode else ""
 
 

@@ -1,4 +1,4 @@
-"""Run the tests of the core with it compiled under AddressSanitizer and UBSan (gcc alone).
+"""Run the tests of the native code compiled under AddressSanitizer and UBSan (gcc alone).
 
 The extension is built in a copy of the package, so that the one that is used stays as it is; there
 each block of a monitor's memory is one of its own. What Python itself leaves unfreed at its end is
@@ -45,7 +45,15 @@ def main() -> int:
     }
     # Only what Python prints is held back: a finding ends the program, and must be read.
     options = ["--capture=sys", "-n", "auto", "-m", "not compiler"]
-    tests = [sys.executable, "-m", "pytest", *options, "tests/rvmon/core", *sys.argv[1:]]
+    tests = [
+        sys.executable,
+        "-m",
+        "pytest",
+        *options,
+        "tests/rvmon/core",
+        "tests/rvmon/timed/search",
+        *sys.argv[1:],
+    ]
     return subprocess.run(tests, cwd=ROOT, env=environment, check=False).returncode
 
 

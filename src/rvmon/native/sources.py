@@ -1,4 +1,4 @@
-"""The C sources of the native core, and a hash of them that tells a forgotten build.
+"""The C sources of the extensions, and a hash of them that tells a forgotten build.
 
 The build hook runs this file alone: it imports nothing of rvmon.
 """
@@ -8,13 +8,15 @@ from __future__ import annotations
 import os
 import zlib
 
-FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "core")
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+FOLDER = os.path.join(_PACKAGE, "core")
+ZONES_FOLDER = os.path.join(_PACKAGE, "timed", "native")
 BLOCK = 1 << 17
 """Bytes that are read at once: more than any source has."""
 
 
 def source_names(folder: str = FOLDER) -> list[str]:
-    """Names of all C files and headers in the folder of the core, sorted."""
+    """Names of all C files and headers in a folder, that of the core, sorted."""
     return sorted(name for name in os.listdir(folder) if name.endswith((".c", ".h")))
 
 

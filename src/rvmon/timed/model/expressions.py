@@ -8,7 +8,7 @@ from enum import StrEnum
 from rvmon.diagnostics import Span
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 
-MAX_TIME = 1 << 24
+MAX_TIME = (1 << 31) - 1
 """Numbers of units of time must be smaller."""
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from rvmon.timed.runs.timing import TimedStep
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.stay import Crossing, StaySite, Stride
 from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint
 
 
@@ -53,29 +52,7 @@ def mark_step(state: State, holds: Constraint, resets: Sequence[int] = ()) -> Pa
     )
 
 
-def crossing_step(site: StaySite, crossing: Crossing) -> PathStep:
+def crossing_step(state: State, leave: Constraint, enter: Constraint) -> PathStep:
     """The instant at which a run crosses from one piece of a formula to another."""
-    state = site.state
-    leave = (*invariant_of(state), *crossing.leave)
-    return PathStep(TimedStep(state.delays, leave, (), crossing.enter), None, state)
-
-
-def crossing_path(site: StaySite, crossings: Sequence[Crossing]) -> list[PathStep]:
-    """Several crossings in turn."""
-    steps = []
-    for crossing in crossings:
-        steps.append(crossing_step(site, crossing))
-        site = crossing.target
-    return steps
-
-
-def stride_path(start: StaySite, strides: Sequence[tuple[Stride, StaySite]]) -> list[PathStep]:
-    """Moves that stay inside a formula, with the crossings before each."""
-    steps: list[PathStep] = []
-    site = start
-    for stride, behind in strides:
-        steps += crossing_path(site, stride.crossings)
-        here = stride.crossings[-1].target if stride.crossings else site
-        steps.append(move_step(here.state, stride.move, here.constraint, behind.constraint))
-        site = behind
-    return steps
+    timed = TimedStep(state.delays, (*invariant_of(state), *leave), (), enter)
+    return PathStep(timed, None, state)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from heapq import heappop, heappush
-from itertools import count
 
 from rvmon.timed.search.meter import Meter, paused_collector
 from rvmon.timed.search.problem import Found, LinkT, Node, Problem, SiteT
-from rvmon.timed.zones.dbm import CoverTest, Zone, cover_test, passes
+from rvmon.timed.zones.dbm import CoverTest, cover_test, passes
 from rvmon.timed.zones.zone_unions import Constraint
 
 
@@ -70,53 +68,6 @@ def explore(
                 if not meet(Node(site, zone, node, link)):
                     going = False
                     break
-    meter.stored += sum(map(len, passed.values()))
-    last, constraint = found or (None, None)
-    return Found(last, constraint)
-
-
-def explore_best(
-    problem: Problem[SiteT, LinkT],
-    cost: Callable[[float, LinkT | None, Zone], float],
-    goal_cost: Callable[[float, Zone, Constraint], float],
-    meter: Meter,
-) -> Found[SiteT, LinkT]:
-    """Search by increasing cost, so that what is found costs least.
-
-    Args:
-        problem: what to search for; a state may only cover those that cost no less.
-        cost: of a node, from its parent's cost, the step to it and its zone; never below the
-            parent's.
-        goal_cost: of the part of a node that is sought, from the node's cost; never below it.
-        meter: counts the states that are kept.
-    """
-    passed: dict[SiteT, list[Node[SiteT, LinkT]]] = {}
-    dim = problem.dim
-    order = count()
-    heap: list[tuple[float, int, Node[SiteT, LinkT], Constraint | None]] = []
-    found: tuple[Node[SiteT, LinkT], Constraint] | None = None
-    with paused_collector():
-        for site, zone in problem.start():
-            heappush(heap, (cost(0.0, None, zone), next(order), Node(site, zone, None, None), None))
-        while heap:
-            price, _, node, constraint = heappop(heap)
-            if constraint is not None:
-                found = node, constraint
-                break
-            nodes = passed.setdefault(node.site, [])
-            test = _test_of(node, dim)
-            if _first_passing(nodes, test) is not None:
-                continue
-            nodes.append(node)
-            if not meter.count(len(heap)):
-                break
-            constraint = problem.goal(node.site, node.zone)
-            if constraint is not None:
-                entry = goal_cost(price, node.zone, constraint), next(order), node, constraint
-                heappush(heap, entry)
-            for link, site, zone in problem.successors(node.site, node.zone):
-                after = Node(site, zone, node, link)
-                heappush(heap, (cost(price, link, zone), next(order), after, None))
     meter.stored += sum(map(len, passed.values()))
     last, constraint = found or (None, None)
     return Found(last, constraint)

@@ -59,19 +59,43 @@ class Meter:
         self.visited += 1
         budget = self._budget
         if budget.states is not None and self.visited > budget.states:
-            self.stopped = f"{budget.states:,} states were visited"
+            self.stop_at_states()
         elif self.visited % CHECK_EVERY == 0:
-            self._look(waiting)
+            self._look(self.visited, waiting)
         return not self.stopped
 
-    def _look(self, waiting: int) -> None:
+    @property
+    def left(self) -> int:
+        """How many states may still be visited; -1: any number."""
+        states = self._budget.states
+        return -1 if states is None else max(0, states - self.visited)
+
+    def look(self, visited: int, waiting: int) -> bool:
+        """Look at the clock and the memory in a search that counts for itself; whether to go on."""
+        self._look(self.visited + visited, waiting)
+        return not self.stopped
+
+    def add(self, visited: int, stored: int) -> None:
+        """Count what a search did that counts for itself."""
+        self.visited += visited
+        self.stored += stored
+
+    def stop(self, reason: str) -> None:
+        """Note what stopped a search, unless that is known."""
+        self.stopped = self.stopped or reason
+
+    def stop_at_states(self) -> None:
+        """Note that no more states may be visited, if nothing else stopped a search."""
+        self.stop(f"{self._budget.states or 0:,} states were visited")
+
+    def _look(self, visited: int, waiting: int) -> None:
         budget, seconds = self._budget, self.seconds
         if budget.seconds is not None and seconds > budget.seconds:
             self.stopped = f"{budget.seconds:g} s went by"
         elif budget.megabytes is not None and _is_full(budget.megabytes):
             self.stopped = f"{budget.megabytes:,} MB of memory were in use"
         elif self._watch is not None:
-            self._watch(Progress(self.visited, waiting, seconds))
+            self._watch(Progress(visited, waiting, seconds))
 
 
 def _is_full(limit: int) -> bool:

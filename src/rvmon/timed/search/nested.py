@@ -1,40 +1,25 @@
-"""The problem of reaching a formula that speaks of runs itself, and how such a formula is split."""
+"""How a formula that speaks of runs itself is split, and which ones are decided."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
 from rvmon.timed.model.expressions import TRUE, BinaryOperation, Expression, PathFormula
-from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import BinaryOp, PathOp
-from rvmon.timed.search.ctl import Satisfaction
-from rvmon.timed.search.meter import Meter
-from rvmon.timed.zones.dbm import Zone
-from rvmon.timed.zones.discrete import State
-from rvmon.timed.zones.federation import constraint_of
-from rvmon.timed.zones.symbolic import Steps, meets
-from rvmon.timed.zones.zone_unions import Constraint, has_paths
+from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
 
 
-class NestedReachability(Steps):
-    """Reach a formula with `E<>` or `A[]` inside; sites are discrete states, links are moves."""
-
-    def __init__(self, network: Network, formula: Expression, meter: Meter) -> None:
-        super().__init__(network, formula, bisimilar=True)
-        self._formula = formula
-        self._meter = meter
-        self._satisfaction = Satisfaction(self.space, meter)
-
-    def goal(self, site: State, zone: Zone) -> Constraint | None:
-        """A part of the zone where the formula holds."""
-        parts = self._satisfaction.of(self._formula, site)
-        if self._meter.stopped:
-            return None  # what the backward search has not met yet may decide otherwise
-        for part in parts:
-            constraint = constraint_of(part, self.dim)
-            if meets(zone, self.dim, constraint):
-                return constraint
-        return None
+def is_decidable(formula: Expression) -> bool:
+    """Whether a normalised formula is decided by going backwards, state by state."""
+    match formula:
+        case BinaryOperation(_, left, right):
+            return is_decidable(left) and is_decidable(right)
+        case PathFormula(PathOp.POSSIBLY | PathOp.INVARIANTLY, body, None):
+            return is_decidable(body)
+        case PathFormula():
+            return False
+        case _:
+            return not speaks_of_deadlock(formula)
 
 
 def alternatives(formula: Expression) -> list[list[Expression]]:

@@ -1,46 +1,25 @@
-"""Answers queries: each kind of query becomes the search that is sound for it."""
+"""Answers queries: each kind of query becomes the native search that is sound for it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log
 from typing import assert_never
 
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.model.expressions import Expression, PathFormula
-from rvmon.timed.model.guards import normal_form
+from rvmon.timed.model.guards import normal_form, with_deadlock
 from rvmon.timed.model.network import LeadsToFormula, Network, Query
 from rvmon.timed.model.operators import PathOp
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.paths import PathStep, mark_step
 from rvmon.timed.runs.run import Ending, Run
-from rvmon.timed.search.ctl import is_decidable
-from rvmon.timed.search.explore import explore, explore_best
-from rvmon.timed.search.liveness import Escape, Staying
-from rvmon.timed.search.meter import Meter, paused_collector
-from rvmon.timed.search.nested import NestedReachability, alternatives, lasting_part, together
+from rvmon.timed.search.lowered import Choose, Seek, Sought
+from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.native import seek
+from rvmon.timed.search.nested import alternatives, is_decidable, lasting_part, together
 from rvmon.timed.search.outcome import Outcome, Policy
-from rvmon.timed.search.problem import UNLIMITED, Budget, Found, Node, Watch
-from rvmon.timed.search.reach import DeadlockReachability, Reachability
-from rvmon.timed.search.respond import BoundedResponse, UnboundedResponse
-from rvmon.timed.search.witness import (
-    bounded_path,
-    escape_path,
-    make_run,
-    plain_path,
-    state_of,
-)
-from rvmon.timed.zones.dbm import Zone, cut, zero
+from rvmon.timed.search.problem import UNLIMITED, Budget, Watch
 from rvmon.timed.zones.deadlock import check_start
-from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.stay import Inside
-from rvmon.timed.zones.symbolic import Steps, lowest
-from rvmon.timed.zones.zone_unions import (
-    Constraint,
-    constraint_maker,
-    has_paths,
-    speaks_of_deadlock,
-)
+from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +55,7 @@ def verify(
     asked = query_on(network, query) if isinstance(query, str) else query
     check_start(network)
     question = _Question(network, Meter(budget, watch), policy)
-    with paused_collector():
-        shows, run, chosen = _search(question, asked)
+    shows, run, chosen = _search(question, asked)
     meter = question.meter
     holds = None if run is None and meter.stopped else (run is not None) == shows
     remark = f"not decided: {meter.stopped}" if holds is None else _remark(run)
@@ -146,6 +124,8 @@ def _refuse_deadlock(query: Query, *parts: Expression) -> None:
 
 # Reaching.
 
+_CHOICES = {Policy.FASTEST: Choose.FASTEST, Policy.LIKELIEST: Choose.LIKELY}
+
 
 def _reach(
     question: _Question, formula: Expression, within: int | None
@@ -155,70 +135,28 @@ def _reach(
     Returns:
         The run and how it was chosen; twice `None` if there is none.
     """
-    network, meter = question.network, question.meter
-    found = explore(Reachability(network, formula, within=within), meter)
-    if found.node is None or found.constraint is None:
+    network, meter, policy = question.network, question.meter, question.policy
+    run = seek(network, Sought(Seek.GOAL, formula, bound=within), meter).run
+    if run is None:
         return None, None
-    best = None
-    if question.policy is not Policy.SHORTEST:
-        best = _best(question, formula, within)
-    if best is None or best.node is None or best.constraint is None:
-        return _run_to(network, found.node, found.constraint), Policy.SHORTEST
-    return _run_to(network, best.node, best.constraint), question.policy
-
-
-def _best(question: _Question, formula: Expression, within: int | None) -> Found[State, Move]:
-    """The end of the run that is fastest or likeliest."""
-    fastest = question.policy is Policy.FASTEST
-    problem = Reachability(question.network, formula, within=within, timed=fastest)
-    if not fastest:
-        return explore_best(
-            problem, _unlikeliness, lambda before, _zone, _piece: before, question.meter
-        )
-    timer, dim = problem.timer, problem.dim
-    return explore_best(
-        problem,
-        lambda _before, _move, zone: lowest(zone, dim, timer),
-        lambda _before, zone, constraint: _earliest_in(zone, dim, constraint, timer),
-        question.meter,
-    )
-
-
-def _run_to(network: Network, node: Node[State, Move], constraint: Constraint) -> Run:
-    steps = plain_path(node)
-    if constraint:
-        steps.append(mark_step(node.site, constraint))
-    return make_run(network, node.path()[0].site, steps)
-
-
-def _earliest_in(zone: Zone, dim: int, constraint: Constraint, timer: int) -> float:
-    inside = zone[:]
-    cut(inside, dim, constraint)
-    return lowest(inside, dim, timer)
-
-
-def _unlikeliness(before: float, move: Move | None, _zone: Zone) -> float:
-    if move is None:
-        return before
-    return before - sum(log(edge.edge.weight) for edge in move.edges)
+    if policy is not Policy.SHORTEST:
+        sought = Sought(Seek.GOAL, formula, bound=within, choose=_CHOICES[policy])
+        best = seek(network, sought, meter).run
+        if best is not None:
+            return best, policy
+    return run, Policy.SHORTEST
 
 
 def _reach_deadlock(question: _Question, formula: Expression, within: int | None) -> Run | None:
-    problem = DeadlockReachability(question.network, formula, within=within)
-    found = explore(problem, question.meter)
-    if found.node is None or found.constraint is None:
-        return None
-    last = found.node.site
-    steps = [*plain_path(found.node), mark_step(last, found.constraint)]
-    start, ending = found.node.path()[0].site, problem.ending(last, found.constraint)
-    return make_run(question.network, start, steps, ending)
+    alive, dead = (with_deadlock(formula, value=value) for value in (False, True))
+    sought = Sought(Seek.DEADLOCK, alive, dead, bound=within)
+    return seek(question.network, sought, question.meter).run
 
 
 def _reach_nested(
     question: _Question, query: Query, formula: Expression, bound: int | None
 ) -> Run | None:
     """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
-    network, meter = question.network, question.meter
     if bound is not None or speaks_of_deadlock(formula):
         _refuse_nests(query, formula)
     chosen = alternatives(formula)
@@ -228,16 +166,13 @@ def _reach_nested(
     for parts in chosen:
         lasting = lasting_part(parts)
         if lasting is None:
-            problem = NestedReachability(network, together(parts), meter)
-            found = explore(problem, meter)
-            run = None
-            if found.node is not None and found.constraint is not None:
-                run = _run_to(network, found.node, found.constraint)
+            sought = Sought(Seek.NESTED, nested=together(parts))
+            run = seek(question.network, sought, question.meter).run
         else:
             first = together(part for part in parts if part is not lasting)
             away = normal_form(lasting.body, positive=False)
             run = _unanswered(question, first, away, lasting.bound)
-        if run is not None or meter.stopped:
+        if run is not None or question.meter.stopped:
             return run
     return None
 
@@ -247,70 +182,29 @@ def _reach_nested(
 
 def _avoidance(question: _Question, formula: Expression, bound: int | None) -> Run | None:
     """A run that stays inside a normalised formula for ever, or until the bound is over."""
-    network, meter = question.network, question.meter
-    if bound is not None:
-        late = BoundedResponse(network, None, normal_form(formula, positive=False), bound)
-        run = _late_run(network, late, meter)
-        if run is not None or meter.stopped:
-            return run
-    for proper_only in (True, False):
-        steps = Steps(network, formula)
-        inside = Inside(steps.space, constraint_maker(formula))
-        staying = Staying(inside, meter, proper_only=proper_only)
-        state = steps.space.initial()
-        assert state is not None  # noqa: S101 - the network can start
-        for stand in inside.enter(state, zero(steps.dim)):
-            escape = staying.find(stand)
-            if escape is not None:
-                return _escape_run(network, state, escape, staying, [], steps.dim)
-        if meter.stopped or not staying.met_improper:
-            return None
-    return None
+    return _staying(question, None, formula, bound)
 
 
 def _unanswered(
     question: _Question, left: Expression, right: Expression, bound: int | None
 ) -> Run | None:
     """A run on which `left` holds, but `right` not from there on, or not within the bound."""
+    inside = normal_form(normal_form(right), positive=False)
+    return _staying(question, normal_form(left), inside, bound)
+
+
+def _staying(
+    question: _Question, first: Expression | None, inside: Expression, bound: int | None
+) -> Run | None:
+    """A run that stays inside, from the start or from where `first` holds."""
     network, meter = question.network, question.meter
-    left, right = normal_form(left), normal_form(right)
     if bound is not None:
-        run = _late_run(network, BoundedResponse(network, left, right, bound), meter)
+        late = Seek.LATE if first is None else Seek.LATE_AFTER
+        run = seek(network, Sought(late, first, inside, bound=bound), meter).run
         if run is not None or meter.stopped:
             return run
-    for proper_only in (True, False):
-        problem = UnboundedResponse(network, left, right, meter, proper_only=proper_only)
-        found = explore(problem, meter)
-        if found.node is not None and found.constraint is not None and problem.escape is not None:
-            stem = [*plain_path(found.node), mark_step(found.node.site, found.constraint)]
-            start = found.node.path()[0].site
-            return _escape_run(network, start, problem.escape, problem.staying, stem, problem.dim)
-        if meter.stopped or not problem.staying.met_improper:
-            return None
-    return None
-
-
-def _late_run(network: Network, problem: BoundedResponse, meter: Meter) -> Run | None:
-    found = explore(problem, meter)
-    if found.node is None or found.constraint is None:
-        return None
-    steps = bounded_path(found.node, problem.timer)
-    last = found.node.site
-    steps.append(mark_step(state_of(last), found.constraint))
-    return make_run(network, state_of(found.node.path()[0].site), steps)
-
-
-def _escape_run(
-    network: Network,
-    start: State,
-    escape: Escape,
-    staying: Staying,
-    stem: list[PathStep],
-    dim: int,
-) -> Run:
-    steps = escape_path(escape, staying, stem, dim)
-    loop = escape.loop
-    if loop is not None:
-        # Crossings and the stem stand before the loop's first move too.
-        loop = len(escape_path(escape.until(loop), staying, stem, dim))
-    return make_run(network, start, steps, escape.ending, loop)
+    sought = Sought(Seek.STAY if first is None else Seek.STAY_AFTER, first, inside)
+    answer = seek(network, sought, meter, proper_only=True)
+    if answer.run is None and not meter.stopped and answer.improper:
+        answer = seek(network, sought, meter)
+    return answer.run

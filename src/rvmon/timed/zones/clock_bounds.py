@@ -43,11 +43,6 @@ class ClockBounds:
             tuple(map(max, self.upper, *(other.upper for other in others))),
         )
 
-    def levelled(self) -> ClockBounds:
-        """The larger of the lower and the upper bound in both places."""
-        both = tuple(map(max, self.lower, self.upper))
-        return ClockBounds(both, both)
-
 
 def no_bounds(clocks: int) -> ClockBounds:
     """What holds where no clock is compared with anything."""

@@ -16,7 +16,7 @@ from math import ceil, inf
 
 Zone = list[float]
 
-STRICT = 2.0**-20
+STRICT = 2.0**-12
 """What a strict bound lacks; sums of hundreds of bounds below `MAX_TIME` stay exact."""
 
 MOST_TIDY = 1 << 16
@@ -136,11 +136,6 @@ class _Tidy(dict[float, float]):
 
 
 _TIDY = _Tidy()
-
-
-def is_within(zone: Zone, other: Zone) -> bool:
-    """Whether a zone is a subset of another."""
-    return all(mine <= theirs for mine, theirs in zip(zone, other, strict=True))
 
 
 CoverTest = tuple[tuple[int, float], ...]

@@ -6,7 +6,6 @@ from rvmon.diagnostics import Label
 from rvmon.timed.model.expressions import TRUE
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.zones.abstraction import extrapolate, largest
 from rvmon.timed.zones.dbm import Zone, cut, normalise, zero
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.federation import before, subtract_all, universe
@@ -57,11 +56,6 @@ def _before_move(state: State, move: Move, dim: int) -> Zone | None:
 def is_time_bounded(state: State) -> bool:
     """Whether time cannot pass for ever in a state."""
     return not state.delays or bool(state.invariant)
-
-
-def blurred(state: State, zone: Zone, dim: int) -> Zone:
-    """A zone coarsened up to bisimulation, as the bounds of its state allow."""
-    return extrapolate(zone, dim, largest(state.vector.bounds))
 
 
 def check_start(network: Network) -> None:

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from math import inf
 
 from rvmon.timed.zones.dbm import STRICT, Zone, constrain, normalise
-from rvmon.timed.zones.zone_unions import Constraint
 
 
 def universe(dim: int) -> Zone:
@@ -60,13 +59,3 @@ def subtract_all(zones: Iterable[Zone], others: Sequence[Zone], dim: int) -> lis
         if not left:
             break
     return left
-
-
-def constraint_of(zone: Zone, dim: int) -> Constraint:
-    """A zone as a conjunction of bounds."""
-    return tuple(
-        (x, y, zone[x * dim + y])
-        for x in range(dim)
-        for y in range(dim)
-        if x != y and zone[x * dim + y] < inf
-    )

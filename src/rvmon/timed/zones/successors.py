@@ -29,8 +29,6 @@ class Space:
         observers: number of clocks of queries, counted behind those of the network.
         uppers: upper bounds of those, as `zones.cover_test` takes them.
         lowers: their lower bounds, likewise.
-        bisimilar: whether a state may stand for another only if both can do the same, not if it
-            can do more.
     """
 
     def __init__(
@@ -40,14 +38,11 @@ class Space:
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
         lowers: Sequence[tuple[int, float]] = (),
-        *,
-        bisimilar: bool = False,
     ) -> None:
         self.network = network
         self.dim = 1 + len(network.clocks) + observers
         self._extra = extra or no_bounds(len(network.clocks))
         self._uppers, self._lowers = tuple(uppers), tuple(lowers)
-        self._bisimilar = bisimilar
         self._vectors: dict[tuple[int, ...], Vector] = {}
         self._states: dict[tuple[tuple[int, ...], tuple[int, ...]], State] = {}
         self._edges: list[list[list[CompiledEdge]]] = []
@@ -126,8 +121,6 @@ class Space:
         leaving = [self._edges[i][place] for i, place in enumerate(locations)]
         invariants = [self._invariants[i][place] for i, place in enumerate(locations)]
         bounds = self._extra.joined([self._bounds[i][place] for i, place in enumerate(locations)])
-        if self._bisimilar:
-            bounds = bounds.levelled()
         candidates = list(self._candidates(locations, leaving))
         broadcasts = list(self._broadcasts(leaving))
         urgent = [c for c in candidates if self._is_urgent(c.edges[0])] + [

@@ -21,7 +21,6 @@ class Steps:
         observers: number of further clocks.
         uppers: upper bounds of those, as `zones.cover_test` takes them.
         lowers: their lower bounds, likewise.
-        bisimilar: as `Space` takes it.
     """
 
     def __init__(
@@ -31,11 +30,9 @@ class Steps:
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
         lowers: Sequence[tuple[int, float]] = (),
-        *,
-        bisimilar: bool = False,
     ) -> None:
         bounds = formula_bounds(formula, network)
-        self.space = Space(network, bounds, observers, uppers, lowers, bisimilar=bisimilar)
+        self.space = Space(network, bounds, observers, uppers, lowers)
         self.dim = self.space.dim
         # Without strict bounds no zone ever needs to be tidied.
         self._strict = has_strict_bounds(network, formula)
@@ -89,8 +86,3 @@ def settle_in(state: State, zone: Zone, dim: int) -> bool:
 def meets(zone: Zone, dim: int, constraint: Constraint) -> bool:
     """Whether some valuation of a zone lies in a piece."""
     return not constraint or cut(zone[:], dim, constraint)
-
-
-def lowest(zone: Zone, dim: int, clock: int) -> float:
-    """The smallest value of a clock in a zone, or the number that it stays above."""
-    return -zone[clock * dim]

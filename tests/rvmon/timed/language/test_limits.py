@@ -50,7 +50,7 @@ A = "automaton A { location a start a } "
         ),
         (A + "query q: E<> A.a query q: A[] A.a", "TA003", "two things named `q`"),
         ("signal s = A.a signal s = A.a " + A, "TA003", "two things named `s`"),
-        (A + "query: E<>[<=99999999] A.a", "TA007", "a bound of 99999999"),
+        (A + "query: E<>[<=2147483647] A.a", "TA007", "a bound of 2147483647"),
         (A + "query: A.a -->[<=-1] A.a", "TA007", "a bound of -1"),
     ],
 )  # fmt: skip

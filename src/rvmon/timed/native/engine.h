@@ -1,0 +1,237 @@
+/* A search: what it holds, and its memory. Compiled once for bounds of 32 bits, once for 64. */
+#ifndef RVMON_ZONES_ENGINE_H
+#define RVMON_ZONES_ENGINE_H
+
+#include "zones.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A bound: 2c + 1 for `<= c`, 2c for `< c`, so that sums need no care for strictness. Entries of
+ * zones that are kept stay below `safe`, so that no path through the entries of some zones and
+ * guards, each clock once, gets near UNBOUNDED. */
+#ifdef WIDE
+typedef int64_t bound;
+#define UNBOUNDED (((bound)1 << 60) | 1)
+#define FAR ((bound)1 << 59)
+#else
+typedef int32_t bound;
+#define UNBOUNDED (((bound)1 << 30) | 1)
+#define FAR ((bound)1 << 29)
+#endif
+#define AT_ONCE 1 /* <= 0 */
+#define NO_LIMIT (-1)
+#define NONE UINT32_MAX
+#define ZONES_IN_CHUNK 256
+
+/* A symbolic state: the one before, its discrete state, the next of that, its zone, and which step led
+ * here: the number of a move, or of what else a search does, with the kind in the upper bits. */
+typedef struct {
+    uint32_t parent, state, next, zone, link;
+} node;
+
+#define LINK_KIND 0xc0000000U
+#define LINK_CROSSING 0x40000000U
+#define LINK_MARK 0x80000000U
+
+typedef struct {
+    double cost;
+    uint32_t order, node, goal;
+} entry;
+
+typedef struct {
+    uint32_t count, room;
+    bound *zones;
+} federation;
+
+typedef struct {
+    uint8_t shift;
+    uint32_t word, mask;
+    int32_t low;
+} field;
+
+/* A move into a state: where from, the next one into it, its resets in a pool; its guard stands in a
+ * federation at the same place. */
+typedef struct {
+    uint32_t from, next, resets;
+} arrow;
+
+/* A frame of a search in depth: a node, the link by which it was entered, its next successor, the end
+ * of them. */
+typedef struct {
+    uint32_t node, link, next, end;
+} frame;
+
+typedef struct {
+    uint32_t node, link;
+} successor;
+
+/* Where moves start and where the one at hand leads. */
+typedef struct {
+    int32_t *places, *values, *target, *changed;
+    bound *source, *zone;
+    int32_t *resets; /* clock, value */
+    int32_t reset_count;
+    int32_t *chosen, *group, *first, *pick;
+    uint8_t *committed;
+    bool delays;
+    uint32_t ordinal;
+} walk;
+
+typedef struct {
+    const caller *from;
+    const int32_t *plan, *variables, *automata, *locations, *edges, *atoms, *updates, *code;
+    const double *costs;
+    int32_t kind, policy, automaton_count, variable_count, edge_count, inside_count, goal_count;
+    int32_t dim, entries, timer;
+    size_t zone_bytes;
+    bound safe, most_time;
+    uint32_t words;
+    search_state state;
+    bool failed;
+    uint64_t bytes, peak, work, visited, stored;
+    field *fields;
+    /* discrete states */
+    uint32_t *bits, *heads, *table, table_size, state_count, heads_room, delays_room,
+        bits_room;
+    uint8_t *delays;
+    uint32_t *packed;
+    /* symbolic states */
+    node *nodes;
+    uint32_t node_count, node_room;
+    bound **chunks;
+    uint32_t chunk_count, chunk_room, zone_count, freed;
+    uint32_t *queue, queue_head, queue_end, queue_room;
+    entry *heap;
+    uint32_t heap_count, heap_room, order;
+    double price;
+    /* limits in the locations at hand */
+    bound *lower, *upper;
+    int32_t *lowers, *uppers, lower_count, upper_count;
+    int32_t *test_entries, *tightest;
+    bound *test_least, *tightest_bound, *top, *spare, *inside, *copy;
+    walk out, look; /* the second looks for deadlocks while the first goes over moves */
+    federation alive, dead, rest;
+    uint32_t from_node, link, found;
+    int32_t *step_edges, step_edge_count, *failed_edges; /* of a move that failed, or is found again */
+    uint32_t wanted;
+    numbers crossings, last_crossings; /* at hand; of the end that was found */
+    numbers path;
+    federation parts;
+    int32_t ending, loop;
+    uint32_t *triggers, trigger_count, trigger_room;
+    /* staying inside */
+    int32_t phase; /* 0: before; 1: inside */
+    uint8_t *colours, *been;
+    bound *between;
+    uint32_t colour_room, *exact, exact_size, exact_count;
+    successor *successors;
+    uint32_t successor_count, successor_room;
+    frame *frames;
+    uint32_t frame_count, frame_room;
+    bool improper;
+    uint32_t stem, resume, resume_end;
+    /* nested formulas */
+    arrow *arrows;
+    uint32_t arrow_count, arrow_room, *into, into_room;
+    int32_t *pool;
+    uint32_t pool_count, pool_room;
+    federation guards;
+    federation **reaching;
+    uint32_t *reaching_room;
+    federation pending;
+    uint32_t *whose, whose_count, whose_room;
+} engine;
+
+/* --- memory ------------------------------------------------------------------------------------ */
+
+/* More room for rows, at least so many; if there is none the old ones stay, and the search ends. */
+static void *enlarge(engine *h, void *old, uint32_t *room, uint64_t wanted, size_t each)
+{
+    uint64_t more = (uint64_t)*room + *room / 2 + 16;
+    void *made;
+    if (wanted <= *room) {
+        return old;
+    }
+    more = (more < wanted) ? wanted : more;
+    if ((more >= NONE) || (more > SIZE_MAX / 4 / each)
+        || ((more - *room) * each > h->from->most_bytes - h->bytes)) {
+        h->state = SEARCH_NO_MEMORY;
+        return old;
+    }
+    made = realloc(old, (size_t)more * each);
+    if (made == NULL) {
+        h->state = SEARCH_NO_MEMORY;
+        return old;
+    }
+    h->bytes += (more - *room) * each;
+    if (h->bytes > h->peak) {
+        h->peak = h->bytes;
+    }
+    *room = (uint32_t)more;
+    return made;
+}
+
+#define ROOM(h, rows, room, wanted)                                                              \
+    (((uint64_t)(wanted) <= (room))                                                              \
+     || ((rows) = enlarge((h), (rows), &(room), (wanted), sizeof *(rows)),                       \
+         (uint64_t)(wanted) <= (room)))
+
+/* A block of zeros for as long as the search lasts. */
+static void *block(engine *h, size_t count, size_t each)
+{
+    const uint64_t size = ((uint64_t)count + 1) * each;
+    void *made;
+    if ((size > SIZE_MAX / 4) || (size > h->from->most_bytes - h->bytes)) {
+        h->state = SEARCH_NO_MEMORY;
+        return NULL;
+    }
+    made = calloc((size_t)count + 1, each);
+    if (made == NULL) {
+        h->state = SEARCH_NO_MEMORY;
+        return NULL;
+    }
+    h->bytes += size;
+    h->peak = (h->bytes > h->peak) ? h->bytes : h->peak;
+    return made;
+}
+
+static bool put(engine *h, numbers *to, int32_t number)
+{
+    if (!ROOM(h, to->at, to->room, (uint64_t)to->count + 1)) {
+        return false;
+    }
+    to->at[to->count++] = number;
+    return true;
+}
+
+/* Count work, and ask now and then whether to go on. */
+static void labour(engine *h)
+{
+    h->work += (uint64_t)h->entries + 16;
+    if (h->work >= (UINT64_C(1) << 18)) {
+        h->work = 0;
+        if (!h->from->goes_on(h->from->context, h->visited,
+                              (uint64_t)(h->queue_end - h->queue_head) + h->heap_count
+                                  + h->frame_count)
+            && (h->state == SEARCH_RUNS)) {
+            h->state = SEARCH_STOPPED;
+        }
+    }
+}
+
+static void visit(engine *h)
+{
+    h->visited++;
+    if ((h->visited > h->from->most_states) && (h->state == SEARCH_RUNS)) {
+        h->state = SEARCH_STOPPED;
+    }
+    labour(h);
+}
+
+static bool runs(const engine *h)
+{
+    return h->state == SEARCH_RUNS;
+}
+
+#endif

@@ -1,0 +1,221 @@
+/* The network as runs see it that never leave a formula.
+ *
+ * A formula with clocks holds on a union of convex pieces in each discrete state; a run stays inside
+ * one piece while it waits there, and may cross to another while time passes. */
+#ifndef RVMON_ZONES_INSIDE_H
+#define RVMON_ZONES_INSIDE_H
+
+#include "reach.h"
+
+static const int32_t *piece_at(const engine *h, int k)
+{
+    return plan_rows(h->plan, AT_INSIDE) + (ptrdiff_t)k * ROW_SIZE;
+}
+
+static int piece_of(const engine *h, uint32_t n)
+{
+    return (int)mark_of(h, h->nodes[n].state) - 1;
+}
+
+/* Whether a discrete state has a piece: those whose condition holds, or one that is everything. */
+static bool has_piece(engine *h, int k, const int32_t *places, const int32_t *values)
+{
+    int i;
+    for (i = 0; i < h->inside_count; i++) {
+        if ((piece_at(h, i)[ROW_ATOMS] == 0)
+            && holds(h, piece_at(h, i)[ROW_CONDITION], places, values)) {
+            return (i == k) && !h->failed;
+        }
+    }
+    return holds(h, piece_at(h, k)[ROW_CONDITION], places, values) && !h->failed;
+}
+
+/* A piece as it is, or with the instants at which time leaves it, or behind which it enters it. */
+enum { AS_IS, UNTIL, SINCE };
+
+static bool cut_piece(engine *h, bound *z, int k, int how, const int32_t *places,
+                      const int32_t *values)
+{
+    const int32_t *piece = piece_at(h, k);
+    int32_t i;
+    for (i = 0; i < piece[ROW_ATOMS]; i++) {
+        int x;
+        int y;
+        bound b;
+        if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + i), places, values,
+                     &x, &y, &b)) {
+            return false;
+        }
+        if ((how == UNTIL) ? (x == 0) : ((how == SINCE) && (y == 0))) {
+            b |= 1;
+        }
+        if (!constrain(z, h->dim, x, y, b)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* What time makes of a zone that leaves piece k for piece m: with the last instant of the one, or
+ * with the first of the other, either of which may be missing. */
+static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since,
+                  const int32_t *places, const int32_t *values)
+{
+    copy_zone(h, to, z);
+    delay(to, h->dim);
+    if (!cut_invariant(h, to, places, values)
+        || !cut_piece(h, to, k, since ? AS_IS : UNTIL, places, values)
+        || !cut_piece(h, to, m, since ? SINCE : AS_IS, places, values)) {
+        return false;
+    }
+    delay(to, h->dim);
+    return cut_invariant(h, to, places, values) && cut_piece(h, to, m, AS_IS, places, values);
+}
+
+/* --- the search for late answers keeps what no other stands for ----------------------------------- */
+
+/* Keep a state whose time counts; found if the bound is over there, or just met while time goes on. */
+static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool delays,
+                      const int32_t *places, const int32_t *values)
+{
+    const bound due = 2 * (bound)h->plan[HEAD_BOUND];
+    const uint32_t n = keep(h, state, NONE, z, places);
+    bool late;
+    if (n == NONE) {
+        return;
+    }
+    visit(h);
+    copy_zone(h, h->copy, z);
+    late = cut_piece(h, h->copy, k, AS_IS, places, values)
+           && constrain(h->copy, h->dim, h->timer, 0, -due);
+    if (!late && (piece_at(h, k)[ROW_ATOMS] > 0) && delays) {
+        const int bounds = invariant_of(h, places, values);
+        int i;
+        copy_zone(h, h->copy, z);
+        for (i = 0, late = bounds >= 0; late && (i < bounds); i++) {
+            late = constrain(h->copy, h->dim, 0, h->tightest[i], h->tightest_bound[i] & ~(bound)1);
+        }
+        late = late && cut_piece(h, h->copy, k, AS_IS, places, values)
+               && constrain(h->copy, h->dim, h->timer, 0, 1 - due);
+    }
+    if (late && (h->found == NONE) && runs(h)) {
+        h->parts.count = 0;
+        if (push_zone(h, &h->parts, h->copy)) {
+            h->found = n;
+            h->state = SEARCH_FOUND;
+        }
+        return;
+    }
+    (void)wait_for(h, n);
+}
+
+/* --- the search for ways to stay distinguishes exactly, since a loop of larger zones need not be a
+ * loop of runs ------------------------------------------------------------------------------------- */
+
+static uint32_t hash_node(const engine *h, uint32_t state, const bound *z)
+{
+    return hash_of(z, h->zone_bytes / 4) ^ state * 0x9e3779b1U;
+}
+
+static bool widen_exact(engine *h)
+{
+    uint32_t size = 0;
+    uint32_t *made = wider_table(h, h->exact_size, &size);
+    uint32_t i;
+    if (made == NULL) {
+        return false;
+    }
+    for (i = 0; i < h->exact_size; i++) {
+        const uint32_t n = h->exact[i];
+        if (n != NONE) {
+            uint32_t at = hash_node(h, h->nodes[n].state, zone_of(h, n)) & (size - 1);
+            while (made[at] != NONE) {
+                at = (at + 1) & (size - 1);
+            }
+            made[at] = n;
+        }
+    }
+    free(h->exact);
+    h->bytes -= (uint64_t)h->exact_size * sizeof *made;
+    h->exact = made;
+    h->exact_size = size;
+    return true;
+}
+
+/* This symbolic state, new or met before, as a successor of the one at hand. */
+static void succeed(engine *h, uint32_t state, const bound *z)
+{
+    const size_t bytes = h->zone_bytes;
+    uint32_t at;
+    uint32_t n;
+    if ((2 * ((uint64_t)h->exact_count + 1) > h->exact_size) && !widen_exact(h)) {
+        return;
+    }
+    at = hash_node(h, state, z) & (h->exact_size - 1);
+    while (((n = h->exact[at]) != NONE)
+           && ((h->nodes[n].state != state) || (memcmp(zone_of(h, n), z, bytes) != 0))) {
+        at = (at + 1) & (h->exact_size - 1);
+    }
+    if (n == NONE) {
+        const uint32_t had = h->colour_room;
+        n = new_node(h, state, z);
+        if ((n == NONE) || !ROOM(h, h->colours, h->colour_room, (uint64_t)n + 1)) {
+            return;
+        }
+        (void)memset(h->colours + had, 0, h->colour_room - had);
+        h->exact[at] = n;
+        h->exact_count++;
+    }
+    if (ROOM(h, h->successors, h->successor_room, (uint64_t)h->successor_count + 1)) {
+        h->successors[h->successor_count++] = (successor){n, h->link};
+    }
+}
+
+/* A zone just reached, in each piece with the delays that stay in it. */
+static void enter(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+{
+    const bool delays = may_delay(h, places, values);
+    const bool counts = (h->kind == SEEK_LATE) || (h->kind == SEEK_LATE_AFTER);
+    bound *in = h->inside;
+    int k;
+    for (k = 0; (k < h->inside_count) && runs(h) && !h->failed; k++) {
+        uint32_t *at;
+        if (!has_piece(h, k, places, values)) {
+            continue;
+        }
+        copy_zone(h, in, z);
+        if (piece_at(h, k)[ROW_ATOMS] == 0) {
+            if (!settle(h, in, places, values, delays)) {
+                continue;
+            }
+        } else {
+            if (!cut_piece(h, in, k, AS_IS, places, values)
+                || !cut_invariant(h, in, places, values)) {
+                continue;
+            }
+            if (delays) { /* a piece is convex: who starts and ends a wait in it never left it */
+                delay(in, h->dim);
+                if (!cut_invariant(h, in, places, values)
+                    || !cut_piece(h, in, k, AS_IS, places, values)) {
+                    continue;
+                }
+            }
+        }
+        if (!counts) {
+            find_limits(h, places);
+            blur(h, in);
+        }
+        pack(h, places, values, 1 + (uint32_t)k, h->packed);
+        at = find_state(h, h->packed);
+        if ((at == NULL) || ((*at == NONE) && !add_state(h, at, delays))) {
+            return;
+        }
+        if (counts) {
+            keep_late(h, *at, in, k, delays, places, values);
+        } else {
+            succeed(h, *at, in);
+        }
+    }
+}
+
+#endif

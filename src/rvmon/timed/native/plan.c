@@ -1,0 +1,339 @@
+/* Checks a plan before anything runs: what it refers to is there, and programs keep their stack. */
+#include "plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const uint8_t plan_widths[SECTIONS] = {
+    4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, UPDATE_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
+    LIMIT_SIZE, 3, ROW_SIZE,
+};
+
+/* Operands of each op, and how it changes the depth of the stack where it goes on behind itself. */
+static const struct {
+    int8_t operands;
+    int8_t needs;
+    int8_t change;
+} shapes[OPS] = {
+    [OP_END] = {0, 1, 0},     [OP_CONST] = {1, 0, 1},  [OP_VARIABLE] = {1, 0, 1},
+    [OP_INDEX] = {2, 1, 0},   [OP_ROW] = {1, 2, -1},   [OP_ELEMENT] = {2, 1, 0},
+    [OP_LOOKUP] = {2, 1, 0},  [OP_PLACE] = {2, 0, 1},  [OP_NOT] = {0, 1, 0},
+    [OP_NEGATE] = {0, 1, 0},  [OP_TRUTH] = {0, 1, 0},  [OP_AND] = {1, 1, -1},
+    [OP_OR] = {1, 1, -1},     [OP_IMPLY] = {1, 1, -1}, [OP_UNLESS] = {1, 1, -1},
+    [OP_GO] = {1, 1, 0},      [OP_LT] = {0, 2, -1},    [OP_LE] = {0, 2, -1},
+    [OP_EQ] = {0, 2, -1},     [OP_NE] = {0, 2, -1},    [OP_GE] = {0, 2, -1},
+    [OP_GT] = {0, 2, -1},     [OP_ADD] = {0, 2, -1},   [OP_SUB] = {0, 2, -1},
+    [OP_MUL] = {0, 2, -1},    [OP_DIV] = {0, 2, -1},   [OP_MOD] = {0, 2, -1},
+};
+
+enum { UNSEEN = -1, NO_WAY = -2 };
+
+typedef struct {
+    const int32_t *plan;
+    int16_t *depth;   /* of the stack, where jumps lead */
+    uint8_t *starts;  /* where programs begin */
+} checker;
+
+static bool within(int64_t first, int64_t count, int64_t all)
+{
+    return (first >= 0) && (count >= 0) && (first <= all) && (count <= all - first);
+}
+
+static int32_t rows(const checker *c, int section)
+{
+    return plan_count(c->plan, section);
+}
+
+static bool is_program(const checker *c, int32_t at)
+{
+    return (at >= 0) && (at < rows(c, AT_CODE)) && (c->starts[at] != 0);
+}
+
+static bool is_program_or_none(const checker *c, int32_t at)
+{
+    return (at == -1) || is_program(c, at);
+}
+
+static bool sections_fit(const int32_t *plan, size_t count)
+{
+    int64_t at = HEAD_SECTIONS + 2 * SECTIONS;
+    int s;
+    if ((count < (size_t)at) || (count > INT32_MAX) || (plan[HEAD_MAGIC] != PLAN_MAGIC)) {
+        return false;
+    }
+    for (s = 0; s < SECTIONS; s++) {
+        if ((plan[HEAD_SECTIONS + 2 * s] != at) || (plan_count(plan, s) < 0)) {
+            return false;
+        }
+        at += (int64_t)plan_count(plan, s) * plan_widths[s];
+        if (at > (int64_t)count) {
+            return false;
+        }
+    }
+    return at == (int64_t)count;
+}
+
+static bool operands_fit(const checker *c, int32_t op, const int32_t *operand)
+{
+    switch (op) {
+    case OP_VARIABLE:
+        return within(operand[0], 1, rows(c, AT_VARIABLES));
+    case OP_INDEX:
+        return (operand[1] >= 0) && ((int64_t)operand[0] + operand[1] <= INT32_MAX);
+    case OP_ROW:
+        return operand[0] >= 0;
+    case OP_ELEMENT:
+        return within(operand[0], operand[1], rows(c, AT_VARIABLES));
+    case OP_LOOKUP:
+        return within(operand[0], operand[1], rows(c, AT_TABLE));
+    case OP_PLACE:
+        return within(operand[0], 1, rows(c, AT_AUTOMATA))
+               && within(operand[1], 1, plan_rows(c->plan, AT_AUTOMATA)[3 * operand[0] + 1]);
+    default:
+        return true;
+    }
+}
+
+/* A jump leads forwards, to one depth of the stack. */
+static bool jumps(checker *c, int32_t from, int32_t to, int depth)
+{
+    if ((to <= from) || (to >= rows(c, AT_CODE))) {
+        return false;
+    }
+    if (c->depth[to] == UNSEEN) {
+        c->depth[to] = (int16_t)depth;
+    }
+    return c->depth[to] == depth;
+}
+
+/* All programs, one behind the other. */
+static bool programs_fit(checker *c)
+{
+    const int32_t *code = plan_rows(c->plan, AT_CODE);
+    const int32_t count = rows(c, AT_CODE);
+    int depth = 0;
+    bool begins = true;
+    int32_t at = 0;
+    while (at < count) {
+        const int32_t op = code[at];
+        int32_t i;
+        if (begins) {
+            if (c->depth[at] != UNSEEN) { /* a jump out of the program before */
+                return false;
+            }
+            c->starts[at] = 1;
+            depth = 0;
+            begins = false;
+        } else if (c->depth[at] != UNSEEN) {
+            if ((depth != NO_WAY) && (depth != c->depth[at])) {
+                return false;
+            }
+            depth = c->depth[at];
+        }
+        if ((op < 0) || (op >= OPS) || (depth < shapes[op].needs)
+            || !within(at, 1 + shapes[op].operands, count)
+            || !operands_fit(c, op, code + at + 1)) {
+            return false;
+        }
+        for (i = 1; i <= shapes[op].operands; i++) { /* no jump leads between these */
+            if (c->depth[at + i] != UNSEEN) {
+                return false;
+            }
+        }
+        if (op == OP_END) {
+            begins = true;
+            if (depth != 1) {
+                return false;
+            }
+        }
+        if ((op >= OP_AND) && (op <= OP_GO)
+            && !jumps(c, at + 1, code[at + 1], (op == OP_UNLESS) ? depth - 1 : depth)) {
+            return false;
+        }
+        depth = (op == OP_GO) ? NO_WAY : depth + shapes[op].change;
+        if (depth > STACK) {
+            return false;
+        }
+        at += 1 + shapes[op].operands;
+    }
+    return begins;
+}
+
+static bool limits_fit(const checker *c, int section)
+{
+    const int32_t *row = plan_rows(c->plan, section);
+    int32_t i;
+    for (i = 0; i < rows(c, section); i++, row += LIMIT_SIZE) {
+        const int32_t clocks = c->plan[HEAD_CLOCKS] + c->plan[HEAD_TIMER];
+        if ((row[LIMIT_CLOCK] < 1) || (row[LIMIT_CLOCK] > clocks) || (row[LIMIT_NUMBER] < 0)
+            || (row[LIMIT_NUMBER] == INT32_MAX)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool alternatives_fit(const checker *c, int section)
+{
+    const int32_t *row = plan_rows(c->plan, section);
+    int32_t i;
+    for (i = 0; i < rows(c, section); i++, row += ROW_SIZE) {
+        if (!is_program_or_none(c, row[ROW_CONDITION])
+            || !within(row[ROW_ATOM], row[ROW_ATOMS], rows(c, AT_ATOMS))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool atoms_fit(const checker *c)
+{
+    const int32_t *row = plan_rows(c->plan, AT_ATOMS);
+    int32_t i;
+    for (i = 0; i < rows(c, AT_ATOMS); i++, row += ATOM_SIZE) {
+        const int32_t clocks = c->plan[HEAD_CLOCKS] + c->plan[HEAD_TIMER];
+        if ((row[ATOM_CLOCK] < 1) || (row[ATOM_CLOCK] > clocks) || (row[ATOM_OP] < 0)
+            || (row[ATOM_OP] > 3) || !is_program_or_none(c, row[ATOM_CODE])
+            || ((row[ATOM_CODE] == -1) && (row[ATOM_NUMBER] < 0))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool updates_fit(const checker *c)
+{
+    const int32_t *row = plan_rows(c->plan, AT_UPDATES);
+    int32_t i;
+    for (i = 0; i < rows(c, AT_UPDATES); i++, row += UPDATE_SIZE) {
+        const bool fits = row[UPDATE_CLOCK]
+                              ? (row[UPDATE_FIRST] >= 1)
+                                    && (row[UPDATE_FIRST] <= c->plan[HEAD_CLOCKS])
+                              : within(row[UPDATE_FIRST], row[UPDATE_COUNT], rows(c, AT_VARIABLES))
+                                    && (row[UPDATE_COUNT] > 0);
+        if (!fits || !is_program_or_none(c, row[UPDATE_OFFSET])
+            || !is_program(c, row[UPDATE_VALUE])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool edges_fit(const checker *c, const int32_t *row, int32_t count, int32_t automaton)
+{
+    const int32_t places = plan_rows(c->plan, AT_AUTOMATA)[3 * automaton + 1];
+    int32_t i;
+    for (i = 0; i < count; i++, row += EDGE_SIZE) {
+        if ((row[EDGE_AUTOMATON] != automaton) || !within(row[EDGE_TARGET], 1, places)
+            || !is_program_or_none(c, row[EDGE_GUARD])
+            || !within(row[EDGE_ATOM], row[EDGE_ATOMS], rows(c, AT_ATOMS))
+            || !within(row[EDGE_UPDATE], row[EDGE_UPDATES], rows(c, AT_UPDATES))
+            || !is_program_or_none(c, row[EDGE_CHANNEL]) || (row[EDGE_FIRST] < 0)
+            || (row[EDGE_STOP] < row[EDGE_FIRST])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool places_fit(const checker *c)
+{
+    const int32_t *automaton = plan_rows(c->plan, AT_AUTOMATA);
+    int32_t a;
+    for (a = 0; a < rows(c, AT_AUTOMATA); a++, automaton += 3) {
+        const int32_t *row;
+        int32_t i;
+        int32_t k;
+        if (!within(automaton[0], automaton[1], rows(c, AT_LOCATIONS))
+            || !within(automaton[2], 1, automaton[1])) {
+            return false;
+        }
+        row = plan_rows(c->plan, AT_LOCATIONS) + (ptrdiff_t)automaton[0] * LOC_SIZE;
+        for (i = 0; i < automaton[1]; i++, row += LOC_SIZE) {
+            if ((row[LOC_KIND] < 0) || (row[LOC_KIND] > KIND_COMMITTED)
+                || !is_program_or_none(c, row[LOC_INVARIANT])
+                || !within(row[LOC_ATOM], row[LOC_ATOMS], rows(c, AT_ATOMS))
+                || !within(row[LOC_LIMIT], row[LOC_LIMITS], rows(c, AT_LIMITS))
+                || !within(row[LOC_EDGE], row[LOC_EDGES], rows(c, AT_EDGES))
+                || !edges_fit(c, plan_rows(c->plan, AT_EDGES) + (ptrdiff_t)row[LOC_EDGE] * EDGE_SIZE,
+                              row[LOC_EDGES], a)) {
+                return false;
+            }
+            for (k = 0; k < row[LOC_ATOMS]; k++) { /* invariants bound from above */
+                if (plan_rows(c->plan, AT_ATOMS)[ATOM_SIZE * (row[LOC_ATOM] + k) + ATOM_OP] > 1) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+/* Rows of the tree refer to rows before them, plain ones to alternatives. */
+static bool tree_fits(const checker *c)
+{
+    const int32_t *row = plan_rows(c->plan, AT_TREE);
+    int32_t i;
+    for (i = 0; i < rows(c, AT_TREE); i++, row += 3) {
+        const bool two = (row[0] == TREE_AND) || (row[0] == TREE_OR);
+        if ((row[0] < 0) || (row[0] >= TREE_KINDS)
+            || ((row[0] == TREE_PLAIN) ? !within(row[1], row[2], rows(c, AT_PIECES))
+                                       : !within(row[1], 1, i) || (two && !within(row[2], 1, i)))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool head_fits(const int32_t *plan)
+{
+    const int32_t kind = plan[HEAD_KIND];
+    const int32_t *variable = plan_rows(plan, AT_VARIABLES);
+    const bool late = (kind == SEEK_LATE) || (kind == SEEK_LATE_AFTER);
+    const bool plain = (kind == SEEK_GOAL);
+    int32_t i;
+    if ((kind < 0) || (kind >= SEEK_KINDS) || (plan[HEAD_POLICY] < 0)
+        || (plan[HEAD_POLICY] >= POLICIES) || ((plan[HEAD_POLICY] != POLICY_SHORTEST) && !plain)
+        || (plan[HEAD_CLOCKS] < 0) || (plan[HEAD_CLOCKS] > MOST_CLOCKS) || (plan[HEAD_TIMER] < 0)
+        || (plan[HEAD_TIMER] > 1) || (plan[HEAD_BOUND] < 0)
+        || (plan[HEAD_BOUND] == INT32_MAX) || (plan_count(plan, AT_AUTOMATA) < 1)
+        || ((late || (plan[HEAD_POLICY] == POLICY_FASTEST)) && (plan[HEAD_TIMER] == 0))
+        || (plan_count(plan, AT_TREE) > MOST_TREE_ROWS)
+        || (plan_count(plan, AT_INSIDE) > MOST_PIECES)
+        || ((kind == SEEK_NESTED) && (plan_count(plan, AT_TREE) == 0))) {
+        return false;
+    }
+    for (i = 0; i < plan_count(plan, AT_VARIABLES); i++, variable += 4) {
+        if ((variable[2] < variable[0]) || (variable[2] > variable[1])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool parts_fit(checker *c)
+{
+    return programs_fit(c) && limits_fit(c, AT_LIMITS) && limits_fit(c, AT_EXTRA) && atoms_fit(c)
+           && updates_fit(c) && alternatives_fit(c, AT_GOAL) && alternatives_fit(c, AT_INSIDE)
+           && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c);
+}
+
+plan_state plan_check(const int32_t *plan, size_t count)
+{
+    checker c = {plan, NULL, NULL};
+    plan_state state = PLAN_NO_MEMORY;
+    size_t size;
+    if (!sections_fit(plan, count) || !head_fits(plan)) {
+        return PLAN_DAMAGED;
+    }
+    size = (size_t)plan_count(plan, AT_CODE) + 1;
+    c.depth = malloc(size * sizeof *c.depth);
+    c.starts = calloc(size, 1);
+    if ((c.depth != NULL) && (c.starts != NULL)) {
+        (void)memset(c.depth, 0xff, size * sizeof *c.depth);
+        state = parts_fit(&c) ? PLAN_GOOD : PLAN_DAMAGED;
+    }
+    free(c.depth);
+    free(c.starts);
+    return state;
+}

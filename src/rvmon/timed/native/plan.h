@@ -1,0 +1,104 @@
+/* The plan of a search: one array of int32, made by `lowered.py`, checked by plan.c.
+ *
+ * A head of numbers, then for each section where it begins and how many rows it has, then the rows.
+ * Programs are bytecode for a stack of int64 and end with OP_END; a reference to one is its place in
+ * the section of code, or -1 for none. A clock is a number from 1. An upper bound is OP 0 (<) or
+ * 1 (<=), a lower one 2 (>=) or 3 (>). */
+#ifndef RVMON_ZONES_PLAN_H
+#define RVMON_ZONES_PLAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define PLAN_MAGIC 0x5a4e3031
+
+enum {
+    HEAD_MAGIC,
+    HEAD_KIND,
+    HEAD_POLICY,
+    HEAD_CLOCKS,
+    HEAD_TIMER,   /* whether one more clock, the last, belongs to the query */
+    HEAD_LEVELLED, /* whether lower and upper bounds count alike */
+    HEAD_BOUND,   /* of a late response */
+    HEAD_SECTIONS
+};
+
+/* What is sought: a run to a goal; to a goal that speaks of deadlock; one that stays inside for ever
+ * from the start, or from a goal; one that stays inside longer than the bound, from the start or from
+ * a goal; a run to a goal that speaks of runs. */
+enum { SEEK_GOAL, SEEK_DEADLOCK, SEEK_STAY, SEEK_STAY_AFTER, SEEK_LATE, SEEK_LATE_AFTER, SEEK_NESTED,
+       SEEK_KINDS };
+enum { POLICY_SHORTEST, POLICY_FASTEST, POLICY_LIKELY, POLICIES };
+
+enum {
+    AT_VARIABLES, /* low, high, initial, whether a bool */
+    AT_AUTOMATA,  /* first location, number of locations, initial one (counted from the first) */
+    AT_LOCATIONS, /* as below */
+    AT_EDGES,     /* as below, sorted by location */
+    AT_ATOMS,     /* clock, op, program or -1, number */
+    AT_UPDATES,   /* whether it sets a clock, program for an offset or -1, first slot or clock,
+                     number of slots, program for the value */
+    AT_LIMITS,    /* clock, whether of lower bounds, the largest number */
+    AT_CODE,
+    AT_TABLE,     /* constant arrays */
+    AT_GOAL,      /* alternatives: condition or -1, first atom, number of atoms */
+    AT_INSIDE,    /* the same for where runs stay, or for the goal where there is a deadlock */
+    AT_EXTRA,     /* limits that hold in every location */
+    AT_TREE,      /* nested formula: a kind, two numbers; the last row is the whole */
+    AT_PIECES,    /* alternatives of plain rows of the tree */
+    SECTIONS
+};
+
+enum { LOC_KIND, LOC_INVARIANT, LOC_ATOM, LOC_ATOMS, LOC_LIMIT, LOC_LIMITS, LOC_EDGE, LOC_EDGES,
+       LOC_SIZE };
+enum { KIND_NORMAL, KIND_URGENT, KIND_COMMITTED };
+enum { EDGE_AUTOMATON, EDGE_TARGET, EDGE_GUARD, EDGE_ATOM, EDGE_ATOMS, EDGE_UPDATE, EDGE_UPDATES,
+       EDGE_CHANNEL, /* program or -1 */
+       EDGE_FIRST, EDGE_STOP, /* the channels that it may be */
+       EDGE_FLAGS, EDGE_SIZE };
+enum { FLAG_SENDS = 1, FLAG_BROADCAST = 2, FLAG_URGENT = 4 };
+enum { ROW_CONDITION, ROW_ATOM, ROW_ATOMS, ROW_SIZE };
+enum { UPDATE_CLOCK, UPDATE_OFFSET, UPDATE_FIRST, UPDATE_COUNT, UPDATE_VALUE, UPDATE_SIZE };
+enum { ATOM_CLOCK, ATOM_OP, ATOM_CODE, ATOM_NUMBER, ATOM_SIZE };
+enum { LIMIT_CLOCK, LIMIT_LOWER, LIMIT_NUMBER, LIMIT_SIZE };
+enum { TREE_PLAIN, TREE_AND, TREE_OR, TREE_CAN, TREE_CANNOT, TREE_KINDS };
+
+enum {
+    OP_END, OP_CONST, OP_VARIABLE,
+    OP_INDEX,    /* first index, number: the offset in an extent; else it fails */
+    OP_ROW,      /* number of elements: offset of a row times that, plus the next offset */
+    OP_ELEMENT,  /* first slot, number: the variable at an offset */
+    OP_LOOKUP,   /* first number of the table, number: the constant at an offset */
+    OP_PLACE,    /* automaton, location (counted from its first): whether it is there */
+    OP_NOT, OP_NEGATE, OP_TRUTH,
+    OP_AND, OP_OR, OP_IMPLY, /* where to go on if the first operand decides */
+    OP_UNLESS,   /* where to go on if it is false */
+    OP_GO,
+    OP_LT, OP_LE, OP_EQ, OP_NE, OP_GE, OP_GT, OP_ADD, OP_SUB, OP_MUL, OP_DIV, OP_MOD,
+    OPS
+};
+
+#define MOST_CLOCKS 1000
+#define MOST_TREE_ROWS 1000
+#define MOST_PIECES 4000
+#define STACK 256
+
+extern const uint8_t plan_widths[SECTIONS];
+
+typedef enum { PLAN_GOOD, PLAN_DAMAGED, PLAN_NO_MEMORY } plan_state;
+
+/* Whether a search may run a plan: nothing in it leads outside it. */
+plan_state plan_check(const int32_t *plan, size_t count);
+
+static inline const int32_t *plan_rows(const int32_t *plan, int section)
+{
+    return plan + plan[HEAD_SECTIONS + 2 * section];
+}
+
+static inline int32_t plan_count(const int32_t *plan, int section)
+{
+    return plan[HEAD_SECTIONS + 2 * section + 1];
+}
+
+#endif

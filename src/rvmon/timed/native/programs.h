@@ -1,0 +1,342 @@
+/* Programs of a plan, and the bounds of its atoms. Overflow, a bad index and division by zero fail. */
+#ifndef RVMON_ZONES_PROGRAMS_H
+#define RVMON_ZONES_PROGRAMS_H
+
+#include "bounds.h"
+
+static inline bool added(int64_t a, int64_t b, int64_t *to)
+{
+    if ((b > 0) ? (a > INT64_MAX - b) : (a < INT64_MIN - b)) {
+        return false;
+    }
+    *to = a + b;
+    return true;
+}
+
+static inline bool subtracted(int64_t a, int64_t b, int64_t *to)
+{
+    if ((b < 0) ? (a > INT64_MAX + b) : (a < INT64_MIN + b)) {
+        return false;
+    }
+    *to = a - b;
+    return true;
+}
+
+static inline bool multiplied(int64_t a, int64_t b, int64_t *to)
+{
+    if ((a >= INT32_MIN) && (a <= INT32_MAX) && (b >= INT32_MIN) && (b <= INT32_MAX)) {
+        *to = a * b;
+        return true;
+    }
+    if ((a != 0) && (b != 0)
+        && ((a > 0) ? ((b > 0) ? (a > INT64_MAX / b) : (b < INT64_MIN / a))
+                    : ((b > 0) ? (a < INT64_MIN / b) : (b < INT64_MAX / a)))) {
+        return false;
+    }
+    *to = a * b;
+    return true;
+}
+
+static inline bool within(int64_t x, int64_t first, int64_t count)
+{
+    return (x >= first) && (x - first < count);
+}
+
+/* Two operands to one. */
+static bool combine(int32_t op, int64_t a, int64_t b, int64_t *to)
+{
+    switch (op) {
+    case OP_LT:
+        *to = a < b;
+        return true;
+    case OP_LE:
+        *to = a <= b;
+        return true;
+    case OP_EQ:
+        *to = a == b;
+        return true;
+    case OP_NE:
+        *to = a != b;
+        return true;
+    case OP_GE:
+        *to = a >= b;
+        return true;
+    case OP_GT:
+        *to = a > b;
+        return true;
+    case OP_ADD:
+        return added(a, b, to);
+    case OP_SUB:
+        return subtracted(a, b, to);
+    case OP_MUL:
+        return multiplied(a, b, to);
+    default:
+        if ((b == 0) || ((a == INT64_MIN) && (b == -1))) {
+            return false;
+        }
+        *to = (op == OP_DIV) ? a / b : a % b;
+        return true;
+    }
+}
+
+static int64_t evaluate(engine *h, int32_t at, const int32_t *places, const int32_t *values)
+{
+    const int32_t *code = h->code;
+    int64_t stack[STACK + 1];
+    int64_t *s = stack; /* the first is never used */
+    for (;;) {
+        const int32_t op = code[at++];
+        bool good = true;
+        switch (op) {
+        case OP_END:
+            return *s;
+        case OP_CONST:
+            *++s = code[at++];
+            break;
+        case OP_VARIABLE:
+            *++s = values[code[at++]];
+            break;
+        case OP_INDEX:
+            good = within(*s, code[at], code[at + 1]);
+            *s -= good ? code[at] : *s;
+            at += 2;
+            break;
+        case OP_ROW:
+            good = multiplied(s[-1], code[at++], &s[-1]) && added(s[-1], s[0], &s[-1]);
+            s--;
+            break;
+        case OP_ELEMENT:
+        case OP_LOOKUP:
+            good = within(*s, 0, code[at + 1]);
+            if (good) {
+                *s = (op == OP_LOOKUP) ? plan_rows(h->plan, AT_TABLE)[code[at] + *s]
+                                       : values[code[at] + *s];
+            }
+            at += 2;
+            break;
+        case OP_PLACE:
+            *++s = places[code[at]] == code[at + 1];
+            at += 2;
+            break;
+        case OP_NOT:
+            *s = (*s == 0);
+            break;
+        case OP_NEGATE:
+            good = subtracted(0, *s, s);
+            break;
+        case OP_TRUTH:
+            *s = (*s != 0);
+            break;
+        case OP_AND:
+        case OP_OR:
+        case OP_IMPLY:
+            if ((*s != 0) == (op == OP_OR)) {
+                *s = (op != OP_AND);
+                at = code[at];
+            } else {
+                s--;
+                at++;
+            }
+            break;
+        case OP_UNLESS:
+            at = (*s == 0) ? code[at] : at + 1;
+            s--;
+            break;
+        case OP_GO:
+            at = code[at];
+            break;
+        default:
+            good = combine(op, s[-1], s[0], &s[-1]);
+            s--;
+        }
+        if (!good) {
+            h->failed = true;
+            return 0;
+        }
+    }
+}
+
+static bool holds(engine *h, int32_t program, const int32_t *places, const int32_t *values)
+{
+    return (program < 0) || (evaluate(h, program, places, values) != 0);
+}
+
+/* A number of units of time; if it is none the search fails, if it is large another has to do it. */
+static bool is_time(engine *h, int64_t number)
+{
+    if ((number < 0) || (number >= INT32_MAX)) {
+        h->failed = true;
+        return false;
+    }
+    if (number > (int64_t)h->most_time) {
+        h->state = runs(h) ? SEARCH_TOO_LARGE : h->state;
+        return false;
+    }
+    return true;
+}
+
+/* The entry and the bound of an atom; false if its number is no time. */
+static bool atom_at(engine *h, const int32_t *atom, const int32_t *places, const int32_t *values,
+                    int *x, int *y, bound *b)
+{
+    const int64_t number = (atom[ATOM_CODE] < 0) ? atom[ATOM_NUMBER]
+                                                 : evaluate(h, atom[ATOM_CODE], places, values);
+    if (h->failed || !is_time(h, number)) {
+        return false;
+    }
+    if (atom[ATOM_OP] < 2) {
+        *x = 0;
+        *y = atom[ATOM_CLOCK];
+        *b = 2 * (bound)number + (atom[ATOM_OP] == 1);
+    } else {
+        *x = atom[ATOM_CLOCK];
+        *y = 0;
+        *b = -2 * (bound)number + (atom[ATOM_OP] == 2);
+    }
+    return true;
+}
+
+static bool cut_atoms(engine *h, bound *z, int32_t first, int32_t count, const int32_t *places,
+                      const int32_t *values)
+{
+    const int32_t *atom = h->atoms + (ptrdiff_t)first * ATOM_SIZE;
+    int32_t k;
+    for (k = 0; k < count; k++, atom += ATOM_SIZE) {
+        int x;
+        int y;
+        bound b;
+        if (!atom_at(h, atom, places, values, &x, &y, &b) || !constrain(z, h->dim, x, y, b)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Cut a zone by an alternative of a formula; false if they do not meet in this discrete state. */
+static bool cut_row(engine *h, bound *z, const int32_t *row, const int32_t *places,
+                    const int32_t *values)
+{
+    return holds(h, row[ROW_CONDITION], places, values) && !h->failed
+           && cut_atoms(h, z, row[ROW_ATOM], row[ROW_ATOMS], places, values);
+}
+
+static const int32_t *place_of(const engine *h, const int32_t *places, int a)
+{
+    return h->locations + (ptrdiff_t)LOC_SIZE * (h->automata[3 * a] + places[a]);
+}
+
+static const int32_t *edge_at(const engine *h, int32_t e)
+{
+    return h->edges + (ptrdiff_t)e * EDGE_SIZE;
+}
+
+static bool invariant_data_holds(engine *h, const int32_t *places, const int32_t *values)
+{
+    int a;
+    for (a = 0; a < h->automaton_count; a++) {
+        if (!holds(h, place_of(h, places, a)[LOC_INVARIANT], places, values)) {
+            return false;
+        }
+    }
+    return !h->failed;
+}
+
+/* The tightest upper bound of each clock that an invariant bounds; how many, -1 if it failed. */
+static int invariant_of(engine *h, const int32_t *places, const int32_t *values)
+{
+    int n = 0;
+    int a;
+    for (a = 0; a < h->automaton_count; a++) {
+        const int32_t *place = place_of(h, places, a);
+        int32_t k;
+        for (k = 0; k < place[LOC_ATOMS]; k++) {
+            int x;
+            int y;
+            int i = 0;
+            bound b;
+            if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (place[LOC_ATOM] + k), places, values,
+                         &x, &y, &b)) {
+                return -1;
+            }
+            while ((i < n) && (h->tightest[i] != y)) {
+                i++;
+            }
+            if (i == n) {
+                h->tightest[n++] = y;
+                h->tightest_bound[i] = b;
+            } else if (b < h->tightest_bound[i]) {
+                h->tightest_bound[i] = b;
+            }
+        }
+    }
+    return n;
+}
+
+static bool cut_invariant(engine *h, bound *z, const int32_t *places, const int32_t *values)
+{
+    const int n = invariant_of(h, places, values);
+    int i;
+    for (i = 0; i < n; i++) {
+        if (!constrain(z, h->dim, 0, h->tightest[i], h->tightest_bound[i])) {
+            return false;
+        }
+    }
+    return n >= 0;
+}
+
+/* The invariant and, if time may pass, all delays; false if nothing is left. */
+static bool settle(engine *h, bound *z, const int32_t *places, const int32_t *values, bool delays)
+{
+    if (delays) {
+        const int n = invariant_of(h, places, values);
+        return (n >= 0)
+               && delay_within(z, h->dim, h->top, h->tightest, h->tightest_bound, n);
+    }
+    return cut_invariant(h, z, places, values);
+}
+
+/* The limits that matter in some locations, and the clocks that have any. */
+static void find_limits(engine *h, const int32_t *places)
+{
+    int a;
+    int c;
+    for (c = 1; c < h->dim; c++) {
+        h->lower[c] = NO_LIMIT;
+        h->upper[c] = NO_LIMIT;
+    }
+    h->lower[0] = 0;
+    h->upper[0] = 0;
+    for (a = -1; a < h->automaton_count; a++) {
+        const int32_t *place = (a < 0) ? NULL : place_of(h, places, a);
+        const int32_t *row =
+            (a < 0) ? plan_rows(h->plan, AT_EXTRA)
+                    : plan_rows(h->plan, AT_LIMITS) + (ptrdiff_t)LIMIT_SIZE * place[LOC_LIMIT];
+        int32_t n = (a < 0) ? plan_count(h->plan, AT_EXTRA) : place[LOC_LIMITS];
+        for (; n > 0; n--, row += LIMIT_SIZE) {
+            bound *to = (row[LIMIT_LOWER] ? h->lower : h->upper) + row[LIMIT_CLOCK];
+            *to = (row[LIMIT_NUMBER] > *to) ? row[LIMIT_NUMBER] : *to;
+        }
+    }
+    if (h->policy == POLICY_FASTEST) { /* who comes later never stands for who came earlier */
+        h->upper[h->timer] = h->safe / 2;
+    }
+    if (h->phase != 0 && (h->timer != 0)) {
+        h->lower[h->timer] = h->plan[HEAD_BOUND];
+    }
+    h->upper_count = 0;
+    h->lower_count = 0;
+    for (c = 0; c < h->dim; c++) {
+        if (h->plan[HEAD_LEVELLED]) {
+            h->lower[c] = (h->lower[c] > h->upper[c]) ? h->lower[c] : h->upper[c];
+            h->upper[c] = h->lower[c];
+        }
+        if (h->upper[c] != NO_LIMIT) {
+            h->uppers[h->upper_count++] = c;
+        }
+        if (h->lower[c] != NO_LIMIT) {
+            h->lowers[h->lower_count++] = c;
+        }
+    }
+}
+
+#endif

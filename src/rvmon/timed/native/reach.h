@@ -1,0 +1,315 @@
+/* Keeping symbolic states that no other one stands for, and knowing what is sought. */
+#ifndef RVMON_ZONES_REACH_H
+#define RVMON_ZONES_REACH_H
+
+#include "moves.h"
+
+/* --- which zones stand for others ---------------------------------------------------------------
+ * Source: Herbreteau, Srivathsan, Walukiewicz, Better Abstractions for Timed Automata, LICS 2012. */
+
+/* What a zone must have at least to stand for z; how many entries. */
+static int make_test(engine *h, const bound *z)
+{
+    const int d = h->dim;
+    int n = 0;
+    int i;
+    int j;
+    for (i = 0; i < h->upper_count; i++) {
+        const int x = h->uppers[i];
+        bound low = z[x * d];
+        if (low < -2 * h->upper[x] + 1) {
+            continue;
+        }
+        low += low & 1;
+        for (j = 0; j < h->lower_count; j++) {
+            const int y = h->lowers[j];
+            if (x != y) {
+                const bound least = low + 2 * h->lower[y];
+                h->test_entries[n] = x * d + y;
+                h->test_least[n++] = (z[x * d + y] < least) ? z[x * d + y] : least;
+            }
+        }
+    }
+    return n;
+}
+
+static bool stands_for(const engine *h, const bound *large, const bound *z)
+{
+    const int d = h->dim;
+    int i;
+    int j;
+    for (i = 0; i < h->upper_count; i++) {
+        const int x = h->uppers[i];
+        bound low = z[x * d];
+        if (low < -2 * h->upper[x] + 1) {
+            continue;
+        }
+        low += low & 1;
+        for (j = 0; j < h->lower_count; j++) {
+            const int y = h->lowers[j];
+            const int e = x * d + y;
+            if ((x != y) && (large[e] < z[e]) && (large[e] < low + 2 * h->lower[y])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Keep z in a state unless another stands for it; its node, that given or a new one, or NONE. */
+static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, const int32_t *places)
+{
+    const bool best = h->policy != POLICY_SHORTEST;
+    int tests = 0;
+    uint32_t *at = h->heads + state;
+    if (*at != NONE) {
+        find_limits(h, places);
+        tests = make_test(h, z);
+    }
+    while (*at != NONE) {
+        const uint32_t k = *at;
+        const bound *old = zone_of(h, k);
+        int i = 0;
+        while ((i < tests) && (old[h->test_entries[i]] >= h->test_least[i])) {
+            i++;
+        }
+        if (i == tests) { /* what stood for one will for the next */
+            *at = h->nodes[k].next;
+            h->nodes[k].next = h->heads[state];
+            h->heads[state] = k;
+            return NONE;
+        }
+        at = &h->nodes[k].next;
+    }
+    at = h->heads + state;
+    while (!best && (*at != NONE)) {
+        const uint32_t k = *at;
+        if (stands_for(h, z, zone_of(h, k))) {
+            *at = h->nodes[k].next;
+            drop_zone(h, k);
+            h->stored--;
+        } else {
+            at = &h->nodes[k].next;
+        }
+    }
+    if (n == NONE) {
+        n = new_node(h, state, z);
+    }
+    if (n != NONE) {
+        h->nodes[n].next = h->heads[state];
+        h->heads[state] = n;
+        h->stored++;
+    }
+    return n;
+}
+
+/* --- deadlocks ---------------------------------------------------------------------------------- */
+
+/* The valuations from which a move can be taken, now or after a delay. */
+static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
+{
+    bound *z = w->zone;
+    int bounds;
+    int i;
+    labour(h);
+    universe(z, h->dim);
+    if (!cut_guards(h, w, z, edges, n) || !cut_invariant(h, z, w->places, w->values)) {
+        return runs(h) && !h->failed;
+    }
+    if (!apply(h, w, edges, n)) { /* what can be taken, and fails then, is no deadlock */
+        if (!h->failed) {
+            return false;
+        }
+        h->failed = false;
+        w->reset_count = 0;
+        (void)memcpy(w->target, w->places, (size_t)h->automaton_count * sizeof *w->target);
+        (void)memcpy(w->changed, w->values, (size_t)h->variable_count * sizeof *w->changed);
+    }
+    if (!invariant_data_holds(h, w->target, w->changed)) {
+        return !h->failed;
+    }
+    bounds = invariant_of(h, w->target, w->changed);
+    for (i = 0; i < bounds; i++) {
+        const int32_t clock = h->tightest[i];
+        int j = 0;
+        while ((j < w->reset_count) && (w->resets[2 * j] != clock)) {
+            j++;
+        }
+        if (j < w->reset_count) {
+            if (2 * (bound)w->resets[2 * j + 1] + 1 > h->tightest_bound[i]) {
+                return true;
+            }
+        } else if (!constrain(z, h->dim, 0, clock, h->tightest_bound[i])) {
+            return true;
+        }
+    }
+    if (w->delays) {
+        before(z, h->dim);
+    }
+    return (bounds >= 0) && fits(h, z) && push_zone(h, &h->alive, z) && runs(h);
+}
+
+/* The part of a zone from which no edge can ever be taken, as `dead`; false if that failed. */
+static bool find_dead(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+{
+    walk *w = &h->look;
+    uint32_t k;
+    (void)memcpy(w->places, places, (size_t)h->automaton_count * sizeof *places);
+    (void)memcpy(w->values, values, (size_t)h->variable_count * sizeof *values);
+    w->delays = may_delay(h, places, values);
+    h->alive.count = 0;
+    h->dead.count = 0;
+    if (!push_zone(h, &h->dead, z) || !each_move(h, w, note_alive)) {
+        return false;
+    }
+    for (k = 0; (k < h->alive.count) && (h->dead.count > 0); k++) {
+        if (!subtract(h, nth(h, &h->alive, k))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* --- what is sought ------------------------------------------------------------------------------ */
+
+static double price_of(const engine *h, const bound *z)
+{
+    const bound low = z[h->timer * h->dim];
+    return (double)(-(low >> 1)) + (((low & 1) != 0) ? 0.0 : 0x1p-20);
+}
+
+/* The parts of a zone in some alternatives, as `parts`; true if there are any, even all of it. */
+static bool in_rows(engine *h, const bound *z, int section, const int32_t *places,
+                    const int32_t *values)
+{
+    const int32_t *row = plan_rows(h->plan, section);
+    int32_t k;
+    for (k = 0; k < plan_count(h->plan, section); k++, row += ROW_SIZE) {
+        if (!holds(h, row[ROW_CONDITION], places, values) || h->failed) {
+            continue;
+        }
+        copy_zone(h, h->copy, z);
+        if (!cut_atoms(h, h->copy, row[ROW_ATOM], row[ROW_ATOMS], places, values)) {
+            continue;
+        }
+        if (row[ROW_ATOMS] == 0) {
+            h->parts.count = 0;
+            return (h->kind == SEEK_GOAL) || push_zone(h, &h->parts, z);
+        }
+        if (!push_zone(h, &h->parts, h->copy)) {
+            return false;
+        }
+        if (h->policy != POLICY_FASTEST) {
+            return true;
+        }
+    }
+    return h->parts.count > 0;
+}
+
+/* The same of the dead parts, else of those that are not. */
+static bool in_dead(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+{
+    const int sections[2] = {AT_INSIDE, AT_GOAL};
+    bool some[2] = {false, false};
+    uint32_t k;
+    int side;
+    for (side = 0; side < 2; side++) {
+        const int32_t *row = plan_rows(h->plan, sections[side]);
+        int32_t i;
+        for (i = 0; i < plan_count(h->plan, sections[side]); i++, row += ROW_SIZE) {
+            some[side] = some[side] || holds(h, row[ROW_CONDITION], places, values);
+        }
+    }
+    if (h->failed || (!some[0] && !some[1]) || !find_dead(h, z, places, values)) {
+        return false;
+    }
+    for (k = 0; some[0] && (k < h->dead.count); k++) {
+        if (in_rows(h, nth(h, &h->dead, k), AT_INSIDE, places, values)) {
+            h->ending = END_DEAD;
+            return true;
+        }
+    }
+    if (some[1]) {
+        federation swapped = h->dead;
+        h->dead = h->alive;
+        h->alive = swapped; /* now what is dead */
+        h->dead.count = 0;
+        if (!push_zone(h, &h->dead, z)) {
+            return false;
+        }
+        for (k = 0; k < h->alive.count; k++) {
+            if (!subtract(h, nth(h, &h->alive, k))) {
+                return false;
+            }
+        }
+        for (k = 0; k < h->dead.count; k++) {
+            if (in_rows(h, nth(h, &h->dead, k), AT_GOAL, places, values)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static bool in_nested(engine *h, const bound *z, const int32_t *places, const int32_t *values);
+
+/* Whether some of a zone is sought; which, as `parts`. */
+static bool is_goal(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+{
+    h->parts.count = 0;
+    if (h->kind == SEEK_DEADLOCK) {
+        return in_dead(h, z, places, values);
+    }
+    if (h->kind == SEEK_NESTED) {
+        return in_nested(h, z, places, values);
+    }
+    return in_rows(h, z, AT_GOAL, places, values);
+}
+
+/* --- by increasing cost -------------------------------------------------------------------------- */
+
+static bool comes_first(const entry *a, const entry *b)
+{
+    return (a->cost < b->cost) || ((a->cost == b->cost) && (a->order < b->order));
+}
+
+static bool heap_push(engine *h, double cost, uint32_t n, uint32_t goal)
+{
+    const entry e = {cost, h->order++, n, goal};
+    uint32_t i = h->heap_count;
+    if (!ROOM(h, h->heap, h->heap_room, (uint64_t)h->heap_count + 1)) {
+        return false;
+    }
+    h->heap_count++;
+    while ((i > 0) && comes_first(&e, h->heap + (i - 1) / 2)) {
+        h->heap[i] = h->heap[(i - 1) / 2];
+        i = (i - 1) / 2;
+    }
+    h->heap[i] = e;
+    return true;
+}
+
+static entry heap_pop(engine *h)
+{
+    const entry best = h->heap[0];
+    const entry e = h->heap[--h->heap_count];
+    uint32_t i = 0;
+    for (;;) {
+        uint32_t c = 2 * i + 1;
+        if (c >= h->heap_count) {
+            break;
+        }
+        if ((c + 1 < h->heap_count) && comes_first(h->heap + c + 1, h->heap + c)) {
+            c++;
+        }
+        if (!comes_first(h->heap + c, &e)) {
+            break;
+        }
+        h->heap[i] = h->heap[c];
+        i = c;
+    }
+    h->heap[i] = e;
+    return best;
+}
+
+#endif

@@ -1,0 +1,212 @@
+/* Successors: where a move leads, and what a search makes of it. */
+#ifndef RVMON_ZONES_SEARCH_H
+#define RVMON_ZONES_SEARCH_H
+
+#include "inside.h"
+
+static double cost_of(const engine *h, const bound *z, const int32_t *edges, int n)
+{
+    double cost = h->price;
+    int k;
+    if (h->policy == POLICY_FASTEST) {
+        return price_of(h, z);
+    }
+    for (k = 0; k < n; k++) {
+        cost += h->costs[edges[k]];
+    }
+    return cost;
+}
+
+/* A zone just reached in a state whose data the invariants allow. */
+static void arrive(engine *h, bound *z, const int32_t *places, const int32_t *values,
+                   const int32_t *edges, int count)
+{
+    uint32_t *at;
+    uint32_t state;
+    uint32_t n;
+    bool fresh;
+    bool delays;
+    if (h->phase != 0) {
+        enter(h, z, places, values);
+        return;
+    }
+    pack(h, places, values, 0, h->packed);
+    at = find_state(h, h->packed);
+    if (at == NULL) {
+        return;
+    }
+    fresh = *at == NONE;
+    delays = fresh ? may_delay(h, places, values) : (h->delays[*at] != 0);
+    if (h->failed || !settle(h, z, places, values, delays) || (fresh && !add_state(h, at, delays))) {
+        return;
+    }
+    state = *at;
+    if (h->policy != POLICY_SHORTEST) {
+        n = new_node(h, state, z);
+        if (n != NONE) {
+            (void)heap_push(h, cost_of(h, z, edges, count), n, 0);
+        }
+        return;
+    }
+    n = keep(h, state, NONE, z, places);
+    if (n == NONE) {
+        return;
+    }
+    visit(h);
+    if (!runs(h)) {
+        return;
+    }
+    if ((h->kind == SEEK_GOAL) || (h->kind == SEEK_DEADLOCK) || (h->kind == SEEK_NESTED)) {
+        if (is_goal(h, z, places, values) && runs(h)) {
+            h->found = n;
+            h->state = SEARCH_FOUND;
+            return;
+        }
+    } else if (h->kind == SEEK_STAY_AFTER) {
+        if (ROOM(h, h->triggers, h->trigger_room, (uint64_t)h->trigger_count + 1)) {
+            h->triggers[h->trigger_count++] = n;
+        }
+    }
+    (void)wait_for(h, n);
+}
+
+/* Take a move of the walk `out`. */
+static bool take(engine *h, walk *w, const int32_t *edges, int n)
+{
+    const uint32_t ordinal = w->ordinal++;
+    int j;
+    labour(h);
+    copy_zone(h, w->zone, w->source);
+    if (cut_guards(h, w, w->zone, edges, n)) {
+        if (!apply(h, w, edges, n)) {
+            (void)memcpy(h->step_edges, edges, (size_t)n * sizeof *edges);
+            h->step_edge_count = n;
+            return false;
+        }
+        if (invariant_data_holds(h, w->target, w->changed)) {
+            for (j = 0; j < w->reset_count; j++) {
+                reset(w->zone, h->dim, w->resets[2 * j], w->resets[2 * j + 1]);
+            }
+            h->link = ordinal;
+            arrive(h, w->zone, w->target, w->changed, edges, n);
+        }
+    }
+    return runs(h) && !h->failed;
+}
+
+/* Find the move again whose number is wanted. */
+static bool match(engine *h, walk *w, const int32_t *edges, int n)
+{
+    if (w->ordinal++ != h->wanted) {
+        return true;
+    }
+    (void)memcpy(h->step_edges, edges, (size_t)n * sizeof *edges);
+    h->step_edge_count = n;
+    return false;
+}
+
+/* All moves from a node that is not inside. */
+static void expand(engine *h, uint32_t n)
+{
+    walk *w = &h->out;
+    unpack(h, h->nodes[n].state, w->places, w->values);
+    copy_zone(h, w->source, zone_of(h, n));
+    w->ordinal = 0;
+    h->from_node = n;
+    (void)each_move(h, w, take);
+}
+
+/* The successors in a search for a late answer: crossings and moves, or moves and where it starts. */
+static void expand_late(engine *h, uint32_t n)
+{
+    walk *w = &h->out;
+    const int k = piece_of(h, n);
+    const bool delays = h->delays[h->nodes[n].state] != 0;
+    int m;
+    h->phase = (k >= 0);
+    if (k < 0) {
+        expand(h, n);
+        for (m = 0; (m < h->goal_count) && runs(h) && !h->failed; m++) {
+            copy_zone(h, w->zone, w->source);
+            if (cut_row(h, w->zone, plan_rows(h->plan, AT_GOAL) + (ptrdiff_t)m * ROW_SIZE,
+                        w->places, w->values)) {
+                reset(w->zone, h->dim, h->timer, 0);
+                h->phase = 1;
+                h->link = LINK_MARK | (uint32_t)m;
+                enter(h, w->zone, w->places, w->values);
+                h->phase = 0;
+            }
+        }
+        return;
+    }
+    unpack(h, h->nodes[n].state, w->places, w->values);
+    copy_zone(h, w->source, zone_of(h, n));
+    h->from_node = n;
+    for (m = 0; delays && (piece_at(h, k)[ROW_ATOMS] > 0) && (m < 2 * h->inside_count); m++) {
+        uint32_t *at;
+        if (!runs(h) || h->failed) {
+            break;
+        }
+        if ((m / 2 == k) || !has_piece(h, m / 2, w->places, w->values)
+            || !cross(h, w->zone, w->source, k, m / 2, m % 2 == 1, w->places, w->values)) {
+            continue;
+        }
+        pack(h, w->places, w->values, 1 + (uint32_t)(m / 2), h->packed);
+        at = find_state(h, h->packed);
+        h->link = LINK_CROSSING | (uint32_t)(m % 2);
+        if ((at != NULL) && ((*at != NONE) || add_state(h, at, delays))) {
+            keep_late(h, *at, w->zone, m / 2, delays, w->places, w->values);
+        }
+    }
+    if (runs(h) && !h->failed) {
+        w->ordinal = 0;
+        (void)each_move(h, w, take);
+    }
+    h->phase = 0;
+}
+
+/* One step of a search by increasing cost. */
+static void step_best(engine *h)
+{
+    walk *w = &h->out;
+    const entry e = heap_pop(h);
+    double cost = e.cost;
+    unpack(h, h->nodes[e.node].state, w->places, w->values);
+    if (e.goal != 0) {
+        if (is_goal(h, zone_of(h, e.node), w->places, w->values) && runs(h)) {
+            uint32_t k;
+            for (k = 1; k < h->parts.count; k++) { /* the cheapest one is told */
+                if (price_of(h, nth(h, &h->parts, k)) < price_of(h, h->parts.zones)) {
+                    copy_zone(h, h->parts.zones, nth(h, &h->parts, k));
+                }
+            }
+            h->parts.count = (h->parts.count > 0);
+            h->found = e.node;
+            h->state = SEARCH_FOUND;
+        }
+        return;
+    }
+    copy_zone(h, w->source, zone_of(h, e.node));
+    if (keep(h, h->nodes[e.node].state, e.node, w->source, w->places) == NONE) {
+        drop_zone(h, e.node);
+        return;
+    }
+    visit(h);
+    h->price = e.cost;
+    if (is_goal(h, w->source, w->places, w->values)) {
+        uint32_t k;
+        if ((h->policy == POLICY_FASTEST) && (h->parts.count > 0)) {
+            cost = price_of(h, h->parts.zones);
+            for (k = 1; k < h->parts.count; k++) {
+                const double other = price_of(h, nth(h, &h->parts, k));
+                cost = (other < cost) ? other : cost;
+            }
+        }
+        (void)heap_push(h, cost, e.node, 1);
+    }
+    if (runs(h) && !h->failed) {
+        expand(h, e.node);
+    }
+}
+
+#endif

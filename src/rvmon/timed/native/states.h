@@ -1,0 +1,258 @@
+/* Discrete states, packed and met once; symbolic states, and their zones in chunks. */
+#ifndef RVMON_ZONES_STATES_H
+#define RVMON_ZONES_STATES_H
+
+#include "programs.h"
+
+/* The bits of a discrete state; `mark` distinguishes what else a search distinguishes. */
+static void pack(const engine *h, const int32_t *places, const int32_t *values, uint32_t mark,
+                 uint32_t *to)
+{
+    const int n = h->automaton_count + h->variable_count;
+    int i;
+    (void)memset(to, 0, h->words * sizeof *to);
+    to[h->words - 1] = mark;
+    for (i = 0; i < n; i++) {
+        const field f = h->fields[i];
+        const int32_t x = (i < h->automaton_count) ? places[i] : values[i - h->automaton_count];
+        to[f.word] |= ((uint32_t)x - (uint32_t)f.low) << f.shift;
+    }
+}
+
+static void unpack(const engine *h, uint32_t state, int32_t *places, int32_t *values)
+{
+    const uint32_t *from = h->bits + (size_t)state * h->words;
+    const int n = h->automaton_count + h->variable_count;
+    int i;
+    for (i = 0; i < n; i++) {
+        const field f = h->fields[i];
+        const int32_t x = (int32_t)((from[f.word] >> f.shift & f.mask) + (uint32_t)f.low);
+        *((i < h->automaton_count) ? places + i : values + (i - h->automaton_count)) = x;
+    }
+}
+
+static uint32_t mark_of(const engine *h, uint32_t state)
+{
+    return h->bits[(size_t)state * h->words + h->words - 1];
+}
+
+static uint32_t hash_of(const void *data, size_t words)
+{
+    const uint32_t *w = data;
+    uint64_t x = UINT64_C(0x9e3779b97f4a7c15);
+    size_t i;
+    for (i = 0; i < words; i++) {
+        x ^= w[i];
+        x *= UINT64_C(0xff51afd7ed558ccd);
+        x ^= x >> 32;
+    }
+    return (uint32_t)(x ^ x >> 29);
+}
+
+/* A new table for hashes, all places empty; NULL without memory. The old one is given back by who
+ * fills it again. */
+static uint32_t *wider_table(engine *h, uint32_t old, uint32_t *size)
+{
+    uint32_t room = 0;
+    uint32_t *made = enlarge(h, NULL, &room, (old == 0) ? 1024 : 2 * (uint64_t)old, sizeof *made);
+    if (made != NULL) {
+        *size = (old == 0) ? 1024 : 2 * old;
+        (void)memset(made, 0xff, *size * sizeof *made);
+    }
+    return made;
+}
+
+/* Where the table has the packed state, or would have it; NULL without memory. */
+static uint32_t *find_state(engine *h, const uint32_t *packed)
+{
+    const size_t bytes = h->words * sizeof *packed;
+    uint32_t k;
+    if (2 * ((uint64_t)h->state_count + 1) > h->table_size) {
+        uint32_t size = 0;
+        uint32_t *made = wider_table(h, h->table_size, &size);
+        uint32_t s;
+        if (made == NULL) {
+            return NULL;
+        }
+        for (s = 0; s < h->state_count; s++) {
+            k = hash_of(h->bits + (size_t)s * h->words, h->words) & (size - 1);
+            while (made[k] != NONE) {
+                k = (k + 1) & (size - 1);
+            }
+            made[k] = s;
+        }
+        free(h->table);
+        h->bytes -= (uint64_t)h->table_size * sizeof *made;
+        h->table = made;
+        h->table_size = size;
+    }
+    k = hash_of(packed, h->words) & (h->table_size - 1);
+    while ((h->table[k] != NONE)
+           && (memcmp(h->bits + (size_t)h->table[k] * h->words, packed, bytes) != 0)) {
+        k = (k + 1) & (h->table_size - 1);
+    }
+    return h->table + k;
+}
+
+static bool add_state(engine *h, uint32_t *at, bool delays)
+{
+    const uint64_t n = (uint64_t)h->state_count + 1;
+    if (!ROOM(h, h->bits, h->bits_room, n * h->words) || !ROOM(h, h->heads, h->heads_room, n)
+        || !ROOM(h, h->delays, h->delays_room, n)) {
+        return false;
+    }
+    (void)memcpy(h->bits + (size_t)h->state_count * h->words, h->packed,
+                 h->words * sizeof *h->packed);
+    h->heads[h->state_count] = NONE;
+    h->delays[h->state_count] = delays;
+    *at = h->state_count++;
+    return true;
+}
+
+static bound *zone_at(const engine *h, uint32_t slot)
+{
+    return h->chunks[slot / ZONES_IN_CHUNK]
+           + (size_t)(slot % ZONES_IN_CHUNK) * (size_t)h->entries;
+}
+
+static bound *zone_of(const engine *h, uint32_t n)
+{
+    return zone_at(h, h->nodes[n].zone);
+}
+
+/* A slot for a zone; free ones hold the number of the next. NONE without memory. */
+static uint32_t new_slot(engine *h)
+{
+    uint32_t slot = h->freed;
+    if (slot != NONE) {
+        (void)memcpy(&h->freed, zone_at(h, slot), sizeof slot);
+        return slot;
+    }
+    slot = h->zone_count;
+    if (slot % ZONES_IN_CHUNK == 0) {
+        uint32_t room = 0;
+        if (!ROOM(h, h->chunks, h->chunk_room, (uint64_t)h->chunk_count + 1)) {
+            return NONE;
+        }
+        h->chunks[h->chunk_count] = enlarge(h, NULL, &room, ZONES_IN_CHUNK, h->zone_bytes);
+        if (h->chunks[h->chunk_count] == NULL) {
+            return NONE;
+        }
+        h->chunk_count++;
+    }
+    h->zone_count++;
+    return slot;
+}
+
+static void drop_zone(engine *h, uint32_t n)
+{
+    const uint32_t slot = h->nodes[n].zone;
+    (void)memcpy(zone_at(h, slot), &h->freed, sizeof slot);
+    h->freed = slot;
+    h->nodes[n].zone = NONE;
+}
+
+/* A symbolic state behind the one that is gone on from; NONE if there is no room or it is too large. */
+static uint32_t new_node(engine *h, uint32_t state, const bound *z)
+{
+    uint32_t slot;
+    if (!fits(h, z) || !ROOM(h, h->nodes, h->node_room, (uint64_t)h->node_count + 1)) {
+        return NONE;
+    }
+    slot = new_slot(h);
+    if (slot == NONE) {
+        return NONE;
+    }
+    copy_zone(h, zone_at(h, slot), z);
+    h->nodes[h->node_count] = (node){h->from_node, state, NONE, slot, h->link};
+    return h->node_count++;
+}
+
+static bound *push(engine *h, federation *f)
+{
+    if (f->count == f->room) {
+        f->zones = enlarge(h, f->zones, &f->room, (uint64_t)f->count + 1, h->zone_bytes);
+        if (f->count == f->room) {
+            return NULL;
+        }
+    }
+    return f->zones + (size_t)f->count++ * (size_t)h->entries;
+}
+
+static bound *nth(const engine *h, const federation *f, uint32_t k)
+{
+    return f->zones + (size_t)k * (size_t)h->entries;
+}
+
+static bool push_zone(engine *h, federation *f, const bound *z)
+{
+    bound *to = push(h, f);
+    if (to != NULL) {
+        copy_zone(h, to, z);
+    }
+    return to != NULL;
+}
+
+static void give_back(engine *h, federation *f)
+{
+    free(f->zones);
+    h->bytes -= (uint64_t)f->room * h->zone_bytes;
+    *f = (federation){0, 0, NULL};
+}
+
+/* What is in `dead` without a zone, by way of `rest`. */
+static bool subtract(engine *h, const bound *other)
+{
+    const int d = h->dim;
+    federation swapped = h->dead;
+    uint32_t k;
+    h->rest.count = 0;
+    for (k = 0; k < h->dead.count; k++) {
+        bound *left = nth(h, &h->dead, k);
+        int e;
+        labour(h);
+        for (e = 0; e < h->entries; e++) {
+            bound *out;
+            if (other[e] >= left[e]) {
+                continue;
+            }
+            out = push(h, &h->rest);
+            if (out == NULL) {
+                return false;
+            }
+            copy_zone(h, out, left);
+            if (!constrain(out, d, e % d, e / d, negated(other[e]))) {
+                h->rest.count--;
+            } else if (!fits(h, out)) {
+                return false;
+            }
+            if (!constrain(left, d, e / d, e % d, other[e])) {
+                break;
+            }
+        }
+        if (!runs(h)) {
+            return false;
+        }
+    }
+    swapped.count = h->dead.count;
+    h->dead = h->rest;
+    h->rest = swapped;
+    return true;
+}
+
+static bool wait_for(engine *h, uint32_t n)
+{
+    if ((h->queue_end == h->queue_room) && (h->queue_head > h->queue_room / 2)) {
+        (void)memmove(h->queue, h->queue + h->queue_head,
+                      (size_t)(h->queue_end - h->queue_head) * sizeof *h->queue);
+        h->queue_end -= h->queue_head;
+        h->queue_head = 0;
+    }
+    if (!ROOM(h, h->queue, h->queue_room, (uint64_t)h->queue_end + 1)) {
+        return false;
+    }
+    h->queue[h->queue_end++] = n;
+    return true;
+}
+
+#endif

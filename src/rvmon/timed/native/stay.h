@@ -1,0 +1,254 @@
+/* Ways to stay inside for ever: by idling, by a deadlock, by going round; depth first.
+ *
+ * Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993 (runs and loops). */
+#ifndef RVMON_ZONES_STAY_H
+#define RVMON_ZONES_STAY_H
+
+#include "paths.h"
+
+enum { NEW, ON_THE_WAY, DONE };
+
+/* The part of a zone from which no edge can be taken and time stops before the piece ends, as `dead`. */
+static bool find_stuck(engine *h, const bound *z, int k, bool delays)
+{
+    const walk *w = &h->out;
+    const int32_t *piece = piece_at(h, k);
+    int32_t i;
+    if (!find_dead(h, z, w->places, w->values)) {
+        return false;
+    }
+    for (i = 0; delays && (h->dead.count > 0) && (i < piece[ROW_ATOMS]); i++) {
+        int x;
+        int y;
+        bound b;
+        if (!atom_at(h, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + i), w->places,
+                     w->values, &x, &y, &b)) {
+            return false;
+        }
+        if (x != 0) {
+            continue;
+        }
+        universe(h->copy, h->dim);
+        if (cut_invariant(h, h->copy, w->places, w->values)
+            && constrain(h->copy, h->dim, y, x, negated(b))) {
+            before(h->copy, h->dim);
+            if (!subtract(h, h->copy)) {
+                return false;
+            }
+        }
+    }
+    return h->dead.count > 0;
+}
+
+/* Whether a run can end here: idle for ever, which ends the search, or stuck. */
+static bool look_for_end(engine *h, const bound *z, int k, bool delays)
+{
+    const walk *w = &h->out;
+    const int32_t *piece = piece_at(h, k);
+    const int bounds = invariant_of(h, w->places, w->values);
+    bool open = delays && (bounds == 0);
+    int32_t i;
+    uint32_t j;
+    for (i = 0; i < piece[ROW_ATOMS]; i++) {
+        open = open && (h->atoms[ATOM_SIZE * (piece[ROW_ATOM] + i) + ATOM_OP] > 1);
+    }
+    if (open) {
+        h->ending = END_IDLE;
+        h->parts.count = 0;
+    } else if ((h->ending == END_REACHED) && find_stuck(h, z, k, delays)) {
+        h->ending = END_STUCK;
+        h->parts.count = 0;
+        for (j = 0; j < h->dead.count; j++) {
+            (void)push_zone(h, &h->parts, nth(h, &h->dead, j));
+        }
+    } else {
+        return runs(h) && !h->failed;
+    }
+    h->last_crossings.count = 0;
+    for (j = 0; j < h->crossings.count; j++) {
+        (void)put(h, &h->last_crossings, h->crossings.at[j]);
+    }
+    return !open && runs(h);
+}
+
+static bool moves_here(engine *h, const bound *z, int k, bool delays)
+{
+    (void)k;
+    (void)delays;
+    copy_zone(h, h->out.source, z);
+    return each_move(h, &h->out, take);
+}
+
+/* The steps to the last frame, and where in them a loop starts that goes back to a node. */
+static void tell_way(engine *h, uint32_t back)
+{
+    const uint32_t first = h->frames[0].node;
+    const uint32_t parent = h->stem;
+    int steps = 0;
+    uint32_t i;
+    h->loop = -1;
+    h->path.count = 0;
+    if (parent == NONE) {
+        (void)put(h, &h->path, piece_of(h, first));
+    } else {
+        steps = tell_path(h, parent) + tell_link(h, parent, first, h->frames[0].link);
+    }
+    for (i = 1; i < h->frame_count; i++) {
+        if (h->frames[i - 1].node == back) {
+            h->loop = steps;
+        }
+        steps += tell_link(h, h->frames[i - 1].node, h->frames[i].node, h->frames[i].link);
+    }
+    if (h->frames[i - 1].node == back) {
+        h->loop = steps;
+    }
+}
+
+/* A loop back to a node on the way: found, if it counts. */
+static void close_loop(engine *h, successor to)
+{
+    int64_t *head;
+    uint32_t room = 0;
+    int counts;
+    int e;
+    tell_way(h, to.node);
+    (void)tell_link(h, h->frames[h->frame_count - 1].node, to.node, to.link);
+    head = enlarge(h, NULL, &room, (uint64_t)h->entries, sizeof *head);
+    if ((head == NULL) || !runs(h)) {
+        free(head);
+        return;
+    }
+    for (e = 0; e < h->entries; e++) {
+        const bound b = zone_of(h, to.node)[e];
+        head[e] = (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
+    }
+    counts = h->from->counts(h->from->context, &h->path, h->loop, head, (uint32_t)h->dim);
+    free(head);
+    h->bytes -= (uint64_t)room * sizeof *head;
+    h->step_edge_count = 0;
+    if (counts < 0) {
+        h->state = SEARCH_STOPPED;
+    } else if ((counts == 0) && h->from->proper_only) {
+        h->improper = true;
+        h->loop = -1;
+    } else {
+        h->ending = (counts != 0) ? END_LOOP : END_ZENO;
+        h->parts.count = 0;
+        h->state = SEARCH_FOUND;
+    }
+}
+
+/* Go on from a node that is met for the first time; found if a run can end there. */
+static void stay_at(engine *h, successor at)
+{
+    const uint32_t state = h->nodes[at.node].state;
+    const bool delays = h->delays[state] != 0;
+    const int k = piece_of(h, at.node);
+    frame *top;
+    visit(h);
+    h->stored++;
+    if (!runs(h) || !ROOM(h, h->frames, h->frame_room, (uint64_t)h->frame_count + 1)) {
+        return;
+    }
+    h->colours[at.node] = ON_THE_WAY;
+    top = h->frames + h->frame_count++;
+    *top = (frame){at.node, at.link, h->successor_count, h->successor_count};
+    unpack(h, state, h->out.places, h->out.values);
+    h->ending = END_REACHED;
+    h->crossings.count = 0;
+    (void)each_stand(h, zone_of(h, at.node), k, delays, 0, look_for_end);
+    if (!runs(h) || h->failed) {
+        return;
+    }
+    if ((h->ending == END_STUCK) && h->from->proper_only) {
+        h->improper = true;
+        h->ending = END_REACHED;
+    }
+    if (h->ending != END_REACHED) {
+        tell_way(h, NONE);
+        (void)tell_crossings(h, &h->last_crossings);
+        h->state = runs(h) ? SEARCH_FOUND : h->state;
+        return;
+    }
+    h->from_node = at.node;
+    h->out.ordinal = 0;
+    h->crossings.count = 0;
+    (void)each_stand(h, zone_of(h, at.node), k, delays, 0, moves_here);
+    h->frames[h->frame_count - 1].end = h->successor_count;
+}
+
+/* From the zone in `out`, with the discrete state in its target. */
+static void stay_from(engine *h, uint32_t stem, uint32_t link)
+{
+    walk *w = &h->out;
+    uint32_t next = 0;
+    uint32_t end;
+    h->phase = 1;
+    h->successor_count = 0;
+    h->frame_count = 0;
+    h->stem = stem;
+    h->from_node = stem;
+    h->link = link;
+    enter(h, w->zone, w->target, w->changed);
+    end = h->successor_count;
+    while (runs(h) && !h->failed) {
+        successor at;
+        if (next == end) {
+            if (h->frame_count == 0) {
+                break;
+            }
+            h->colours[h->frames[--h->frame_count].node] = DONE;
+            if (h->frame_count == 0) {
+                next = h->resume;
+                end = h->resume_end;
+            } else {
+                next = h->frames[h->frame_count - 1].next;
+                end = h->frames[h->frame_count - 1].end;
+            }
+            h->successor_count = end;
+            continue;
+        }
+        at = h->successors[next++];
+        if (h->frame_count == 0) {
+            h->resume = next;
+            h->resume_end = end;
+        } else {
+            h->frames[h->frame_count - 1].next = next;
+        }
+        if (h->colours[at.node] == ON_THE_WAY) {
+            close_loop(h, at);
+        } else if (h->colours[at.node] == NEW) {
+            stay_at(h, at);
+            if (runs(h) && !h->failed) {
+                next = h->frames[h->frame_count - 1].next;
+                end = h->frames[h->frame_count - 1].end;
+            }
+        }
+    }
+    h->phase = 0;
+}
+
+/* From all triggers that are pending, where the goal holds. */
+static void stay_after(engine *h)
+{
+    walk *w = &h->out;
+    uint32_t t;
+    for (t = 0; t < h->trigger_count; t++) {
+        const uint32_t from = h->triggers[t];
+        int32_t k;
+        for (k = 0; (k < h->goal_count) && runs(h) && !h->failed; k++) {
+            if (h->nodes[from].zone == NONE) {
+                break; /* a larger one triggers too */
+            }
+            unpack(h, h->nodes[from].state, w->target, w->changed);
+            copy_zone(h, w->zone, zone_of(h, from));
+            if (cut_row(h, w->zone, plan_rows(h->plan, AT_GOAL) + (ptrdiff_t)k * ROW_SIZE,
+                        w->target, w->changed)) {
+                stay_from(h, from, LINK_MARK | (uint32_t)k);
+            }
+        }
+    }
+    h->trigger_count = 0;
+}
+
+#endif

@@ -1,0 +1,375 @@
+/* The search as a whole. */
+#ifndef RVMON_ZONES_WHOLE_H
+#define RVMON_ZONES_WHOLE_H
+
+#include "nested.h"
+#include "stay.h"
+
+/* The bits that locations and variables take in a packed state. */
+static bool lay_out(engine *h)
+{
+    const int n = h->automaton_count + h->variable_count;
+    uint32_t used = 0;
+    uint32_t word = 0;
+    int i;
+    h->fields = block(h, (size_t)n, sizeof *h->fields);
+    if (h->fields == NULL) {
+        return false;
+    }
+    for (i = 0; i < n; i++) {
+        const int32_t *v = h->variables + (ptrdiff_t)4 * (i - h->automaton_count);
+        const bool place = i < h->automaton_count;
+        const int64_t range = place ? h->automata[3 * i + 1] - 1 : (int64_t)v[1] - v[0];
+        uint32_t bits = 0;
+        while ((bits < 32) && ((range >> bits) != 0)) {
+            bits++;
+        }
+        if (used + bits > 32) {
+            word++;
+            used = 0;
+        }
+        h->fields[i].word = word;
+        h->fields[i].shift = (uint8_t)(used & 31);
+        h->fields[i].mask = (bits == 32) ? UINT32_MAX : ((uint32_t)1 << bits) - 1;
+        h->fields[i].low = place ? 0 : v[0];
+        used += bits;
+    }
+    h->words = word + 2; /* the last is the mark */
+    return true;
+}
+
+static void make_walk(engine *h, walk *w)
+{
+    const size_t places = (size_t)h->automaton_count;
+    const size_t values = (size_t)h->variable_count;
+    w->places = block(h, places, sizeof *w->places);
+    w->values = block(h, values, sizeof *w->values);
+    w->target = block(h, places, sizeof *w->target);
+    w->changed = block(h, values, sizeof *w->changed);
+    w->source = block(h, (size_t)h->entries, sizeof *w->source);
+    w->zone = block(h, (size_t)h->entries, sizeof *w->zone);
+    w->resets = block(h, 2 * (size_t)h->dim, sizeof *w->resets);
+    w->chosen = block(h, places, sizeof *w->chosen);
+    w->group = block(h, (size_t)h->edge_count, sizeof *w->group);
+    w->first = block(h, places, sizeof *w->first);
+    w->pick = block(h, places, sizeof *w->pick);
+    w->committed = block(h, places, sizeof *w->committed);
+}
+
+static void free_walk(walk *w)
+{
+    void *all[12];
+    size_t i;
+    all[0] = w->places;
+    all[1] = w->values;
+    all[2] = w->target;
+    all[3] = w->changed;
+    all[4] = w->source;
+    all[5] = w->zone;
+    all[6] = w->resets;
+    all[7] = w->chosen;
+    all[8] = w->group;
+    all[9] = w->first;
+    all[10] = w->pick;
+    all[11] = w->committed;
+    for (i = 0; i < sizeof all / sizeof *all; i++) {
+        free(all[i]);
+    }
+}
+
+/* All that a search needs from the start; false without memory. */
+static bool make_engine(engine *h, const int32_t *plan, const double *costs, const caller *from)
+{
+    size_t d;
+    (void)memset(h, 0, sizeof *h);
+    h->from = from;
+    h->plan = plan;
+    h->costs = costs;
+    h->kind = plan[HEAD_KIND];
+    h->policy = plan[HEAD_POLICY];
+    h->variables = plan_rows(plan, AT_VARIABLES);
+    h->automata = plan_rows(plan, AT_AUTOMATA);
+    h->locations = plan_rows(plan, AT_LOCATIONS);
+    h->edges = plan_rows(plan, AT_EDGES);
+    h->atoms = plan_rows(plan, AT_ATOMS);
+    h->updates = plan_rows(plan, AT_UPDATES);
+    h->code = plan_rows(plan, AT_CODE);
+    h->variable_count = plan_count(plan, AT_VARIABLES);
+    h->automaton_count = plan_count(plan, AT_AUTOMATA);
+    h->edge_count = plan_count(plan, AT_EDGES);
+    h->goal_count = plan_count(plan, AT_GOAL);
+    h->inside_count = plan_count(plan, AT_INSIDE);
+    h->dim = 1 + plan[HEAD_CLOCKS] + plan[HEAD_TIMER];
+    h->timer = plan[HEAD_TIMER] ? h->dim - 1 : 0;
+    h->entries = h->dim * h->dim;
+    h->zone_bytes = (size_t)h->entries * sizeof(bound);
+    h->safe = FAR / 8 / ((bound)(h->dim + 1) * (h->dim + 1));
+    h->most_time = (h->safe / 4 > INT32_MAX - 1) ? INT32_MAX - 1 : h->safe / 4;
+    h->freed = NONE;
+    h->found = NONE;
+    h->wanted = NONE;
+    h->from_node = NONE;
+    h->loop = -1;
+    d = (size_t)h->dim;
+    if (!lay_out(h)) {
+        return false;
+    }
+    make_walk(h, &h->out);
+    make_walk(h, &h->look);
+    h->packed = block(h, h->words, sizeof *h->packed);
+    h->lower = block(h, d, sizeof *h->lower);
+    h->upper = block(h, d, sizeof *h->upper);
+    h->lowers = block(h, d, sizeof *h->lowers);
+    h->uppers = block(h, d, sizeof *h->uppers);
+    h->test_entries = block(h, d * d, sizeof *h->test_entries);
+    h->test_least = block(h, d * d, sizeof *h->test_least);
+    h->tightest = block(h, d, sizeof *h->tightest);
+    h->tightest_bound = block(h, d, sizeof *h->tightest_bound);
+    h->top = block(h, d, sizeof *h->top);
+    h->spare = block(h, d * d, sizeof *h->spare);
+    h->inside = block(h, d * d, sizeof *h->inside);
+    h->copy = block(h, d * d, sizeof *h->copy);
+    h->between = block(h, d * d * (size_t)h->inside_count + d * d, sizeof *h->between);
+    h->been = block(h, (size_t)h->inside_count, sizeof *h->been);
+    h->step_edges = block(h, (size_t)h->automaton_count, sizeof *h->step_edges);
+    h->failed_edges = block(h, (size_t)h->automaton_count, sizeof *h->failed_edges);
+    h->reaching = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching);
+    h->reaching_room = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching_room);
+    return runs(h);
+}
+
+static void free_engine(engine *h)
+{
+    void *all[32];
+    size_t n = 0;
+    size_t i;
+    uint32_t s;
+    int32_t k;
+    for (s = 0; s < h->chunk_count; s++) {
+        free(h->chunks[s]);
+    }
+    for (k = 0; (h->reaching != NULL) && (k < plan_count(h->plan, AT_TREE)); k++) {
+        for (s = 0; (h->reaching[k] != NULL) && (s < h->reaching_room[k]); s++) {
+            free(h->reaching[k][s].zones);
+        }
+        free(h->reaching[k]);
+    }
+    free_walk(&h->out);
+    free_walk(&h->look);
+    free(h->fields);
+    free(h->bits);
+    free(h->heads);
+    free(h->table);
+    free(h->delays);
+    free(h->packed);
+    free(h->nodes);
+    free(h->chunks);
+    free(h->queue);
+    free(h->heap);
+    free(h->triggers);
+    free(h->colours);
+    free(h->exact);
+    free(h->successors);
+    free(h->frames);
+    free(h->arrows);
+    free(h->into);
+    free(h->pool);
+    free(h->whose);
+    free(h->reaching);
+    free(h->reaching_room);
+    all[n++] = h->lower;
+    all[n++] = h->upper;
+    all[n++] = h->lowers;
+    all[n++] = h->uppers;
+    all[n++] = h->test_entries;
+    all[n++] = h->test_least;
+    all[n++] = h->tightest;
+    all[n++] = h->tightest_bound;
+    all[n++] = h->top;
+    all[n++] = h->spare;
+    all[n++] = h->inside;
+    all[n++] = h->copy;
+    all[n++] = h->between;
+    all[n++] = h->been;
+    all[n++] = h->step_edges;
+    all[n++] = h->failed_edges;
+    all[n++] = h->crossings.at;
+    all[n++] = h->last_crossings.at;
+    all[n++] = h->alive.zones;
+    all[n++] = h->dead.zones;
+    all[n++] = h->rest.zones;
+    all[n++] = h->parts.zones;
+    all[n++] = h->guards.zones;
+    all[n++] = h->pending.zones;
+    for (i = 0; i < n; i++) {
+        free(all[i]);
+    }
+}
+
+/* The start: initial locations and values, all clocks 0. */
+static void begin(engine *h)
+{
+    walk *w = &h->out;
+    int i;
+    for (i = 0; i < h->automaton_count; i++) {
+        w->target[i] = h->automata[3 * i + 2];
+    }
+    for (i = 0; i < h->variable_count; i++) {
+        w->changed[i] = h->variables[4 * i + 2];
+    }
+    for (i = 0; i < h->entries; i++) {
+        w->zone[i] = AT_ONCE;
+    }
+    (void)memcpy(w->places, w->target, (size_t)h->automaton_count * sizeof *w->places);
+    (void)memcpy(w->values, w->changed, (size_t)h->variable_count * sizeof *w->values);
+    if (!h->from->goes_on(h->from->context, 0, 0)) {
+        h->state = SEARCH_STOPPED;
+    }
+}
+
+/* Whether all numbers that clocks are compared with are small enough for these bounds. */
+static bool limits_fit(const engine *h)
+{
+    const int sections[2] = {AT_LIMITS, AT_EXTRA};
+    int s;
+    for (s = 0; s < 2; s++) {
+        const int32_t *row = plan_rows(h->plan, sections[s]);
+        int32_t i;
+        for (i = 0; i < plan_count(h->plan, sections[s]); i++, row += LIMIT_SIZE) {
+            if (row[LIMIT_NUMBER] > h->most_time) {
+                return false;
+            }
+        }
+    }
+    return h->plan[HEAD_BOUND] <= h->most_time;
+}
+
+static void run(engine *h)
+{
+    const bool late = (h->kind == SEEK_LATE) || (h->kind == SEEK_LATE_AFTER);
+    walk *w = &h->out;
+    begin(h);
+    if (runs(h) && !limits_fit(h)) {
+        h->state = SEARCH_TOO_LARGE;
+    }
+    if (!runs(h) || !invariant_data_holds(h, w->target, w->changed)) {
+        return;
+    }
+    if (h->kind == SEEK_NESTED) {
+        find_moves(h);
+        if (!runs(h) || h->failed) {
+            return;
+        }
+        begin(h);
+    }
+    if (h->kind == SEEK_STAY) {
+        stay_from(h, NONE, 0);
+        return;
+    }
+    h->phase = (h->kind == SEEK_LATE);
+    arrive(h, w->zone, w->target, w->changed, NULL, 0);
+    h->phase = 0;
+    while (runs(h) && !h->failed) {
+        if (h->kind == SEEK_STAY_AFTER) {
+            stay_after(h);
+            if (!runs(h) || h->failed) {
+                break;
+            }
+        }
+        if (h->heap_count > 0) {
+            step_best(h);
+        } else if (h->queue_head < h->queue_end) {
+            const uint32_t n = h->queue[h->queue_head++];
+            if (h->nodes[n].zone == NONE) {
+                continue;
+            }
+            if (late) {
+                expand_late(h, n);
+            } else {
+                expand(h, n);
+            }
+        } else {
+            break;
+        }
+    }
+}
+
+/* The path to what was found, or to what failed with the move that did. */
+static void tell_end(engine *h)
+{
+    const search_state ended = h->failed ? SEARCH_FAILED : h->state;
+    const int32_t failed = h->step_edge_count;
+    const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER);
+    if (h->failed) {
+        (void)memcpy(h->failed_edges, h->step_edges, (size_t)failed * sizeof *h->step_edges);
+    }
+    if (runs(h) && !h->failed) {
+        h->state = SEARCH_ENDED;
+        return;
+    }
+    if ((ended != SEARCH_FOUND) && (ended != SEARCH_FAILED)) {
+        return;
+    }
+    h->state = SEARCH_RUNS;
+    h->failed = false;
+    if (ended == SEARCH_FOUND) {
+        if (!on_the_way) {
+            (void)tell_path(h, h->found);
+        }
+    } else {
+        if (on_the_way && (h->frame_count > 0)) {
+            tell_way(h, NONE);
+        } else {
+            (void)tell_path(h, h->from_node);
+        }
+        (void)memcpy(h->step_edges, h->failed_edges, (size_t)failed * sizeof *h->step_edges);
+        h->step_edge_count = failed;
+        if (failed > 0) {
+            tell(h, STEP_MOVE, -1, 0, failed);
+        }
+    }
+    if (runs(h)) {
+        h->state = h->failed ? SEARCH_FAILED : ended;
+    }
+}
+
+static answer search_here(const int32_t *plan, const double *costs, const caller *from)
+{
+    answer told;
+    engine made;
+    engine *h = &made;
+    uint32_t k;
+    int e;
+    (void)memset(&told, 0, sizeof told);
+    if (make_engine(h, plan, costs, from)) {
+        run(h);
+        tell_end(h);
+    }
+    if ((h->state == SEARCH_FOUND) && (h->parts.count > 0)) {
+        uint32_t room = 0;
+        told.parts = enlarge(h, NULL, &room, (uint64_t)h->parts.count * (uint64_t)h->entries,
+                             sizeof *told.parts);
+        for (k = 0; (told.parts != NULL) && (k < h->parts.count); k++) {
+            for (e = 0; e < h->entries; e++) {
+                const bound b = nth(h, &h->parts, k)[e];
+                told.parts[(size_t)k * (size_t)h->entries + (size_t)e] =
+                    (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
+            }
+            told.part_count = k + 1;
+        }
+    }
+    told.state = h->state;
+    told.ending = h->ending;
+    told.loop = h->loop;
+    told.improper = h->improper;
+    told.visited = h->visited;
+    told.stored = h->stored;
+    told.states = h->state_count;
+    told.peak = h->peak;
+    told.path = h->path;
+    told.dim = (uint32_t)h->dim;
+    free_engine(h);
+    return told;
+}
+
+#endif

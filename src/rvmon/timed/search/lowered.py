@@ -1,0 +1,313 @@
+"""A network and what is sought in it as the plan of the native search: one array of int32."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from math import inf, log, prod
+
+from rvmon.timed.model.expressions import (
+    TRUE,
+    BinaryOperation,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    PathFormula,
+)
+from rvmon.timed.model.guards import is_discrete, normal_form
+from rvmon.timed.model.network import Assignment, Edge, Network, Reset
+from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
+from rvmon.timed.model.rules import model_error
+from rvmon.timed.search.programs import Programs
+from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
+from rvmon.timed.zones.zone_unions import formula_bounds, has_paths
+
+MAGIC = 0x5A4E3031
+MOST_CLOCKS = 1000
+MOST_PIECES = 4000
+MOST_TREE_ROWS = 1000
+LARGEST = (1 << 31) - 2
+_OPS = {ClockOp.LT: 0, ClockOp.LE: 1, ClockOp.GE: 2, ClockOp.GT: 3}
+_KINDS = {LocationKind.NORMAL: 0, LocationKind.URGENT: 1, LocationKind.COMMITTED: 2}
+_AND, _OR, _CAN, _CANNOT = 1, 2, 3, 4
+
+
+class Seek(IntEnum):
+    """What a plan seeks, as `plan.h` says."""
+
+    GOAL = 0
+    DEADLOCK = 1
+    STAY = 2
+    STAY_AFTER = 3
+    LATE = 4
+    LATE_AFTER = 5
+    NESTED = 6
+
+
+class Choose(IntEnum):
+    """By what a plan chooses among runs to a goal."""
+
+    SHORTEST = 0
+    FASTEST = 1
+    LIKELY = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """A condition on the discrete state and bounds of clocks, which hold together."""
+
+    condition: Expression
+    compares: tuple[ClockCompare, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sought:
+    """What is sought in a network.
+
+    Attributes:
+        kind: of search.
+        goal: normalised; where runs lead, or from where they are watched, or what holds where
+            there is no deadlock.
+        inside: normalised; where runs stay, or what holds where there is a deadlock.
+        nested: normalised; where runs lead, if that speaks of runs.
+        choose: among several runs.
+        bound: units of time, if there is one.
+    """
+
+    kind: Seek
+    goal: Expression | None = None
+    inside: Expression | None = None
+    nested: Expression | None = None
+    choose: Choose = Choose.SHORTEST
+    bound: int | None = None
+
+    @property
+    def has_timer(self) -> bool:
+        """Whether one more clock belongs to the query."""
+        return self.bound is not None or self.choose is Choose.FASTEST
+
+    @property
+    def is_levelled(self) -> bool:
+        """Whether only states that can do the same stand for each other, not those that do more."""
+        return self.kind in (Seek.DEADLOCK, Seek.STAY, Seek.STAY_AFTER, Seek.NESTED)
+
+
+class Plan:
+    """A plan and what its numbers stand for.
+
+    Attributes:
+        edges: of the plan: automaton and number there.
+        goal, inside: the alternatives of those.
+        numbers, costs: the plan itself and the cost of each edge, as bytes.
+
+    Raises:
+        ModelError: the network or the query is too large for a plan.
+    """
+
+    def __init__(self, network: Network, sought: Sought) -> None:
+        self._network = network
+        self._programs = Programs()
+        self._atoms: list[int] = []
+        self._updates: list[int] = []
+        self._limits: list[int] = []
+        self._tree: list[int] = []
+        self._pieces: list[int] = []
+        self.edges: list[tuple[int, int]] = []
+        timer = len(network.clocks)
+        due: tuple[ClockCompare, ...] = ()
+        if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
+            due = (ClockCompare(timer, ClockOp.LE, Constant(sought.bound)),)
+        automata, locations, edges = self._automata()
+        self.goal = alternatives_of(sought.goal, due)
+        self.inside = alternatives_of(sought.inside, due)
+        goal = self._alternatives(self.goal)
+        inside = self._alternatives(self.inside)
+        if sought.nested is not None:
+            self._grow(sought.nested)
+        self._refuse_too_large(len(self.inside))
+        sections = [
+            (4, [x for v in network.variables for x in (v.low, v.high, v.initial, v.is_bool)]),
+            (3, automata),
+            (8, locations),
+            (11, edges),
+            (4, self._atoms),
+            (5, self._updates),
+            (3, self._limits),
+            (1, self._programs.code),
+            (1, self._programs.table),
+            (3, goal),
+            (3, inside),
+            (3, self._extra(sought, timer + 1)),
+            (3, self._tree),
+            (3, self._pieces),
+        ]
+        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else 0
+        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer]
+        self.numbers = _packed([*head, sought.is_levelled, late or 0], sections)
+        weights = (network.automata[a].edges[number].weight for a, number in self.edges)
+        self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
+
+    def _refuse_too_large(self, pieces: int) -> None:
+        if (
+            len(self._network.clocks) >= MOST_CLOCKS
+            or pieces > MOST_PIECES
+            or len(self._tree) > 3 * MOST_TREE_ROWS
+        ):
+            raise model_error("TA019", "the query has too many alternatives, or clocks", None)
+
+    def _automata(self) -> tuple[list[int], list[int], list[int]]:
+        """The rows of automata, locations and edges; edges stand by their source."""
+        automata: list[int] = []
+        locations: list[int] = []
+        edges: list[int] = []
+        for index, automaton in enumerate(self._network.automata):
+            automata += [len(locations) // 8, len(automaton.locations), automaton.initial]
+            bounds = location_bounds(self._network, automaton)
+            for number, place in enumerate(automaton.locations):
+                first, limit = len(self.edges), len(self._limits) // 3
+                for k, edge in enumerate(automaton.edges):
+                    if edge.source == number:
+                        edges += self._edge(index, edge)
+                        self.edges.append((index, k))
+                self._limits += _limit_rows(bounds[number])
+                data = self._data(place.invariant.data)
+                locations += [_KINDS[place.kind], data, *self._compares(place.invariant.clocks)]
+                locations += [limit, len(self._limits) // 3 - limit]
+                locations += [first, len(self.edges) - first]
+        return automata, locations, edges
+
+    def _edge(self, automaton: int, edge: Edge) -> list[int]:
+        row = [automaton, edge.target, self._data(edge.guard.data)]
+        row += self._compares(edge.guard.clocks)
+        first = len(self._updates) // 5
+        for update in edge.updates:
+            self._updates += self._update(update)
+        row += [first, len(self._updates) // 5 - first]
+        if edge.sync is None:
+            return [*row, -1, 0, 0, 0]
+        slot = edge.sync.slot
+        channel = self._network.channels[slot.first]
+        flags = edge.sync.sends | channel.broadcast << 1 | channel.urgent << 2
+        last = slot.first + prod(map(len, slot.extents))
+        return [*row, self._programs.add_index(slot), slot.first, last, flags]
+
+    def _update(self, update: Assignment | Reset) -> list[int]:
+        if isinstance(update, Reset):
+            return [1, -1, update.clock + 1, 1, self._programs.add(update.value)]
+        slot = update.slot
+        offset, size = self._programs.add_offset(slot), prod(map(len, slot.extents))
+        return [0, offset, slot.first, size, self._programs.add(update.value)]
+
+    def _data(self, expression: Expression) -> int:
+        return -1 if expression == TRUE else self._programs.add(expression)
+
+    def _compares(self, compares: Iterable[ClockCompare]) -> tuple[int, int]:
+        """Add atoms; where they begin, and how many they are."""
+        first = len(self._atoms) // 4
+        for compare in compares:
+            row = [compare.clock + 1, _OPS[compare.op]]
+            match compare.bound:
+                case Constant(value) if 0 <= value <= LARGEST:
+                    row += [-1, value]
+                case bound:
+                    row += [self._programs.add(bound), 0]
+            self._atoms += row
+        return first, len(self._atoms) // 4 - first
+
+    def _alternatives(self, alternatives: Sequence[Alternative]) -> list[int]:
+        return [
+            number
+            for one in alternatives
+            for number in (self._data(one.condition), *self._compares(one.compares))
+        ]
+
+    def _extra(self, sought: Sought, timer: int) -> list[int]:
+        """What the query compares clocks with, in every location."""
+        bounds = no_bounds(len(self._network.clocks))
+        for formula in (sought.goal, sought.inside, sought.nested):
+            if formula is not None:
+                bounds = bounds.joined([formula_bounds(formula, self._network)])
+        rows = _limit_rows(bounds)
+        if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
+            rows += [timer, 0, sought.bound]
+        return rows
+
+    def _grow(self, formula: Expression) -> int:
+        """Add a row of the tree for a normalised formula; its number."""
+        match formula:
+            case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right) if has_paths(
+                formula
+            ):
+                kind = _AND if op is BinaryOp.AND else _OR
+                row = [kind, self._grow(left), self._grow(right)]
+            case PathFormula(PathOp.POSSIBLY, body, None):
+                row = [_CAN, self._grow(body), 0]
+            case PathFormula(PathOp.INVARIANTLY, body, None):
+                row = [_CANNOT, self._grow(normal_form(body, positive=False)), 0]
+            case _:
+                first = len(self._pieces) // 3
+                self._pieces += self._alternatives(alternatives_of(formula))
+                row = [0, first, len(self._pieces) // 3 - first]
+        self._tree += row
+        return len(self._tree) // 3 - 1
+
+
+def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) -> bytes:
+    at = len(head) + 2 * len(sections)
+    numbers = [*head]
+    for width, section in sections:
+        numbers += [at, len(section) // width]
+        at += len(section)
+    for _, section in sections:
+        numbers += section
+    return array("i", numbers).tobytes()
+
+
+def _limit_rows(bounds: ClockBounds) -> list[int]:
+    rows: list[int] = []
+    for clock, (low, high) in enumerate(zip(bounds.lower, bounds.upper, strict=True), start=1):
+        for is_lower, number in ((1, low), (0, high)):
+            if number > -inf:
+                rows += [clock, is_lower, int(min(number, LARGEST))]
+    return rows
+
+
+def alternatives_of(
+    formula: Expression | None, due: Sequence[ClockCompare] = ()
+) -> list[Alternative]:
+    """A normalised formula as alternatives, in each of which more bounds hold; none for `None`."""
+    if formula is None:
+        return []
+    found = []
+    for conditions, compares in _split(formula):
+        together: Expression = TRUE
+        for condition in conditions:
+            if together == TRUE:
+                together = condition
+            else:
+                together = BinaryOperation(BinaryOp.AND, together, condition)
+        found.append(Alternative(together, (*compares, *due)))
+    return found
+
+
+_Parts = tuple[list[Expression], list[ClockCompare]]
+
+
+def _split(formula: Expression) -> list[_Parts]:
+    if is_discrete(formula):
+        return [([formula], [])]
+    match formula:
+        case ClockCompare():
+            return [([], [formula])]
+        case BinaryOperation(BinaryOp.AND, left, right):
+            some, others = _split(left), _split(right)
+            if len(some) * len(others) > MOST_PIECES:
+                raise model_error("TA019", "the query has too many alternatives", None)
+            return [(a + c, b + d) for a, b in some for c, d in others]
+        case BinaryOperation(BinaryOp.OR, left, right):
+            return [*_split(left), *_split(right)]
+        case _:
+            raise AssertionError(f"{formula} is not normalised")

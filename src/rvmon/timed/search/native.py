@@ -1,0 +1,254 @@
+"""The native search asked from here, and what it found as a path, step by step."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from math import inf
+
+from rvmon.native.zones import search
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.rules import model_error
+from rvmon.timed.runs.paths import PathStep, crossing_step, mark_step, move_step
+from rvmon.timed.runs.run import Ending, Run
+from rvmon.timed.runs.timing import timing_of
+from rvmon.timed.search.loops import time_passes
+from rvmon.timed.search.lowered import Alternative, Plan, Seek, Sought
+from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.witness import make_run
+from rvmon.timed.zones.compile import atoms_of
+from rvmon.timed.zones.dbm import STRICT, Zone
+from rvmon.timed.zones.deadlock import is_time_bounded
+from rvmon.timed.zones.discrete import State
+from rvmon.timed.zones.successors import Space
+from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint, constraint_maker
+
+_UNBOUNDED = (1 << 63) - 1
+
+
+class _State(IntEnum):
+    ENDED = 1
+    FOUND = 2
+    STOPPED = 3
+    FAILED = 4
+    NO_MEMORY = 5
+    TOO_LARGE = 6
+
+
+class _Step(IntEnum):
+    MOVE = 0
+    CROSSING = 1
+    MARK = 2
+
+
+class _End(IntEnum):
+    REACHED = 0
+    DEAD = 1
+    IDLE = 2
+    STUCK = 3
+    LOOP = 4
+    ZENO = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a search gave.
+
+    Attributes:
+        run: to what was sought; `None` if there is none or the search was stopped.
+        improper: whether a way to stay was passed by because time stops on it.
+    """
+
+    run: Run | None
+    improper: bool
+
+
+def seek(
+    network: Network,
+    sought: Sought,
+    meter: Meter,
+    *,
+    proper_only: bool = False,
+) -> Answer:
+    """Search for a run.
+
+    Args:
+        network: where it runs.
+        sought: where it leads, or stays.
+        meter: counts the states, and ends the search.
+        proper_only: whether a way to stay counts only if time passes on it without bound.
+
+    Raises:
+        ModelError: a run of it leaves a variable's range, or numbers are too large.
+    """
+    plan = Plan(network, sought)
+    paths = _Paths(network, plan, sought)
+
+    def counts(path: bytes, loop: int, head: bytes) -> int:
+        steps = [step.timed for step in paths.steps(path)[loop:]]
+        return time_passes(steps, _zone(array("q", head)), paths.dim)
+
+    state, ending, loop, improper, visited, stored, _, _, path, parts = search(
+        plan.numbers, plan.costs, meter.look, counts, meter.left, -1, proper_only
+    )
+    meter.add(visited, stored)
+    match _State(state):
+        case _State.NO_MEMORY:
+            meter.stop("memory ran out")
+        case _State.STOPPED:
+            meter.stop_at_states()
+        case _State.FAILED:
+            paths.fail(path, sought)
+        case _State.TOO_LARGE:
+            fix = "choose a larger unit of time"
+            raise model_error("TA019", "times grow too large in this network", None, fix)
+        case _State.FOUND:
+            return Answer(paths.run(path, parts, _End(ending), loop), improper=bool(improper))
+        case _State.ENDED:
+            pass
+    return Answer(None, improper=bool(improper))
+
+
+def _zone(numbers: Sequence[int]) -> Zone:
+    """A zone in this package's numbers."""
+    return [
+        inf if number == _UNBOUNDED else (number >> 1) - (0.0 if number & 1 else STRICT)
+        for number in numbers
+    ]
+
+
+class _Paths:
+    """Takes paths that the native search tells through the network once more."""
+
+    def __init__(self, network: Network, plan: Plan, sought: Sought) -> None:
+        self._network = network
+        self._plan = plan
+        self._space = Space(network)
+        self.dim = 1 + len(network.clocks) + sought.has_timer
+        late = sought.kind in (Seek.LATE, Seek.LATE_AFTER)
+        self._timers = [self.dim - 1] if late else []
+
+    def steps(self, path: bytes) -> list[PathStep]:
+        """The steps of a path.
+
+        Raises:
+            ModelError: the last one leaves a variable's range.
+        """
+        return self._walk(path)[1]
+
+    def run(self, path: bytes, parts: bytes, end: _End, loop: int) -> Run:
+        """The run along a path, to the first of some parts that it can reach."""
+        start, steps, last = self._walk_from_start(path)
+        for part in self._parts(parts):
+            marked = [*steps, mark_step(last, part)]
+            if timing_of([step.timed for step in marked]) is not None:
+                steps = marked
+                break
+        return make_run(self._network, start, steps, _ending(end, last), None if loop < 0 else loop)
+
+    def fail(self, path: bytes, sought: Sought) -> None:
+        """Say what is wrong where a search could not go on.
+
+        Raises:
+            ModelError: always, unless the native search is wrong.
+        """
+        state, _ = self._walk(path)
+        for move in self._space.moves(state):
+            self._space.moves(move.target)
+            self._ask(move.target, sought)
+        self._ask(state, sought)
+        raise AssertionError("the native search failed where the rules do not")
+
+    def _ask(self, state: State, sought: Sought) -> None:
+        for formula in (sought.goal, sought.inside):
+            if formula is not None:
+                constraint_maker(formula)(state.vector.locations, state.values)
+
+    def _walk_from_start(self, path: bytes) -> tuple[State, list[PathStep], State]:
+        last, steps = self._walk(path)
+        start = self._space.initial()
+        assert start is not None  # noqa: S101 - the network can start
+        return start, steps, last
+
+    def _walk(self, path: bytes) -> tuple[State, list[PathStep]]:
+        numbers = array("i", path)
+        state = self._space.initial()
+        assert state is not None  # noqa: S101 - the network can start
+        piece, steps, at = numbers[0], [], 1
+        while at < len(numbers):
+            kind, behind, number, count = numbers[at : at + 4]
+            at += 4 + count
+            here = self._constraint(self._plan.inside, piece, state)
+            match _Step(kind):
+                case _Step.MOVE:
+                    edges = [self._plan.edges[edge] for edge in numbers[at - count : at]]
+                    step = self._move(state, edges, here, behind)
+                case _Step.CROSSING:
+                    there = self._constraint(self._plan.inside, behind, state)
+                    leave = here if number else _rounded(here, uppers=True)
+                    enter = _rounded(there, uppers=False) if number else there
+                    step = crossing_step(state, leave, enter)
+                case _Step.MARK:
+                    holds = self._constraint(self._plan.goal, number, state)
+                    there = self._constraint(self._plan.inside, behind, state)
+                    step = mark_step(state, (*holds, *there), self._timers)
+            steps.append(step)
+            state, piece = step.state, behind
+        return state, steps
+
+    def _move(
+        self, state: State, edges: list[tuple[int, int]], leave: Constraint, behind: int
+    ) -> PathStep:
+        for move in self._space.moves(state):
+            if [(edge.automaton, edge.number) for edge in move.edges] == edges:
+                if move.failure is not None:
+                    raise move.failure
+                enter = self._constraint(self._plan.inside, behind, move.target)
+                return move_step(state, move, leave, enter)
+        raise AssertionError("the native search made a move that the rules have not")
+
+    def _constraint(
+        self, alternatives: Sequence[Alternative], number: int, state: State
+    ) -> Constraint:
+        """The bounds of an alternative in a state; none for −1."""
+        if number < 0:
+            return EVERYWHERE
+        atoms = atoms_of(alternatives[number].compares, None)
+        return tuple(atoms(state.vector.locations, state.values))
+
+    def _parts(self, parts: bytes) -> Iterator[Constraint]:
+        numbers, entries = array("q", parts), self.dim * self.dim
+        for at in range(0, len(numbers), entries):
+            zone = _zone(numbers[at : at + entries])
+            yield tuple(
+                (x, y, zone[x * self.dim + y])
+                for x in range(self.dim)
+                for y in range(self.dim)
+                if x != y and zone[x * self.dim + y] < inf
+            )
+
+
+def _rounded(constraint: Constraint, *, uppers: bool) -> Constraint:
+    """A piece with the instants at which time leaves it, or behind which it enters it."""
+    return tuple(
+        (x, y, float(-(-bound // 1)) if (x == 0 if uppers else y == 0) else bound)
+        for x, y, bound in constraint
+    )
+
+
+def _ending(end: _End, last: State) -> Ending:
+    match end:
+        case _End.DEAD:
+            return Ending.TIME_LOCK if is_time_bounded(last) else Ending.DEADLOCK
+        case _End.IDLE:
+            return Ending.IDLE
+        case _End.STUCK:
+            return Ending.TIME_LOCK
+        case _End.LOOP:
+            return Ending.LOOP
+        case _End.ZENO:
+            return Ending.ZENO_LOOP
+        case _:
+            return Ending.REACHED

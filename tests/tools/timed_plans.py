@@ -1,0 +1,31 @@
+"""Plans of the native search, for random networks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.model.expressions import PathFormula
+from rvmon.timed.model.guards import normal_form
+from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
+from tests.tools.timed_generate import random_model
+
+
+def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
+    """A plan of each kind for some random networks."""
+    for seed in seeds:
+        network = loads_network(random_model(seed))
+        formulas = [network.queries[k].formula for k in (0, 1, 10)]
+        some, other, nested = (f.body for f in formulas if isinstance(f, PathFormula))
+        some, other, nested = normal_form(some), normal_form(other), normal_form(nested, False)
+        for sought in (
+            *(Sought(Seek.GOAL, some, choose=choose) for choose in Choose),
+            Sought(Seek.GOAL, some, bound=3),
+            Sought(Seek.DEADLOCK, some, other),
+            Sought(Seek.STAY, None, other),
+            Sought(Seek.STAY_AFTER, some, other),
+            Sought(Seek.LATE, None, other, bound=2),
+            Sought(Seek.LATE_AFTER, some, other, bound=2),
+            Sought(Seek.NESTED, nested=nested),
+        ):
+            yield Plan(network, sought)
