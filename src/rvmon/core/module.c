@@ -195,7 +195,7 @@ static PyObject *reset_of(monitor *c, PyObject *unused)
     (void)unused;
     c->given = 0;
     forget_arrivals(&c->in);
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     rv_forget_records(c->m);
     return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
 }
@@ -293,7 +293,7 @@ static void monitor_dealloc(PyObject *self)
         (void)rv_reset(c->m); /* pieces give back what hangs on them */
         rv_free(c->m);
     }
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     free(c->notes.dropped);
     free_intake(&c->in);
     PyMem_Free(c->captured);

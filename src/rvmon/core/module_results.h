@@ -55,12 +55,12 @@ static PyObject *open_of(monitor *c, PyObject *unused)
     (void)unused;
     begin_gathering(&g, c);
     gather_records(c, 0, true, &g);
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     if (!g.failed) {
         rv_each_open(c->m, gather, &g);
     }
     made = attempts_of(&g);
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     return made;
 }
 

@@ -42,7 +42,7 @@ static PyObject *load_of(monitor *c, PyObject *bytes)
     if (code == RV_OK) {
         (void)rv_reset(c->m); /* pieces give back what hangs on them */
         rv_free(c->m);
-        forget_standing(&c->notes);
+        free_dropped(&c->notes);
         c->m = made;
         c->given = rv_records(made, &records);
         return Py_NewRef(Py_True);
