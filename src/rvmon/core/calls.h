@@ -150,6 +150,52 @@ static inline bool means_the_same(const run *r, int32_t local, const rv_number *
 
 void margins_stir(run *r, int32_t what);
 
+/* ---- atoms.c */
+bool find_quick(arena *a, const plan *all, part *p);
+bool recheck(run *r, int32_t atom);     /* whether it is another truth */
+bool recheck_list(run *r, list l);      /* whether one of them is */
+void recheck_amid(run *r, list l);
+void recheck_fading(run *r);
+void reread(run *r, int32_t atom, bool pending);
+uint8_t leaf_truth(const run *r, const node_plan *n);
+
+/* How a value stands to a constant: the place of a bit. */
+enum { IS_EQUAL, IS_LESS, IS_GREATER };
+
+static inline int32_t standing_of(double x, double constant)
+{
+    return IS_LESS * (int32_t)(x < constant) + IS_GREATER * (int32_t)(x > constant);
+}
+
+/* The signals of a run that can be taken quickly now; NULL: none of them. */
+static inline const quick_signal *quick_now(const run *r)
+{
+    return ((r->at.phase == 1) && (r->at.lost_count == 0) && (r->margins == NULL)) ? r->part->quick : NULL;
+}
+
+/* Take a real value of a signal that few comparisons read, without a branch for what nobody can foretell;
+ * false: it is none of these. */
+static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local, const rv_update *u)
+{
+    const quick_compare *c = quick[local].compares;
+    const quick_compare *end = c + quick[local].count;
+    rv_number *value = &r->value[local];
+    if ((c == end) || (u->value.kind != RV_REAL) || (value->kind != RV_REAL) || (u->says != RV_SAYS_YES)) {
+        return false;
+    }
+    value->as.real = u->value.as.real;
+    for (; c < end; c++) {
+        uint8_t *atom = &r->atom[c->atom];
+        const int32_t stands = standing_of(u->value.as.real, c->constant);
+        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> stands) & 1));
+        const uint64_t other = (now != *atom) ? 1U : 0U;
+        *atom = now;
+        r->dirty[c->word] |= c->dirty & (0U - other);
+        r->dirty_words[c->word >> 6] |= other << (c->word & 63);
+    }
+    return true;
+}
+
 static inline void take_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
@@ -182,14 +228,6 @@ void may_begin(run *r, int64_t t);
 void begin_blank(run *r, int64_t t);
 void end_blank(run *r, int64_t t);
 void revive_all(run *r, int64_t t);
-
-/* ---- atoms.c */
-bool recheck(run *r, int32_t atom);     /* whether it is another truth */
-bool recheck_list(run *r, list l);      /* whether one of them is */
-void recheck_amid(run *r, list l);
-void recheck_fading(run *r);
-void reread(run *r, int32_t atom, bool pending);
-uint8_t leaf_truth(const run *r, const node_plan *n);
 
 /* ---- past.c */
 stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);

@@ -54,12 +54,13 @@ static bool add_chunk(arena *a, size_t size)
     return true;
 }
 
-void *arena_take(arena *a, size_t size)
+/* A block with whatever was in it; `size` becomes how large it is. */
+static void *take_as_it_is(arena *a, size_t *size)
 {
-    size_t room = size;
+    size_t room = *size;
     size_t class;
     void *made;
-    if (size > SIZE_MAX / 4) { /* beyond, sums of sizes could wrap */
+    if (room > SIZE_MAX / 4) { /* beyond, sums of sizes could wrap */
         return NULL;
     }
     class = class_of(&room);
@@ -75,8 +76,15 @@ void *arena_take(arena *a, size_t size)
         a->left -= room;
         a->used += room;
     }
-    (void)memset(made, 0, room);
+    *size = room;
     return made;
+}
+
+void *arena_take(arena *a, size_t size)
+{
+    size_t room = size;
+    void *made = take_as_it_is(a, &room);
+    return (made != NULL) ? memset(made, 0, room) : NULL;
 }
 
 void arena_give(arena *a, void *block, size_t size)
@@ -106,8 +114,10 @@ void arena_release(arena *a)
 
 void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
 {
+    const size_t filled = (size_t)*room * each;
     int64_t more = 2 * (int64_t)*room;
-    void *made;
+    size_t size;
+    char *made;
     if (wanted <= *room) {
         return old;
     }
@@ -117,15 +127,17 @@ void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each
         m->spoilt = true;
         return NULL;
     }
-    made = arena_take(&m->memory, (size_t)more * each);
+    size = (size_t)more * each;
+    made = take_as_it_is(&m->memory, &size);
     if (made == NULL) {
         m->spoilt = true;
         return NULL;
     }
     if (old != NULL) {
-        (void)memcpy(made, old, (size_t)*room * each);
-        arena_give(&m->memory, old, (size_t)*room * each);
+        (void)memcpy(made, old, filled);
+        arena_give(&m->memory, old, filled);
     }
+    (void)memset(made + filled, 0, size - filled);
     *room = (int32_t)more;
     return made;
 }

@@ -200,7 +200,7 @@ static void gather_records(const monitor *c, int64_t first, bool open, gathering
 /* Have records be dropped that are too many, all being given out. */
 static void trim_given(monitor *c)
 {
-    if (rv_trim(c->m)) {
+    if ((c->keep >= 0) && rv_trim(c->m)) {
         const rv_record *records;
         c->given = rv_records(c->m, &records);
         free_dropped(&c->notes);

@@ -51,6 +51,8 @@ typedef struct {
     int64_t fields_count;
     int64_t fields_room;
     int64_t fields_most;       /* if each occurs once */
+    int32_t to_come;           /* so many signals were told of in no sample */
+    bool is_odd;               /* whether something is unknown in the sample that is laid out */
 } intake;
 
 /* The number of a value that is no real one; false if that takes a closer look. */
@@ -135,16 +137,20 @@ static rv_update *further_update(intake *in, int32_t name)
     return update;
 }
 
-static bool lay_signal(intake *in, int32_t signal, PyObject *value)
+static inline bool lay_signal(intake *in, int32_t signal, PyObject *value)
 {
     rv_update *update = further_update(in, signal);
-    update->value.kind = RV_UNKNOWN;
-    update->value.as.whole = RV_IS_NONE;
-    if ((value != Py_None) && !number_of(value, &in->readings[signal], &update->value)) {
+    if (value == Py_None) {
+        update->value.kind = RV_UNKNOWN;
+        update->value.as.whole = RV_IS_NONE;
+    } else if (!number_of(value, &in->readings[signal], &update->value)) {
         return false;
+    } else {
+        /* It is laid out. */
     }
     if (update->value.kind == RV_UNKNOWN) {
         update->says = RV_SAYS_UNKNOWN;
+        in->is_odd = true;
     }
     return true;
 }
@@ -184,6 +190,7 @@ static bool lay_payload(intake *in, int32_t name, PyObject *payload)
         return false;
     }
     in->fields_count += count;
+    in->is_odd = true;
     for (i = 0; i < count; i++) {
         fields[i].kind = RV_UNKNOWN;
         fields[i].as.whole = IS_NOT_SAID;
@@ -257,6 +264,7 @@ static bool lay_event(intake *in, int32_t name, PyObject *value, bool looked)
         further_update(in, name)->says = RV_SAYS_NO;
     } else if (value == Py_None) {
         further_update(in, name)->says = RV_SAYS_UNKNOWN;
+        in->is_odd = true;
     } else if (PyTuple_CheckExact(value)) {
         return lay_payloads(in, name, value, looked);
     } else {
@@ -276,6 +284,7 @@ static bool lay(intake *in, PyObject *values, bool looked)
     bool done = true;
     in->count = 0;
     in->fields_count = 0;
+    in->is_odd = false;
     while (done && (PyDict_Next(values, &at, &name, &value) != 0)) {
         const int32_t number = number_of_name(in, name, place);
         if (number < 0) {
@@ -300,11 +309,11 @@ static void note_unknown(arrival *a, const rv_number *value, int64_t t)
 }
 
 /* Note what the sample brought that was taken at `t`. */
-static void note_arrivals(const intake *in, int64_t t)
+static void note_arrivals(intake *in, int64_t t)
 {
     static const rv_number none = {RV_UNKNOWN, {RV_IS_NONE}};
     int64_t i;
-    for (i = 0; i < in->count; i++) {
+    for (i = 0; (in->is_odd || (in->to_come > 0)) && (i < in->count); i++) {
         const rv_update *u = &in->updates[i];
         arrival *a = &in->arrivals[u->name];
         if (u->name < in->signals) {
@@ -312,7 +321,10 @@ static void note_arrivals(const intake *in, int64_t t)
             if (!known && (in->readings[u->name].single != 0)) {
                 continue;
             }
-            a->came = (a->came == RV_NO_TIME) ? t : a->came;
+            if (a->came == RV_NO_TIME) {
+                a->came = t;
+                in->to_come--;
+            }
             if (!known) {
                 note_unknown(a, &u->value, t);
             }
@@ -332,14 +344,25 @@ static void note_arrivals(const intake *in, int64_t t)
     }
 }
 
+/* Count the signals that were told of in no sample. */
+static void count_to_come(intake *in)
+{
+    int32_t i;
+    in->to_come = 0;
+    for (i = 0; i < in->signals; i++) {
+        in->to_come += (in->arrivals[i].came == RV_NO_TIME) ? 1 : 0;
+    }
+}
+
 /* Forget what came. */
-static void forget_arrivals(const intake *in)
+static void forget_arrivals(intake *in)
 {
     int32_t i;
     for (i = 0; i < in->all; i++) {
         (void)memset(&in->arrivals[i], 0, sizeof in->arrivals[i]);
         in->arrivals[i].came = RV_NO_TIME;
     }
+    count_to_come(in);
 }
 
 static void free_intake(intake *in)

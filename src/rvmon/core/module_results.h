@@ -23,6 +23,7 @@ static PyObject *take_arrivals_of(monitor *c, PyObject *bytes)
         return Py_NewRef(Py_False);
     }
     (void)memcpy(c->in.arrivals, PyBytes_AsString(bytes), (size_t)size);
+    count_to_come(&c->in);
     return Py_NewRef(Py_True);
 }
 
