@@ -180,18 +180,21 @@ static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local
     const quick_compare *c = quick[local].compares;
     const quick_compare *end = c + quick[local].count;
     rv_number *value = &r->value[local];
+    uint64_t *dirty = r->dirty;
+    uint64_t *words = r->dirty_words;
+    uint8_t *atoms = r->atom;
+    const double x = u->value.as.real;
     if ((c == end) || (u->value.kind != RV_REAL) || (value->kind != RV_REAL) || (u->says != RV_SAYS_YES)) {
         return false;
     }
-    value->as.real = u->value.as.real;
+    value->as.real = x;
     for (; c < end; c++) {
-        uint8_t *atom = &r->atom[c->atom];
-        const int32_t stands = standing_of(u->value.as.real, c->constant);
-        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> stands) & 1));
-        const uint64_t other = (now != *atom) ? 1U : 0U;
-        *atom = now;
-        r->dirty[c->word] |= c->dirty & (0U - other);
-        r->dirty_words[c->word >> 6] |= other << (c->word & 63);
+        const int32_t word = c->word;
+        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> standing_of(x, c->constant)) & 1));
+        const uint64_t other = (now != atoms[c->atom]) ? 1U : 0U;
+        dirty[word] |= c->dirty & (0U - other);
+        words[word >> 6] |= other << (word & 63);
+        atoms[c->atom] = now;
     }
     return true;
 }
