@@ -113,7 +113,9 @@ static inline int32_t highest_bit(uint64_t word)
 #endif
 }
 
-/* A larger array with what stood in the old one; NULL if memory is short, which spoils the run. */
+/* A larger array with what stood in the old one, and zeros behind it; NULL if memory is short, which
+ * spoils the run. The same with anything behind it. */
+void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
 void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
 
 /* ---- timers.c */

@@ -112,12 +112,12 @@ void arena_release(arena *a)
     a->left = 0;
 }
 
-void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
+void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
 {
     const size_t filled = (size_t)*room * each;
     int64_t more = 2 * (int64_t)*room;
     size_t size;
-    char *made;
+    void *made;
     if (wanted <= *room) {
         return old;
     }
@@ -137,7 +137,16 @@ void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each
         (void)memcpy(made, old, filled);
         arena_give(&m->memory, old, filled);
     }
-    (void)memset(made + filled, 0, size - filled);
     *room = (int32_t)more;
+    return made;
+}
+
+void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
+{
+    const size_t filled = (size_t)*room * each;
+    char *made = widened(m, old, room, wanted, each);
+    if ((made != NULL) && (made != old)) {
+        (void)memset(made + filled, 0, (size_t)*room * each - filled);
+    }
     return made;
 }

@@ -143,6 +143,7 @@ static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_nu
     if (made == NULL) {
         return NULL;
     }
+    hide_record((PyObject *)made);
     made->objects[REQUIREMENT] = Py_NewRef(PyTuple_GetItem(c->ids, told->requirement));
     made->objects[VERDICT] = Py_NewRef(PyTuple_GetItem(c->verdicts, told->verdict));
     made->objects[DECISION] = Py_NewRef(PyTuple_GetItem(c->decisions, told->decision));

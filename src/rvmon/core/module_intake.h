@@ -33,6 +33,13 @@ typedef struct {
     int64_t nan_first;
 } arrival;
 
+/* A name that came at some place of a sample, and its number. */
+typedef struct {
+    PyObject *name;
+    int32_t number;
+    bool is_real;              /* whether it is a signal of real values */
+} seen_name;
+
 /* The names of a monitor, and the sample that is laid out. */
 typedef struct {
     PyObject *numbers;         /* borrowed: of the names that can come */
@@ -42,8 +49,7 @@ typedef struct {
     reading *readings;         /* of all */
     arrival *arrivals;         /* of all */
     int32_t *first_fields;     /* of events, among those */
-    int32_t *order;            /* the numbers of the names, as they came last */
-    PyObject **came;           /* the names themselves, as they came last */
+    seen_name *seen;           /* as names came last */
     rv_update *updates;
     int64_t count;
     int64_t room;
@@ -85,49 +91,58 @@ static bool number_of_other(PyObject *value, const reading *as, rv_number *numbe
     return beyond == 0;
 }
 
+/* The number of a float. */
+static inline void take_float(PyObject *value, rv_number *number)
+{
+    const double x = PyFloat_AsDouble(value);
+    number->kind = RV_REAL;
+    number->as.real = x;
+    if (x != x) {
+        number->kind = RV_UNKNOWN;
+        number->as.whole = RV_IS_NAN;
+    }
+}
+
 /* The number of a value; false if that takes a closer look. */
-static inline bool number_of(PyObject *value, const reading *as, rv_number *number)
+static bool number_of(PyObject *value, const reading *as, rv_number *number)
 {
     if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
-        number->as.real = PyFloat_AsDouble(value);
-        number->kind = RV_REAL;
-        if (number->as.real != number->as.real) {
-            number->kind = RV_UNKNOWN;
-            number->as.whole = RV_IS_NAN;
-        }
+        take_float(value, number);
         return true;
     }
     return number_of_other(value, as, number);
 }
 
-/* The number of the name that came as so manyth; -1 if none can come that is so called.
+/* The name that came as so manyth; NULL if none can come that is so called.
  *
  * Mostly the same objects come in the same order. */
-static int32_t number_of_name(intake *in, PyObject *name, int32_t place)
+static const seen_name *name_at(intake *in, PyObject *name, int32_t place)
 {
     PyObject *found = NULL;
+    seen_name *seen = &in->seen[place];
     long number;
     if (place >= in->names) {
-        return -1;
+        return NULL;
     }
-    if (in->came[place] == name) {
-        return in->order[place];
+    if (seen->name == name) {
+        return seen;
     }
     if (PyUnicode_CheckExact(name)) {
         found = PyDict_GetItemWithError(in->numbers, name);
     }
     number = (found == NULL) ? -1 : PyLong_AsLong(found);
     if ((number < 0) || (number >= in->names)) {
-        return -1;
+        return NULL;
     }
     Py_INCREF(name);
-    Py_XDECREF(in->came[place]);
-    in->came[place] = name;
-    in->order[place] = (int32_t)number;
-    return in->order[place];
+    Py_XDECREF(seen->name);
+    seen->name = name;
+    seen->number = (int32_t)number;
+    seen->is_real = (number < in->signals) && (in->readings[number].kind == IS_REAL);
+    return seen;
 }
 
-static rv_update *further_update(intake *in, int32_t name)
+static inline rv_update *further_update(intake *in, int32_t name)
 {
     rv_update *update = &in->updates[in->count];
     in->count++;
@@ -137,13 +152,15 @@ static rv_update *further_update(intake *in, int32_t name)
     return update;
 }
 
-static inline bool lay_signal(intake *in, int32_t signal, PyObject *value)
+static inline bool lay_signal(intake *in, const seen_name *name, PyObject *value)
 {
-    rv_update *update = further_update(in, signal);
-    if (value == Py_None) {
+    rv_update *update = further_update(in, name->number);
+    if (name->is_real && PyFloat_CheckExact(value)) {
+        take_float(value, &update->value);
+    } else if (value == Py_None) {
         update->value.kind = RV_UNKNOWN;
         update->value.as.whole = RV_IS_NONE;
-    } else if (!number_of(value, &in->readings[signal], &update->value)) {
+    } else if (!number_of(value, &in->readings[name->number], &update->value)) {
         return false;
     } else {
         /* It is laid out. */
@@ -280,23 +297,19 @@ static bool lay(intake *in, PyObject *values, bool looked)
     PyObject *name;
     PyObject *value;
     Py_ssize_t at = 0;
-    int32_t place = 0;
-    bool done = true;
+    int32_t place;
     in->count = 0;
     in->fields_count = 0;
     in->is_odd = false;
-    while (done && (PyDict_Next(values, &at, &name, &value) != 0)) {
-        const int32_t number = number_of_name(in, name, place);
-        if (number < 0) {
-            done = false;
-        } else if (number < in->signals) {
-            done = lay_signal(in, number, value);
-        } else {
-            done = lay_event(in, number, value, looked);
+    for (place = 0; PyDict_Next(values, &at, &name, &value) != 0; place++) {
+        const seen_name *seen = name_at(in, name, place);
+        if ((seen == NULL)
+            || !((seen->number < in->signals) ? lay_signal(in, seen, value)
+                                              : lay_event(in, seen->number, value, looked))) {
+            return false;
         }
-        place++;
     }
-    return done;
+    return true;
 }
 
 static void note_unknown(arrival *a, const rv_number *value, int64_t t)
@@ -368,14 +381,13 @@ static void forget_arrivals(intake *in)
 static void free_intake(intake *in)
 {
     int32_t i;
-    for (i = 0; (in->came != NULL) && (i < in->names); i++) {
-        Py_XDECREF(in->came[i]);
+    for (i = 0; (in->seen != NULL) && (i < in->names); i++) {
+        Py_XDECREF(in->seen[i].name);
     }
     PyMem_Free(in->readings);
     PyMem_Free(in->arrivals);
     PyMem_Free(in->first_fields);
-    PyMem_Free(in->order);
-    PyMem_Free(in->came);
+    PyMem_Free(in->seen);
     PyMem_Free(in->updates);
     PyMem_Free(in->fields);
     (void)memset(in, 0, sizeof *in);
@@ -405,12 +417,11 @@ static bool make_intake(intake *in, const rv_monitor *m, PyObject *numbers, PyOb
     in->readings = PyMem_Calloc((size_t)all + 1, sizeof *in->readings);
     in->arrivals = PyMem_Calloc((size_t)all + 1, sizeof *in->arrivals);
     in->first_fields = PyMem_Calloc((size_t)sizes.events + 1, sizeof *in->first_fields);
-    in->order = PyMem_Calloc((size_t)names + 1, sizeof *in->order);
-    in->came = PyMem_Calloc((size_t)names + 1, sizeof *in->came);
+    in->seen = PyMem_Calloc((size_t)names + 1, sizeof *in->seen);
     in->updates = PyMem_Calloc((size_t)in->room, sizeof *in->updates);
     in->fields = PyMem_Calloc((size_t)in->fields_room, sizeof *in->fields);
-    if ((in->readings == NULL) || (in->arrivals == NULL) || (in->first_fields == NULL) || (in->order == NULL)
-        || (in->came == NULL) || (in->updates == NULL) || (in->fields == NULL)) {
+    if ((in->readings == NULL) || (in->arrivals == NULL) || (in->first_fields == NULL) || (in->seen == NULL)
+        || (in->updates == NULL) || (in->fields == NULL)) {
         (void)PyErr_NoMemory();
         return false;
     }

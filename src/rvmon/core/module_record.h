@@ -2,7 +2,7 @@
  * Python's type of attempts derives from it and works out those that nobody has set when someone asks.
  * Included there alone.
  *
- * The collector does not look at records: nothing that they refer to refers to them. */
+ * The collector does not look at those that are made here: nothing that they refer to refers to them. */
 #ifndef RVMON_MODULE_RECORD_H
 #define RVMON_MODULE_RECORD_H
 
@@ -24,6 +24,20 @@ typedef struct {
     char in_doubt;
 } attempt_record;
 
+/* Whether its type, as each that Python makes, is one that the collector looks at. */
+static bool is_collected(PyTypeObject *type)
+{
+    return (PyType_GetFlags(type) & Py_TPFLAGS_HAVE_GC) != 0U;
+}
+
+/* Hide a record that was just made from the collector, whose time it would take for nothing. */
+static void hide_record(PyObject *self)
+{
+    if (is_collected(Py_TYPE(self))) {
+        PyObject_GC_UnTrack(self);
+    }
+}
+
 static void record_dealloc(PyObject *self)
 {
     attempt_record *own = (attempt_record *)self;
@@ -34,8 +48,8 @@ static void record_dealloc(PyObject *self)
     }
     Py_XDECREF(own->values);
     free_note(&own->note);
-    if ((PyType_GetFlags(type) & Py_TPFLAGS_HAVE_GC) != 0U) {
-        PyObject_GC_Del(self); /* it derives from Record, and has more */
+    if (is_collected(type)) {
+        PyObject_GC_Del(self);
     } else {
         PyObject_Free(self);
     }

@@ -177,16 +177,18 @@ stood stood_of(const run *r, int32_t node, bool before)
 void pack_truths(const run *r, list nodes, bool before, int64_t *words)
 {
     const int32_t *node = LIST(PLAN(r), nodes);
-    uint64_t word = 0;
-    int32_t i;
-    for (i = 0; i < nodes.count; i++) {
-        const stood_node *was = before ? moved_last(r, node[i]) : NULL;
-        const uint8_t truth = (was != NULL) ? was->truth : r->truth[node[i]];
-        word |= (uint64_t)truth << (2 * (i % TRUTHS_IN_WORD));
-        if ((i % TRUTHS_IN_WORD == TRUTHS_IN_WORD - 1) || (i == nodes.count - 1)) {
-            (void)memcpy(&words[i / TRUTHS_IN_WORD], &word, sizeof word);
-            word = 0;
+    const int32_t *end = node + nodes.count;
+    int64_t *to = words;
+    while (node < end) {
+        uint64_t word = 0;
+        int32_t shift;
+        for (shift = 0; (shift < 2 * TRUTHS_IN_WORD) && (node < end); shift += 2) {
+            const stood_node *was = before ? moved_last(r, *node) : NULL;
+            word |= (uint64_t)((was != NULL) ? was->truth : r->truth[*node]) << shift;
+            node++;
         }
+        (void)memcpy(to, &word, sizeof word);
+        to++;
     }
 }
 
@@ -197,6 +199,9 @@ const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
 {
     int32_t low = 0;
     int32_t high = ring->count;
+    if ((high > 0) && (entry_of(ring, high - 1, words)[0] <= t)) { /* as mostly */
+        return entry_of(ring, high - 1, words);
+    }
     while (low < high) {
         const int32_t middle = low + (high - low) / 2;
         if (entry_of(ring, middle, words)[0] <= t) {
