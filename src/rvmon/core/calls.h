@@ -4,9 +4,9 @@
 
 #include "state.h"
 
-#define GAP(r) ((r)->home->monitor->plan.header->gap)
 #define LIST(p, l) (&(p)->lists[(l).first])
-#define PLAN(r) (&(r)->home->monitor->plan)
+#define GAP(r) ((r)->gap)
+#define PLAN(r) ((r)->all)
 
 static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
 static const span NO_SPAN = {0.0, 0.0};

@@ -142,7 +142,7 @@ rv_monitor *rv_new(const void *bytes, size_t size, rv_memory memory)
         arena_release(&a);
         return NULL;
     }
-    m->memory = a;
+    arena_move(&m->memory, &a);
     (void)plan_view(&m->plan, bytes, size);
     if (!prepare(m) || !begin_run(m)) {
         rv_free(m);

@@ -33,25 +33,32 @@ static size_t class_of(size_t *size)
     return octave * 4 + (units >> octave);
 }
 
-static bool add_chunk(arena *a, size_t size)
+/* What points to a chunk, and the next one, learn where it is. */
+static void hook(chunk *one)
 {
-    size_t room = (size > CHUNK_SIZE) ? size : CHUNK_SIZE;
-    char *made = NULL;
-    chunk *head;
-    if (a->from.allocate == NULL) {
-        return false;
+    *one->link = one;
+    if (one->next != NULL) {
+        one->next->link = &one->next;
     }
-    room += CHUNK_HEAD;
-    made = a->from.allocate(room);
+}
+
+/* A chunk with so much room; NULL: there is none. */
+static char *add_chunk(arena *a, size_t room)
+{
+    chunk *made = (a->from.allocate != NULL) ? a->from.allocate(CHUNK_HEAD + room) : NULL;
     if (made == NULL) {
-        return false;
+        return NULL;
     }
-    head = (chunk *)(void *)made;
-    head->next = a->chunks;
-    a->chunks = head;
-    a->free = made + CHUNK_HEAD;
-    a->left = room - CHUNK_HEAD;
-    return true;
+    made->next = a->chunks;
+    made->link = &a->chunks;
+    hook(made);
+    return (char *)made + CHUNK_HEAD;
+}
+
+/* Whether a block of a size has a chunk of its own, which can be made larger. */
+static bool has_own_chunk(const arena *a, size_t room)
+{
+    return (room > CHUNK_SIZE) && (a->from.allocate != NULL);
 }
 
 /* A block with whatever was in it; `size` becomes how large it is. */
@@ -59,24 +66,60 @@ static void *take_as_it_is(arena *a, size_t *size)
 {
     size_t room = *size;
     size_t class;
-    void *made;
+    char *made;
     if (room > SIZE_MAX / 4) { /* beyond, sums of sizes could wrap */
         return NULL;
     }
     class = class_of(&room);
+    *size = room;
     made = a->spare[class];
     if (made != NULL) {
-        (void)memcpy(&a->spare[class], made, sizeof made);
-    } else {
-        if ((a->left < room) && !add_chunk(a, room)) {
+        (void)memcpy(&a->spare[class], made, sizeof(void *));
+        return made;
+    }
+    if (has_own_chunk(a, room)) {
+        made = add_chunk(a, room);
+        a->used += (made != NULL) ? room : 0;
+        return made;
+    }
+    if (a->left < room) {
+        made = add_chunk(a, CHUNK_SIZE);
+        if (made == NULL) {
             return NULL;
         }
-        made = a->free;
-        a->free += room;
-        a->left -= room;
-        a->used += room;
+        a->free = made;
+        a->left = CHUNK_SIZE;
     }
-    *size = room;
+    made = a->free;
+    a->free += room;
+    a->left -= room;
+    a->used += room;
+    return made;
+}
+
+/* Make a block larger; NULL: memory is short, and it stays. */
+static void *enlarged(arena *a, void *old, size_t size, size_t wanted)
+{
+    size_t was = size;
+    size_t room = wanted;
+    void *made;
+    (void)class_of(&was);
+    if ((old != NULL) && has_own_chunk(a, was) && (wanted <= SIZE_MAX / 4)) {
+        chunk *head = (chunk *)(void *)((char *)old - CHUNK_HEAD);
+        (void)class_of(&room);
+        head = a->from.resize(head, CHUNK_HEAD + room);
+        if (head == NULL) {
+            return NULL;
+        }
+        hook(head);
+        a->used += room - was;
+        return (char *)head + CHUNK_HEAD;
+    }
+    made = take_as_it_is(a, &room);
+    if ((made != NULL) && (old != NULL)) {
+        (void)memcpy(made, old, size);
+        arena_give(a, old, size);
+    }
     return made;
 }
 
@@ -99,6 +142,14 @@ void arena_give(arena *a, void *block, size_t size)
     a->spare[class] = block;
 }
 
+void arena_move(arena *to, const arena *from)
+{
+    *to = *from;
+    if (to->chunks != NULL) {
+        to->chunks->link = &to->chunks;
+    }
+}
+
 void arena_release(arena *a)
 {
     chunk *one = a->chunks;
@@ -114,9 +165,7 @@ void arena_release(arena *a)
 
 void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
 {
-    const size_t filled = (size_t)*room * each;
     int64_t more = 2 * (int64_t)*room;
-    size_t size;
     void *made;
     if (wanted <= *room) {
         return old;
@@ -127,15 +176,10 @@ void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t ea
         m->spoilt = true;
         return NULL;
     }
-    size = (size_t)more * each;
-    made = take_as_it_is(&m->memory, &size);
+    made = enlarged(&m->memory, old, (size_t)*room * each, (size_t)more * each);
     if (made == NULL) {
         m->spoilt = true;
         return NULL;
-    }
-    if (old != NULL) {
-        (void)memcpy(made, old, filled);
-        arena_give(&m->memory, old, filled);
     }
     *room = (int32_t)more;
     return made;
@@ -143,10 +187,10 @@ void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t ea
 
 void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
 {
-    const size_t filled = (size_t)*room * each;
+    const int32_t was = *room;
     char *made = widened(m, old, room, wanted, each);
-    if ((made != NULL) && (made != old)) {
-        (void)memset(made + filled, 0, (size_t)*room * each - filled);
+    if ((made != NULL) && (*room > was)) {
+        (void)memset(made + (size_t)was * each, 0, (size_t)(*room - was) * each);
     }
     return made;
 }

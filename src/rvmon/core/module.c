@@ -360,7 +360,7 @@ static PyType_Spec monitor_spec = {
 /* memory_of(plan, attempts): the bytes of a block in which a run begins with room for so many. */
 static PyObject *core_memory_of(PyObject *module, PyObject *args)
 {
-    const rv_memory heap = {malloc, free, NULL, 0};
+    const rv_memory heap = {malloc, realloc, free, NULL, 0};
     Py_buffer plan;
     int attempts;
     PyObject *made = NULL;

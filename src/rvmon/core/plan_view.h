@@ -10,6 +10,7 @@
 
 typedef struct chunk {
     struct chunk *next;
+    struct chunk **link;       /* what points to it */
 } chunk;
 
 typedef struct {
@@ -23,6 +24,7 @@ typedef struct {
 
 void *arena_take(arena *a, size_t size);          /* zeroed; NULL: there is none */
 void arena_give(arena *a, void *block, size_t size);
+void arena_move(arena *to, const arena *from);    /* `from` is not used any more */
 void arena_release(arena *a);                     /* all of it */
 
 /* ---- plan.c: the plan, checked, with a pointer for each section */

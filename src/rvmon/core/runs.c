@@ -92,6 +92,8 @@ run *new_run(home *h)
     }
     made->home = h;
     made->part = h->part;
+    made->all = &m->plan;
+    made->gap = m->plan.header->gap;
     (void)cut_block(&c, made);
     c.block = arena_take(&m->memory, c.used);
     if ((c.block == NULL) || !register_run(h, made)) {

@@ -160,6 +160,8 @@ typedef struct {
 struct run {
     home *home;
     const part *part;
+    const plan *all;           /* the whole plan */
+    int64_t gap;               /* ticks between two positions; 0: only samples are positions */
     run *next;                 /* of the same list */
     run *previous;
     run *parent;               /* in which its attempt was triggered */
