@@ -239,7 +239,8 @@ int main(void)
     }
     printf("%zu %d\\n", size, (int)DOOR_MEMORY(0));
     for (attempts = 0; attempts <= 64; attempts++) {
-        const rv_memory memory = {NULL, NULL, NULL, (char *)block + attempts % 16, DOOR_MEMORY(attempts)};
+        const rv_memory memory = {
+            NULL, NULL, NULL, (char *)block + attempts % 16, DOOR_MEMORY(attempts)};
         rv_monitor *m = rv_new(door_plan, sizeof door_plan, memory);
         if ((m == NULL) || (rv_reserve(m, attempts) != RV_OK)) {
             return 1;
