@@ -97,8 +97,7 @@ static void *take_as_it_is(arena *a, size_t *size)
     return made;
 }
 
-/* Make a block larger; NULL: memory is short, and it stays. */
-static void *enlarged(arena *a, void *old, size_t size, size_t wanted)
+void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted)
 {
     size_t was = size;
     size_t room = wanted;
@@ -176,7 +175,7 @@ void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t ea
         m->spoilt = true;
         return NULL;
     }
-    made = enlarged(&m->memory, old, (size_t)*room * each, (size_t)more * each);
+    made = arena_enlarge(&m->memory, old, (size_t)*room * each, (size_t)more * each);
     if (made == NULL) {
         m->spoilt = true;
         return NULL;

@@ -23,6 +23,7 @@ typedef struct {
 } arena;
 
 void *arena_take(arena *a, size_t size);          /* zeroed; NULL: there is none */
+void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted); /* NULL: memory is short, it stays */
 void arena_give(arena *a, void *block, size_t size);
 void arena_move(arena *to, const arena *from);    /* `from` is not used any more */
 void arena_release(arena *a);                     /* all of it */
