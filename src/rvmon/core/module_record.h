@@ -76,7 +76,7 @@ static int set_noted(PyObject *self, PyObject *value, void *unused)
     attempt_record *own = (attempt_record *)self;
     PyObject *was = own->objects[NOTED];
     (void)unused;
-    own->objects[NOTED] = Py_XNewRef(value);
+    own->objects[NOTED] = (value != NULL) ? Py_NewRef(value) : NULL;
     Py_XDECREF(was);
     Py_CLEAR(own->values);
     free_note(&own->note);

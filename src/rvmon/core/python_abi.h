@@ -246,6 +246,7 @@ PyObject *PyTuple_New(Py_ssize_t);
 PyObject *PyTuple_Pack(Py_ssize_t, ...);
 int PyTuple_SetItem(PyObject *, Py_ssize_t, PyObject *);
 Py_ssize_t PyTuple_Size(PyObject *);
+PyObject *PyUnicode_FromString(const char *);
 
 #endif
 #ifdef RVMON_OWN_PYTHON_H
