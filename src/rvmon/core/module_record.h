@@ -8,7 +8,7 @@
 
 #include "module_notes.h"
 
-/* The fields that are objects. */
+/* The fields that are objects; from REASON on those that are worked out late. */
 enum {
     REQUIREMENT, DECIDED, VERDICT, DECISION, DETAILS, NOTED, REASON, DEADLINE, AT_TRIGGER, AT_DECISION,
     OWED, CAPTURED, BLAME, FORECAST, ROBUSTNESS, OBJECTS
@@ -83,8 +83,50 @@ static int set_noted(PyObject *self, PyObject *value, void *unused)
     return 0;
 }
 
+/* The field at a place, which may be worked out now. */
+static PyObject *get_late(PyObject *self, void *place)
+{
+    PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
+    if (*field == NULL) {
+        PyObject *all = PyObject_GetAttrString(self, "_work_out");
+        PyObject *none = PyTuple_New(0);
+        PyObject *done = ((all != NULL) && (none != NULL)) ? PyObject_Call(all, none, NULL) : NULL;
+        Py_XDECREF(all);
+        Py_XDECREF(none);
+        if (done == NULL) {
+            return NULL;
+        }
+        Py_DECREF(done);
+    }
+    if (*field == NULL) {
+        PyErr_SetString(PyExc_AttributeError, "it was not worked out");
+        return NULL;
+    }
+    return Py_NewRef(*field);
+}
+
+static int set_late(PyObject *self, PyObject *value, void *place)
+{
+    PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
+    PyObject *was = *field;
+    *field = (value != NULL) ? Py_NewRef(value) : NULL;
+    Py_XDECREF(was);
+    return 0;
+}
+
+#define RVMON_LATE(name, place) {name, get_late, set_late, NULL, (void *)(uintptr_t)(place)}
+
 static PyGetSetDef record_getset[] = {
     {"_noted", get_noted, set_noted, NULL, NULL},
+    RVMON_LATE("reason", REASON),
+    RVMON_LATE("deadline", DEADLINE),
+    RVMON_LATE("at_trigger", AT_TRIGGER),
+    RVMON_LATE("at_decision", AT_DECISION),
+    RVMON_LATE("owed", OWED),
+    RVMON_LATE("captured", CAPTURED),
+    RVMON_LATE("blame", BLAME),
+    RVMON_LATE("forecast", FORECAST),
+    RVMON_LATE("robustness", ROBUSTNESS),
     {NULL, NULL, NULL, NULL, NULL},
 };
 
@@ -100,15 +142,6 @@ static PyMemberDef record_members[] = {
     RVMON_OBJECT("verdict", VERDICT),
     RVMON_OBJECT("decision", DECISION),
     RVMON_OBJECT("_details", DETAILS),
-    RVMON_OBJECT("reason", REASON),
-    RVMON_OBJECT("deadline", DEADLINE),
-    RVMON_OBJECT("at_trigger", AT_TRIGGER),
-    RVMON_OBJECT("at_decision", AT_DECISION),
-    RVMON_OBJECT("owed", OWED),
-    RVMON_OBJECT("captured", CAPTURED),
-    RVMON_OBJECT("blame", BLAME),
-    RVMON_OBJECT("forecast", FORECAST),
-    RVMON_OBJECT("robustness", ROBUSTNESS),
     {NULL, 0, 0, 0, NULL},
 };
 
@@ -124,22 +157,30 @@ static PyType_Spec record_spec = {
     record_slots,
 };
 
+static bool add_name(PyObject *names, const char *text)
+{
+    PyObject *name = PyUnicode_FromString(text);
+    const bool done = (name != NULL) && (PyList_Append(names, name) == 0);
+    Py_XDECREF(name);
+    return done;
+}
+
 /* The type, which says of itself what a dataclass that derives from it need not find places for; NULL
  * with an error. */
 static PyObject *record_type(PyObject *module)
 {
     PyObject *type = PyType_FromModuleAndSpec(module, &record_spec, NULL);
-    PyObject *names = Py_BuildValue("[s]", record_getset[0].name);
-    const PyMemberDef *one;
-    for (one = record_members; (names != NULL) && (one->name != NULL); one++) {
-        PyObject *name = PyUnicode_FromString(one->name);
-        if ((name == NULL) || (PyList_Append(names, name) < 0)) {
-            Py_CLEAR(names);
-        }
-        Py_XDECREF(name);
+    PyObject *names = PyList_New(0);
+    const PyMemberDef *set;
+    const PyGetSetDef *got;
+    bool done = (type != NULL) && (names != NULL);
+    for (set = record_members; done && (set->name != NULL); set++) {
+        done = add_name(names, set->name);
     }
-    if ((type == NULL) || (names == NULL)
-        || (PyObject_SetAttrString(type, "__slots__", names) < 0)) {
+    for (got = record_getset; done && (got->name != NULL); got++) {
+        done = add_name(names, got->name);
+    }
+    if (!done || (PyObject_SetAttrString(type, "__slots__", names) < 0)) {
         Py_CLEAR(type);
     }
     Py_XDECREF(names);
