@@ -323,7 +323,6 @@ void note_begin(run *r, int32_t index, attempt *x, int64_t t);
 void note_parting(run *r, int32_t index, attempt *x);
 void note_doubt(run *r, int32_t index, int64_t t);
 void note_open_count(run *r, int32_t index);
-bool is_in_doubt(const run *r, int32_t index);
 void note_moot(run *r, int32_t index, int64_t t);
 int64_t begin_of(const run *r, int32_t index, const attempt *x);
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);

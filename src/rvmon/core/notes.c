@@ -358,7 +358,7 @@ void note_parting(run *r, int32_t index, attempt *x)
 }
 
 /* Whether something is unknown that a judge's attempts may hang on. */
-bool is_in_doubt(const run *r, int32_t index)
+static bool is_in_doubt(const run *r, int32_t index)
 {
     const list propositions = r->part->judges[index].propositions;
     const int32_t *nodes = LIST(PLAN(r), propositions);
