@@ -37,7 +37,7 @@ typedef struct {
 typedef struct {
     PyObject *name;
     int32_t number;
-    bool is_real;              /* whether it is a signal of real values */
+    int32_t kind;              /* of a signal what its values are; -1 of an event */
 } seen_name;
 
 /* The names of a monitor, and the sample that is laid out. */
@@ -138,7 +138,7 @@ static const seen_name *name_at(intake *in, PyObject *name, int32_t place)
     Py_XDECREF(seen->name);
     seen->name = name;
     seen->number = (int32_t)number;
-    seen->is_real = (number < in->signals) && (in->readings[number].kind == IS_REAL);
+    seen->kind = (number < in->signals) ? in->readings[number].kind : -1;
     return seen;
 }
 
@@ -155,8 +155,12 @@ static inline rv_update *further_update(intake *in, int32_t name)
 static inline bool lay_signal(intake *in, const seen_name *name, PyObject *value)
 {
     rv_update *update = further_update(in, name->number);
-    if (name->is_real && PyFloat_CheckExact(value)) {
+    if ((name->kind == IS_REAL) && PyFloat_CheckExact(value)) {
         take_float(value, &update->value);
+    } else if ((name->kind == IS_BOOLEAN) && ((value == Py_True) || (value == Py_False))) {
+        update->value.kind = RV_WHOLE;
+        update->value.as.whole = (value == Py_True) ? 1 : 0;
+        return true;
     } else if (value == Py_None) {
         update->value.kind = RV_UNKNOWN;
         update->value.as.whole = RV_IS_NONE;
