@@ -180,15 +180,17 @@ static inline const quick_signal *quick_now(const run *r)
 static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local, const rv_update *u)
 {
     const quick_compare *c = quick[local].compares;
-    const quick_compare *end = c + quick[local].count;
+    const quick_compare *end;
     rv_number *value = &r->value[local];
     uint64_t *dirty = r->dirty;
     uint64_t *words = r->dirty_words;
     uint8_t *atoms = r->atom;
-    const double x = u->value.as.real;
-    if ((c == end) || (u->value.kind != RV_REAL) || (value->kind != RV_REAL) || (u->says != RV_SAYS_YES)) {
+    double x;
+    if ((c == NULL) || (u->value.kind != RV_REAL) || (value->kind != RV_REAL) || (u->says != RV_SAYS_YES)) {
         return false;
     }
+    x = u->value.as.real;
+    end = c + quick[local].count;
     value->as.real = x;
     for (; c < end; c++) {
         const int32_t word = c->word;
