@@ -41,6 +41,7 @@ SECTIONS = (
     "many",
     "bound",
     "unsteady",
+    "failing",
     "batch",
     "process",
     "files",
@@ -123,6 +124,8 @@ def workloads(size: Size, sections: Sequence[str]) -> Iterator[Workload]:
         yield from suite.bounds(size.longest)
     if "unsteady" in sections:
         yield from suite.unsteady(size.rows)
+    if "failing" in sections:
+        yield from suite.failing(size.rows)
     if "batch" in sections:
         yield from suite.batches(size.columns)
 

@@ -371,7 +371,7 @@ static void blame_other(told *x, const told *other, char letter)
 
 static void judge(const story *s)
 {
-    static const rv_memory heap = {malloc, free, NULL, 0};
+    static const rv_memory heap = {malloc, realloc, free, NULL, 0};
     static char block[1 << 20];
     rv_monitor *m = rv_new(s->plan, s->size, heap);
     told whole;

@@ -1,16 +1,18 @@
 """What each kind of requirement that people write costs per sample.
 
-    python -m benchmarks.kinds [--rows 4000] [--time sampled] [--events 5] [WORD …]
+    python -m benchmarks.kinds [--rows 4000] [--time sampled] [--events 5] [--unknown 0] [WORD …]
 
 Thirteen kinds, each demanded at every instant and upon an event that comes in 5 % of the samples,
-or in `--events` of them, over values that are drawn anew and cross at every row, a second apart.
-Processor time of `step`, all in, the least of three passes. With words, only kinds that have
-one of them.
+or in `--events` of them, over values that are drawn anew and cross at every row, a second apart,
+and of which `--unknown` per cent are NaN. Then one for each of 1,000 keys that are all waiting, of
+which each sample concerns one. Processor time of `step`, all in, the least of three passes. With
+words, only kinds that have one of them.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import random
 import statistics
 import sys
@@ -40,6 +42,14 @@ KINDS = {
 }
 
 
+KEYED = """event ask(id : int)
+event done(id : int)
+requirement R
+  upon ask then within 5000 s done.id == i
+  for each i in ask.id
+"""
+
+
 def requirements() -> Iterator[tuple[str, str]]:
     """Name and text of each."""
     for name, formula in KINDS.items():
@@ -47,15 +57,27 @@ def requirements() -> Iterator[tuple[str, str]]:
         yield f"{name}, upon", f"upon e then ({formula})"
 
 
-def rows_of(count: int, events: float) -> list[dict[str, Value]]:
+def rows_of(count: int, events: float, unknown: float) -> list[dict[str, Value]]:
     """Samples in which all values change, and in so many per cent of them an event occurs."""
     rng = random.Random("kinds")
     rows: list[dict[str, Value]] = []
     for _ in range(count):
-        row: dict[str, Value] = {"x": rng.uniform(0, 10), "y": rng.uniform(0, 10)}
+        row: dict[str, Value] = {
+            name: math.nan if rng.random() * 100 < unknown else rng.uniform(0, 10) for name in "xy"
+        }
         if rng.random() * 100 < events:
             row["e"] = True
         rows.append(row)
+    return rows
+
+
+def keyed_rows(count: int, keys: int = 1000) -> list[dict[str, Value]]:
+    """So many are asked; then one after the other is answered, and asked again at once."""
+    rng = random.Random("keys")
+    rows: list[dict[str, Value]] = [{"ask": {"id": key}} for key in range(keys)]
+    for _ in range(count):
+        payload = {"id": rng.randrange(keys)}
+        rows += [{"done": payload}, {"ask": payload}]
     return rows
 
 
@@ -87,9 +109,10 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--time", choices=("held", "sampled"), default="held")
     parser.add_argument("--seconds", type=float, default=1.0, help="for more than one pass")
     parser.add_argument("--events", type=float, default=5, help="per cent of the samples with one")
+    parser.add_argument("--unknown", type=float, default=0, help="per cent of the values")
     parser.add_argument("words", nargs="*")
     options = parser.parse_args(argv)
-    rows = rows_of(options.rows, options.events)
+    rows = rows_of(options.rows, options.events, options.unknown)
     print("| kind | ns a sample |\n|---|---|")
     figures: list[float] = []
     for name, text in requirements():
@@ -98,6 +121,10 @@ def main(argv: Sequence[str]) -> int:
         spec = loads(f"time {options.time}\nsignal x, y : real\nevent e\nrequirement R\n  {text}\n")
         figures.append(measured(spec, rows, options.seconds))
         print(f"| {name} | {figures[-1]:,.0f} |", flush=True)
+    if not options.words:
+        spec = loads(f"time {options.time}\n{KEYED}")
+        each = measured(spec, keyed_rows(options.rows), options.seconds)
+        print(f"| each of 1,000 keys | {each:,.0f} |")
     print(f"{len(figures)} kinds, median {statistics.median(figures):,.0f} ns")
     return 0
 

@@ -17,6 +17,7 @@ TITLES = {
     "many": "Many monitors on one stream of 20 signals",
     "bound": "A deadline from 10 to 100,000 rows",
     "unsteady": "Values that change and cross at every row",
+    "failing": "Values that change at every row, formulas that fail at 1 % and at 30 % of them",
     "batch": "Columns in memory",
     "process": "Whole processes, from the file to the verdict",
 }

@@ -40,7 +40,7 @@ int main(int argc, char **argv)
     const uint64_t samples = (argc == 4) ? strtoull(argv[1], NULL, 10) * ROWS : 0;
     const uint64_t tail = (argc == 4) ? strtoull(argv[3], NULL, 10) : 0;
     const uint64_t tenth = (samples / 10 > 0) ? samples / 10 : 1;
-    const rv_memory memory = {malloc, free, NULL, 0};
+    const rv_memory memory = {malloc, realloc, free, NULL, 0};
     rv_monitor *monitor = rv_new(plan, sizeof plan, memory);
     int64_t t = (argc == 4) ? strtoll(argv[2], NULL, 10) : 0;
     int64_t longest = 0, before = 0;

@@ -6,7 +6,8 @@ import random
 from collections.abc import Iterator, Sequence
 
 from benchmarks.workload import Workload
-from tests.tools.build import always, compared, eventually, no, two
+from tests.tools.build import always, compared, eventually, no, once, two
+from tests.tools.common_fragment import names_in
 
 from benchmarks import robot, timescales
 from rvmon.spec.checked.formula import Formula, SignalAtom, SignalValue
@@ -111,12 +112,40 @@ def unsteady(rows: int) -> Iterator[Workload]:
         yield Workload("unsteady", name, "future", (formula,), columns, 1_000_000_000)
 
 
+_FAILING = {
+    "1 %": {"limit": 9.9, "respond": 6.3, "soon": 6.9, "recur": 8.2, "settle": 8.6, "past": 6.4},
+    "30 %": {"limit": 7.0, "respond": 1.2, "soon": 2.6, "recur": 5.2, "settle": 5.1, "past": 1.2},
+}
+"""Below which a value has to be for the formula to be false at that share of the rows."""
+
+
+def failing(rows: int) -> Iterator[Workload]:
+    """Forms that are false at 1 % and at 30 % of the rows; all values are new at every row."""
+    rng = random.Random("failing")
+    columns: dict[str, list[bool | float]] = {
+        name: [rng.uniform(0, 10) for _ in range(rows)] for name in "xy"
+    }
+    for share, limits in _FAILING.items():
+        for name, limit in limits.items():
+            x, y = _under(limit), _under(limit, "y")
+            form, formula = {
+                "limit": ("past", x),
+                "respond": ("future", two(_over(5), "->", eventually(y, 0, 3))),
+                "soon": ("future", eventually(x, 0, 3)),
+                "recur": ("future", always(eventually(x, 0, 3), 0, 10)),
+                "settle": ("future", two(_over(5), "->", eventually(always(y, 0, 3), 0, 10))),
+                "past": ("past", two(_over(5), "->", once(y, 0, 3))),
+            }[name]
+            used = {key: columns[key] for key in sorted(names_in(formula))}
+            yield Workload("failing", f"{name}, {share}", form, (formula,), used, 1_000_000_000)
+
+
 def _over(value: float) -> Formula:
     return compared(SignalValue("x"), ">", value)
 
 
-def _under(value: float) -> Formula:
-    return compared(SignalValue("x"), "<", value)
+def _under(value: float, name: str = "x") -> Formula:
+    return compared(SignalValue(name), "<", value)
 
 
 def batches(rows: int) -> Iterator[Workload]:

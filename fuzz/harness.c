@@ -320,7 +320,7 @@ static void *saved(rv_monitor *m, size_t *size)
 /* Another monitor that goes on from where one stands, which is freed. */
 static rv_monitor *taken_up(rv_monitor *m, source from)
 {
-    const rv_memory memory = {malloc, free, NULL, 0};
+    const rv_memory memory = {malloc, realloc, free, NULL, 0};
     size_t size;
     size_t again_size;
     void *bytes = saved(m, &size);
@@ -435,7 +435,7 @@ static uint64_t one_run(rv_monitor **own, script s, const source *from)
 
 static void judge(const void *bytes, size_t size, script s)
 {
-    const rv_memory memory = {malloc, free, NULL, 0};
+    const rv_memory memory = {malloc, realloc, free, NULL, 0};
     const source from = {bytes, size, false};
     rv_monitor *m = rv_new(bytes, size, memory);
     if ((m != NULL) && (size / 8U % 2U == 0U) && (rv_keep_notes(m, NULL, NULL) != RV_OK)) {
@@ -564,7 +564,7 @@ static void put_word(uint8_t *at, uint64_t word)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const rv_memory memory = {malloc, free, NULL, 0};
+    const rv_memory memory = {malloc, realloc, free, NULL, 0};
     const size_t wanted = size + 31;
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
     uint8_t *bytes;

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Of AddressSanitizer; not every compiler brings the header. */
 void __asan_poison_memory_region(const volatile void *place, size_t size);
@@ -63,6 +64,26 @@ void *arena_take(arena *a, size_t size)
     a->chunks = (chunk *)(void *)h;
     guarded_closed(h);
     return h + 1;
+}
+
+/* A larger block is always another one; what is behind the old one's end is not to be read. */
+void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted)
+{
+    char *made = arena_take(a, wanted);
+    if (made == NULL) {
+        return NULL;
+    }
+    if (old != NULL) {
+        (void)memcpy(made, old, size);
+        arena_give(a, old, size);
+    }
+    (void)memset(made + ((old != NULL) ? size : 0), 0xa5, wanted - ((old != NULL) ? size : 0));
+    return made;
+}
+
+void arena_move(arena *to, const arena *from)
+{
+    *to = *from;
 }
 
 void arena_give(arena *a, void *block, size_t size)

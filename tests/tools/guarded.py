@@ -5,17 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 _CORE = Path(__file__).parents[2] / "src" / "rvmon" / "core"
-_GROWN = "void *grown("
+_GROWN = "void *widened("
 
 
 def guarded_memory() -> str:
     """The C that takes the place of the core's memory.c, which puts many blocks into one.
 
     Raises:
-        ValueError: what grows blocks is no longer the last function there.
+        ValueError: what makes arrays larger is no longer the end there.
     """
     _, found, grown = (_CORE / "memory.c").read_text(encoding="utf-8").partition(_GROWN)
-    if not found or grown.count("\n}\n") != 1:
+    if not found or grown.count("\n}\n") != 2:
         raise ValueError(f"memory.c does not end with `{_GROWN}…`")
     guarded = Path(__file__).with_suffix(".c").read_text(encoding="utf-8")
-    return f"{guarded}\n#include <string.h>\n\n{found}{grown}"
+    return f"{guarded}\n{found}{grown}"

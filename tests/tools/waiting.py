@@ -101,11 +101,12 @@ class Waiting:
         Args:
             owed: from the record of an attempt.
         """
-        parts = _PART.findall(owed)
-        allowed = set(self._undecided())
-        yield from (part for part in parts if part not in allowed)
-        if not parts and owed:
-            yield owed
+        parts = _PART.findall(owed) or ([owed] if owed else [])
+        wrong = set(parts)
+        allowed = self._undecided()
+        while wrong and (name := next(allowed, None)):
+            wrong.discard(name)
+        yield from (part for part in parts if part in wrong)
 
     def _undecided(self) -> Iterator[str]:
         """Parts whose truth at a position since the trigger is open, as a record names them."""

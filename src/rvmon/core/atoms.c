@@ -2,10 +2,8 @@
  * shown by the leaves that speak of it. */
 #include "calls.h"
 
-/* How a value stands to a constant: less, equal, greater, as bits; which of them a comparison is true
- * for. */
-enum { LESS = 1, EQUAL = 2, GREATER = 4 };
-
+/* For how a value stands to a constant a comparison is true. */
+enum { LESS = 1 << IS_LESS, EQUAL = 1 << IS_EQUAL, GREATER = 1 << IS_GREATER };
 static const uint8_t HOLDS_FOR[CMPS] = {
     [CMP_LT] = LESS, [CMP_LE] = LESS | EQUAL, [CMP_EQ] = EQUAL, [CMP_NE] = LESS | GREATER,
     [CMP_GE] = GREATER | EQUAL, [CMP_GT] = GREATER,
@@ -14,13 +12,64 @@ static const uint8_t HOLDS_FOR[CMPS] = {
 /* Without a branch for what nobody can foretell. */
 static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
 {
-    const double x = value->as.real;
-    const int32_t stands = LESS * (int32_t)(x < constant) + EQUAL * (int32_t)(x == constant)
-                           + GREATER * (int32_t)(x > constant);
+    const int32_t stands = standing_of(value->as.real, constant);
     if (value->kind != RV_REAL) {
         return IS_UNKNOWN;
     }
-    return ((HOLDS_FOR[how] & stands) != 0) ? IS_TRUE : IS_FALSE;
+    return (uint8_t)(IS_TRUE * ((HOLDS_FOR[how] >> stands) & 1));
+}
+
+/* More comparisons than so many are left alone where a value stays between two of their constants. */
+#define QUICK_MOST 4
+
+/* Whether comparisons with constants are all that reads a signal in the second phase. */
+static bool is_compared_only(const plan *all, const part *p, int32_t local)
+{
+    const signal_plan *s = &p->signals[local];
+    const list atoms = s->on_change[1];
+    int32_t i;
+    if ((s->flags != 0) || (s->perishable >= 0) || (atoms.count > QUICK_MOST)) {
+        return false;
+    }
+    for (i = 0; i < atoms.count; i++) {
+        const atom_plan *a = &p->atoms[LIST(all, atoms)[i]];
+        if ((a->op != ATOM_REAL) || (a->momentary != 0) || (a->nodes[1].count != 1)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Find the signals of a part that can be taken quickly; false: memory is short. */
+bool find_quick(arena *a, const plan *all, part *p)
+{
+    const int32_t signals = p->plan->signals.count;
+    int32_t local;
+    p->quick = arena_take(a, (size_t)(signals + 1) * sizeof *p->quick);
+    for (local = 0; (p->quick != NULL) && (local < signals); local++) {
+        const list atoms = p->signals[local].on_change[1];
+        quick_compare *made;
+        int32_t i;
+        if ((atoms.count == 0) || !is_compared_only(all, p, local)) {
+            continue;
+        }
+        made = arena_take(a, (size_t)atoms.count * sizeof *made);
+        if (made == NULL) {
+            return false;
+        }
+        for (i = 0; i < atoms.count; i++) {
+            const int32_t atom = LIST(all, atoms)[i];
+            const int32_t node = LIST(all, p->atoms[atom].nodes[1])[0];
+            made[i].constant = p->atoms[atom].constant;
+            made[i].atom = atom;
+            made[i].word = node >> 6;
+            made[i].dirty = UINT64_C(1) << (node & 63);
+            made[i].holds_for = HOLDS_FOR[p->atoms[atom].compare];
+        }
+        p->quick[local].compares = made;
+        p->quick[local].count = atoms.count;
+    }
+    return p->quick != NULL;
 }
 
 static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)

@@ -4,9 +4,9 @@
 
 #include "state.h"
 
-#define GAP(r) ((r)->home->monitor->plan.header->gap)
 #define LIST(p, l) (&(p)->lists[(l).first])
-#define PLAN(r) (&(r)->home->monitor->plan)
+#define GAP(r) ((r)->gap)
+#define PLAN(r) ((r)->all)
 
 static const rv_number UNKNOWN_NUMBER = {RV_UNKNOWN, {0}};
 static const span NO_SPAN = {0.0, 0.0};
@@ -113,7 +113,9 @@ static inline int32_t highest_bit(uint64_t word)
 #endif
 }
 
-/* A larger array with what stood in the old one; NULL if memory is short, which spoils the run. */
+/* A larger array with what stood in the old one, and zeros behind it; NULL if memory is short, which
+ * spoils the run. The same with anything behind it. */
+void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
 void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
 
 /* ---- timers.c */
@@ -150,6 +152,57 @@ static inline bool means_the_same(const run *r, int32_t local, const rv_number *
 
 void margins_stir(run *r, int32_t what);
 
+/* ---- atoms.c */
+bool find_quick(arena *a, const plan *all, part *p);
+bool recheck(run *r, int32_t atom);     /* whether it is another truth */
+bool recheck_list(run *r, list l);      /* whether one of them is */
+void recheck_amid(run *r, list l);
+void recheck_fading(run *r);
+void reread(run *r, int32_t atom, bool pending);
+uint8_t leaf_truth(const run *r, const node_plan *n);
+
+/* How a value stands to a constant: the place of a bit. */
+enum { IS_EQUAL, IS_LESS, IS_GREATER };
+
+static inline int32_t standing_of(double x, double constant)
+{
+    return IS_LESS * (int32_t)(x < constant) + IS_GREATER * (int32_t)(x > constant);
+}
+
+/* The signals of a run that can be taken quickly now; NULL: none of them. */
+static inline const quick_signal *quick_now(const run *r)
+{
+    return ((r->at.phase == 1) && (r->at.lost_count == 0) && (r->margins == NULL)) ? r->part->quick : NULL;
+}
+
+/* Take a real value of a signal that few comparisons read, without a branch for what nobody can foretell;
+ * false: it is none of these. */
+static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local, const rv_update *u)
+{
+    const quick_compare *c = quick[local].compares;
+    const quick_compare *end;
+    rv_number *value = &r->value[local];
+    uint64_t *dirty = r->dirty;
+    uint64_t *words = r->dirty_words;
+    uint8_t *atoms = r->atom;
+    double x;
+    if ((c == NULL) || (u->value.kind != RV_REAL) || (value->kind != RV_REAL) || (u->says != RV_SAYS_YES)) {
+        return false;
+    }
+    x = u->value.as.real;
+    end = c + quick[local].count;
+    value->as.real = x;
+    for (; c < end; c++) {
+        const int32_t word = c->word;
+        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> standing_of(x, c->constant)) & 1));
+        const uint64_t other = (now != atoms[c->atom]) ? 1U : 0U;
+        dirty[word] |= c->dirty & (0U - other);
+        words[word >> 6] |= other << (word & 63);
+        atoms[c->atom] = now;
+    }
+    return true;
+}
+
 static inline void take_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
@@ -182,14 +235,6 @@ void may_begin(run *r, int64_t t);
 void begin_blank(run *r, int64_t t);
 void end_blank(run *r, int64_t t);
 void revive_all(run *r, int64_t t);
-
-/* ---- atoms.c */
-bool recheck(run *r, int32_t atom);     /* whether it is another truth */
-bool recheck_list(run *r, list l);      /* whether one of them is */
-void recheck_amid(run *r, list l);
-void recheck_fading(run *r);
-void reread(run *r, int32_t atom, bool pending);
-uint8_t leaf_truth(const run *r, const node_plan *n);
 
 /* ---- past.c */
 stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
@@ -280,7 +325,6 @@ void note_begin(run *r, int32_t index, attempt *x, int64_t t);
 void note_parting(run *r, int32_t index, attempt *x);
 void note_doubt(run *r, int32_t index, int64_t t);
 void note_open_count(run *r, int32_t index);
-bool is_in_doubt(const run *r, int32_t index);
 void note_moot(run *r, int32_t index, int64_t t);
 int64_t begin_of(const run *r, int32_t index, const attempt *x);
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);

@@ -114,7 +114,7 @@ static int64_t reach_of(const chaining *g)
 /* Drop now and then what lies before all that is not known at a position. */
 void forget_before(const chaining *g, int64_t position)
 {
-    int64_t start = moved(moved(position, -floored(reach_of(g), g->f.step)), -2);
+    int64_t start;
     int32_t i;
     int32_t level;
     g->c->kept++;
@@ -122,6 +122,7 @@ void forget_before(const chaining *g, int64_t position)
         return;
     }
     g->c->kept = 0;
+    start = moved(moved(position, -floored(reach_of(g), g->f.step)), -2);
     if (g->sparse) {
         changes *stamps = &g->c->stamps;
         while ((stamps->count > 1) && (change_at(stamps, 0) < start)) {

@@ -26,6 +26,9 @@ static bool prepare_part(rv_monitor *m, part *p)
             p->perishable[p->signals[i].perishable] = i;
         }
     }
+    if (!find_quick(&m->memory, &m->plan, p)) {
+        return false;
+    }
     p->is_watched = (p->plan->truths >= 0) || (p->plan->watches.count > 0);
     for (i = 0; i < p->plan->judges.count; i++) {
         p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
@@ -139,7 +142,7 @@ rv_monitor *rv_new(const void *bytes, size_t size, rv_memory memory)
         arena_release(&a);
         return NULL;
     }
-    m->memory = a;
+    arena_move(&m->memory, &a);
     (void)plan_view(&m->plan, bytes, size);
     if (!prepare(m) || !begin_run(m)) {
         rv_free(m);
@@ -235,11 +238,13 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
 static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
 {
     run *r = m->homes[0].root;
+    const quick_signal *quick;
     int32_t i;
     if ((m->plan.header->gap == 0) && r->at.started) {
         r->at.position = last_position(m);
     }
     approach(r, t);
+    quick = quick_now(r);
     for (i = 0; i < count; i++) {
         const int32_t name = updates[i].name;
         const int32_t first = m->plan.subscription_first[name];
@@ -248,7 +253,9 @@ static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32
             in.local = m->plan.subscriptions[first].local;
             in.event = name >= m->plan.header->signals;
             in.update = &updates[i];
-            take_update(r, t, &in);
+            if (in.event || (quick == NULL) || !take_quickly(r, quick, in.local, in.update)) {
+                take_update(r, t, &in);
+            }
         }
     }
     arrive(r, t);
@@ -317,7 +324,9 @@ int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
     m->last = t;
     m->after = t;
     m->reached = t;
-    settle_margins(m, t);
+    if (m->shapes != NULL) {
+        settle_margins(m, t);
+    }
     if (m->record_count > m->sorted) {
         sort_records(m);
     }

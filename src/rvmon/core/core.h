@@ -81,10 +81,11 @@ typedef struct {
 typedef struct rv_plan rv_plan;
 typedef struct rv_monitor rv_monitor;
 
-/* Where memory comes from. Two functions: from a heap. A block: that alone, and running out of it is
+/* Where memory comes from. Three functions, as malloc, realloc, free: from a heap. A block: that alone, and running out of it is
  * `RV_NO_MEMORY`. Everything is given back at once, by `rv_free`. */
 typedef struct {
     void *(*allocate)(size_t size);
+    void *(*resize)(void *memory, size_t size);
     void (*release)(void *memory);
     void *block;
     size_t size;

@@ -46,13 +46,13 @@ class Monitor {
 public:
     // With a heap.
     Monitor(const void *plan, std::size_t size)
-        : monitor_(rv_new(plan, size, rv_memory{std::malloc, std::free, nullptr, 0}))
+        : monitor_(rv_new(plan, size, rv_memory{std::malloc, std::realloc, std::free, nullptr, 0}))
     {
     }
 
     // In a block, which has to stay.
     Monitor(const void *plan, std::size_t size, void *block, std::size_t room)
-        : monitor_(rv_new(plan, size, rv_memory{nullptr, nullptr, block, room}))
+        : monitor_(rv_new(plan, size, rv_memory{nullptr, nullptr, nullptr, block, room}))
     {
     }
 

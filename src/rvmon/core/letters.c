@@ -118,6 +118,28 @@ static int64_t needed_from(const run *r, int32_t index)
     return found;
 }
 
+/* Drop the pieces that no open attempt needs, all its letters being from an instant on. */
+static void drop_letters(rv_monitor *m, noting *n, int64_t needed)
+{
+    while ((n->first != n->last)
+           && ((n->pieces > PIECES_MOST)
+               || ((n->first->next->count > 0) && (n->first->next->words[0] <= needed)))) {
+        leave_first(m, n);
+    }
+}
+
+/* Whether one of the truths in some words is UNKNOWN. */
+static bool is_doubtful(const int64_t *packed, int32_t words)
+{
+    int32_t i;
+    for (i = 0; i < words; i++) {
+        if (((uint64_t)packed[i] & (UINT64_MAX / 3U)) != 0U) { /* the lower bit of each */
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Take the letter at the position `t`; if it is not known, attempts that are open hang on that. */
 void keep_letter(run *r, int32_t index, int64_t t)
 {
@@ -127,19 +149,12 @@ void keep_letter(run *r, int32_t index, int64_t t)
     const list propositions = r->part->judges[index].propositions;
     const int32_t words = words_for(propositions.count);
     const int32_t stride = words + 1;
-    const int64_t needed = needed_from(r, index);
     int64_t *made;
     if ((j->first < 0) && !watches(r, index)) {
         forget_letters(m, n);
     }
-    if ((j->first >= 0) && is_in_doubt(r, index)
-        && ((n->doubts.count == 0) || (n->doubted_at < n->began_at))) {
-        note_doubt(r, index, t);
-    }
-    while ((n->first != n->last)
-           && ((n->pieces > PIECES_MOST)
-               || ((n->first->next->count > 0) && (n->first->next->words[0] <= needed)))) {
-        leave_first(m, n);
+    if (n->first != n->last) {
+        drop_letters(m, n, needed_from(r, index));
     }
     if ((n->last == NULL) || (n->last->count == LETTERS_IN_PIECE * stride)) {
         const rv_piece *last = n->last;
@@ -152,6 +167,10 @@ void keep_letter(run *r, int32_t index, int64_t t)
     made = &n->last->words[n->last->count];
     made[0] = t;
     pack_truths(r, propositions, false, &made[1]);
+    if ((j->first >= 0) && is_doubtful(&made[1], words)
+        && ((n->doubts.count == 0) || (n->doubted_at < n->began_at))) {
+        note_doubt(r, index, t);
+    }
     if (n->last->count > 0) {
         n->last->before = made - stride;
     }

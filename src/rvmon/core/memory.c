@@ -33,50 +33,100 @@ static size_t class_of(size_t *size)
     return octave * 4 + (units >> octave);
 }
 
-static bool add_chunk(arena *a, size_t size)
+/* What points to a chunk, and the next one, learn where it is. */
+static void hook(chunk *one)
 {
-    size_t room = (size > CHUNK_SIZE) ? size : CHUNK_SIZE;
-    char *made = NULL;
-    chunk *head;
-    if (a->from.allocate == NULL) {
-        return false;
+    *one->link = one;
+    if (one->next != NULL) {
+        one->next->link = &one->next;
     }
-    room += CHUNK_HEAD;
-    made = a->from.allocate(room);
+}
+
+/* A chunk with so much room; NULL: there is none. */
+static char *add_chunk(arena *a, size_t room)
+{
+    chunk *made = (a->from.allocate != NULL) ? a->from.allocate(CHUNK_HEAD + room) : NULL;
     if (made == NULL) {
-        return false;
+        return NULL;
     }
-    head = (chunk *)(void *)made;
-    head->next = a->chunks;
-    a->chunks = head;
-    a->free = made + CHUNK_HEAD;
-    a->left = room - CHUNK_HEAD;
-    return true;
+    made->next = a->chunks;
+    made->link = &a->chunks;
+    hook(made);
+    return (char *)made + CHUNK_HEAD;
+}
+
+/* Whether a block of a size has a chunk of its own, which can be made larger. */
+static bool has_own_chunk(const arena *a, size_t room)
+{
+    return (room > CHUNK_SIZE) && (a->from.allocate != NULL);
+}
+
+/* A block with whatever was in it; `size` becomes how large it is. */
+static void *take_as_it_is(arena *a, size_t *size)
+{
+    size_t room = *size;
+    size_t class;
+    char *made;
+    if (room > SIZE_MAX / 4) { /* beyond, sums of sizes could wrap */
+        return NULL;
+    }
+    class = class_of(&room);
+    *size = room;
+    made = a->spare[class];
+    if (made != NULL) {
+        (void)memcpy(&a->spare[class], made, sizeof(void *));
+        return made;
+    }
+    if (has_own_chunk(a, room)) {
+        made = add_chunk(a, room);
+        a->used += (made != NULL) ? room : 0;
+        return made;
+    }
+    if (a->left < room) {
+        made = add_chunk(a, CHUNK_SIZE);
+        if (made == NULL) {
+            return NULL;
+        }
+        a->free = made;
+        a->left = CHUNK_SIZE;
+    }
+    made = a->free;
+    a->free += room;
+    a->left -= room;
+    a->used += room;
+    return made;
+}
+
+void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted)
+{
+    size_t was = size;
+    size_t room = wanted;
+    void *made;
+    (void)class_of(&was);
+    if ((old != NULL) && has_own_chunk(a, was) && (wanted <= SIZE_MAX / 4)) {
+        chunk *head = (chunk *)(void *)((char *)old - CHUNK_HEAD);
+        (void)class_of(&room);
+        head = a->from.resize(head, CHUNK_HEAD + room);
+        if (head == NULL) {
+            return NULL;
+        }
+        hook(head);
+        a->used += room - was;
+        return (char *)head + CHUNK_HEAD;
+    }
+    made = take_as_it_is(a, &room);
+    if ((made != NULL) && (old != NULL)) {
+        (void)memcpy(made, old, size);
+        arena_give(a, old, size);
+    }
+    return made;
 }
 
 void *arena_take(arena *a, size_t size)
 {
     size_t room = size;
-    size_t class;
-    void *made;
-    if (size > SIZE_MAX / 4) { /* beyond, sums of sizes could wrap */
-        return NULL;
-    }
-    class = class_of(&room);
-    made = a->spare[class];
-    if (made != NULL) {
-        (void)memcpy(&a->spare[class], made, sizeof made);
-    } else {
-        if ((a->left < room) && !add_chunk(a, room)) {
-            return NULL;
-        }
-        made = a->free;
-        a->free += room;
-        a->left -= room;
-        a->used += room;
-    }
-    (void)memset(made, 0, room);
-    return made;
+    void *made = take_as_it_is(a, &room);
+    return (made != NULL) ? memset(made, 0, room) : NULL;
 }
 
 void arena_give(arena *a, void *block, size_t size)
@@ -89,6 +139,14 @@ void arena_give(arena *a, void *block, size_t size)
     class = class_of(&room);
     (void)memcpy(block, &a->spare[class], sizeof block);
     a->spare[class] = block;
+}
+
+void arena_move(arena *to, const arena *from)
+{
+    *to = *from;
+    if (to->chunks != NULL) {
+        to->chunks->link = &to->chunks;
+    }
 }
 
 void arena_release(arena *a)
@@ -104,7 +162,7 @@ void arena_release(arena *a)
     a->left = 0;
 }
 
-void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
+void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
 {
     int64_t more = 2 * (int64_t)*room;
     void *made;
@@ -117,15 +175,21 @@ void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each
         m->spoilt = true;
         return NULL;
     }
-    made = arena_take(&m->memory, (size_t)more * each);
+    made = arena_enlarge(&m->memory, old, (size_t)*room * each, (size_t)more * each);
     if (made == NULL) {
         m->spoilt = true;
         return NULL;
     }
-    if (old != NULL) {
-        (void)memcpy(made, old, (size_t)*room * each);
-        arena_give(&m->memory, old, (size_t)*room * each);
-    }
     *room = (int32_t)more;
+    return made;
+}
+
+void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
+{
+    const int32_t was = *room;
+    char *made = widened(m, old, room, wanted, each);
+    if ((made != NULL) && (*room > was)) {
+        (void)memset(made + (size_t)was * each, 0, (size_t)(*room - was) * each);
+    }
     return made;
 }

@@ -195,7 +195,7 @@ static PyObject *reset_of(monitor *c, PyObject *unused)
     (void)unused;
     c->given = 0;
     forget_arrivals(&c->in);
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     rv_forget_records(c->m);
     return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
 }
@@ -293,7 +293,7 @@ static void monitor_dealloc(PyObject *self)
         (void)rv_reset(c->m); /* pieces give back what hangs on them */
         rv_free(c->m);
     }
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     free(c->notes.dropped);
     free_intake(&c->in);
     PyMem_Free(c->captured);
@@ -360,7 +360,7 @@ static PyType_Spec monitor_spec = {
 /* memory_of(plan, attempts): the bytes of a block in which a run begins with room for so many. */
 static PyObject *core_memory_of(PyObject *module, PyObject *args)
 {
-    const rv_memory heap = {malloc, free, NULL, 0};
+    const rv_memory heap = {malloc, realloc, free, NULL, 0};
     Py_buffer plan;
     int attempts;
     PyObject *made = NULL;

@@ -4,7 +4,6 @@
 #define RVMON_MODULE_ATTEMPTS_H
 
 #include "module_intake.h"
-#include "module_notes.h"
 #include "module_record.h"
 
 typedef struct {
@@ -123,15 +122,11 @@ static PyObject *object_of(const rv_number *number)
     }
 }
 
-/* The values that an attempt captured, as a tuple; None: it captures none. */
-static PyObject *noted_of(const rv_number *values, int32_t count)
+/* The values that an attempt captured, as a tuple. */
+static PyObject *values_of(const rv_number *values, int32_t count)
 {
-    PyObject *made;
+    PyObject *made = PyTuple_New((Py_ssize_t)count);
     int32_t i;
-    if (count == 0) {
-        return Py_NewRef(Py_None);
-    }
-    made = PyTuple_New((Py_ssize_t)count);
     for (i = 0; (made != NULL) && (i < count); i++) {
         PyObject *value = object_of(&values[i]);
         if ((value == NULL) || (PyTuple_SetItem(made, (Py_ssize_t)i, value) < 0)) {
@@ -141,24 +136,28 @@ static PyObject *noted_of(const rv_number *values, int32_t count)
     return made;
 }
 
-static PyObject *attempt_of(monitor *c, const rv_record *told, const rv_number *captured)
+static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_number *captured)
 {
+    const int32_t count = (captured == NULL) ? 0 : c->captured[told->requirement];
     attempt_record *made = (attempt_record *)PyType_GenericAlloc(c->attempt, 0);
     if (made == NULL) {
         return NULL;
     }
-    made->requirement = Py_NewRef(PyTuple_GetItem(c->ids, told->requirement));
-    made->verdict = Py_NewRef(PyTuple_GetItem(c->verdicts, told->verdict));
-    made->decision = Py_NewRef(PyTuple_GetItem(c->decisions, told->decision));
+    hide_record((PyObject *)made);
+    made->objects[REQUIREMENT] = Py_NewRef(PyTuple_GetItem(c->ids, told->requirement));
+    made->objects[VERDICT] = Py_NewRef(PyTuple_GetItem(c->verdicts, told->verdict));
+    made->objects[DECISION] = Py_NewRef(PyTuple_GetItem(c->decisions, told->decision));
+    made->objects[DETAILS] = Py_NewRef(c->details);
     made->number = told->number;
     made->triggered = told->triggered;
-    made->decided = (told->decision == (uint8_t)RV_OPEN) ? Py_NewRef(Py_None)
-                                                         : PyLong_FromLongLong(told->decided);
+    made->objects[DECIDED] = (told->decision == (uint8_t)RV_OPEN)
+        ? Py_NewRef(Py_None) : PyLong_FromLongLong(told->decided);
     made->in_doubt = (told->in_doubt != 0U) ? 1 : 0;
-    made->details = Py_NewRef(c->details);
-    made->noted = noted_with(&c->notes, c->m, told,
-                             noted_of(captured, (captured == NULL) ? 0 : c->captured[told->requirement]));
-    if ((made->decided == NULL) || (made->noted == NULL)) {
+    if (count > 0) {
+        made->values = values_of(captured, count);
+    }
+    if ((made->objects[DECIDED] == NULL) || ((count > 0) && (made->values == NULL))
+        || !copy_note(&made->note, c->m, told)) {
         Py_CLEAR(made);
     }
     return (PyObject *)made;
@@ -202,10 +201,10 @@ static void gather_records(const monitor *c, int64_t first, bool open, gathering
 /* Have records be dropped that are too many, all being given out. */
 static void trim_given(monitor *c)
 {
-    if (rv_trim(c->m)) {
+    if ((c->keep >= 0) && rv_trim(c->m)) {
         const rv_record *records;
         c->given = rv_records(c->m, &records);
-        forget_standing(&c->notes);
+        free_dropped(&c->notes);
     }
 }
 

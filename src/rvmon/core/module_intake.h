@@ -33,6 +33,13 @@ typedef struct {
     int64_t nan_first;
 } arrival;
 
+/* A name that came at some place of a sample, and its number. */
+typedef struct {
+    PyObject *name;
+    int32_t number;
+    int32_t kind;              /* of a signal what its values are; -1 of an event */
+} seen_name;
+
 /* The names of a monitor, and the sample that is laid out. */
 typedef struct {
     PyObject *numbers;         /* borrowed: of the names that can come */
@@ -42,8 +49,7 @@ typedef struct {
     reading *readings;         /* of all */
     arrival *arrivals;         /* of all */
     int32_t *first_fields;     /* of events, among those */
-    int32_t *order;            /* the numbers of the names, as they came last */
-    PyObject **came;           /* the names themselves, as they came last */
+    seen_name *seen;           /* as names came last */
     rv_update *updates;
     int64_t count;
     int64_t room;
@@ -51,6 +57,8 @@ typedef struct {
     int64_t fields_count;
     int64_t fields_room;
     int64_t fields_most;       /* if each occurs once */
+    int32_t to_come;           /* so many signals were told of in no sample */
+    bool is_odd;               /* whether something is unknown in the sample that is laid out */
 } intake;
 
 /* The number of a value that is no real one; false if that takes a closer look. */
@@ -83,49 +91,58 @@ static bool number_of_other(PyObject *value, const reading *as, rv_number *numbe
     return beyond == 0;
 }
 
+/* The number of a float. */
+static inline void take_float(PyObject *value, rv_number *number)
+{
+    const double x = PyFloat_AsDouble(value);
+    number->kind = RV_REAL;
+    number->as.real = x;
+    if (x != x) {
+        number->kind = RV_UNKNOWN;
+        number->as.whole = RV_IS_NAN;
+    }
+}
+
 /* The number of a value; false if that takes a closer look. */
-static inline bool number_of(PyObject *value, const reading *as, rv_number *number)
+static bool number_of(PyObject *value, const reading *as, rv_number *number)
 {
     if ((as->kind == IS_REAL) && PyFloat_Check(value)) {
-        number->as.real = PyFloat_AsDouble(value);
-        number->kind = RV_REAL;
-        if (number->as.real != number->as.real) {
-            number->kind = RV_UNKNOWN;
-            number->as.whole = RV_IS_NAN;
-        }
+        take_float(value, number);
         return true;
     }
     return number_of_other(value, as, number);
 }
 
-/* The number of the name that came as so manyth; -1 if none can come that is so called.
+/* The name that came as so manyth; NULL if none can come that is so called.
  *
  * Mostly the same objects come in the same order. */
-static int32_t number_of_name(intake *in, PyObject *name, int32_t place)
+static const seen_name *name_at(intake *in, PyObject *name, int32_t place)
 {
     PyObject *found = NULL;
+    seen_name *seen = &in->seen[place];
     long number;
     if (place >= in->names) {
-        return -1;
+        return NULL;
     }
-    if (in->came[place] == name) {
-        return in->order[place];
+    if (seen->name == name) {
+        return seen;
     }
     if (PyUnicode_CheckExact(name)) {
         found = PyDict_GetItemWithError(in->numbers, name);
     }
     number = (found == NULL) ? -1 : PyLong_AsLong(found);
     if ((number < 0) || (number >= in->names)) {
-        return -1;
+        return NULL;
     }
     Py_INCREF(name);
-    Py_XDECREF(in->came[place]);
-    in->came[place] = name;
-    in->order[place] = (int32_t)number;
-    return in->order[place];
+    Py_XDECREF(seen->name);
+    seen->name = name;
+    seen->number = (int32_t)number;
+    seen->kind = (number < in->signals) ? in->readings[number].kind : -1;
+    return seen;
 }
 
-static rv_update *further_update(intake *in, int32_t name)
+static inline rv_update *further_update(intake *in, int32_t name)
 {
     rv_update *update = &in->updates[in->count];
     in->count++;
@@ -135,16 +152,26 @@ static rv_update *further_update(intake *in, int32_t name)
     return update;
 }
 
-static bool lay_signal(intake *in, int32_t signal, PyObject *value)
+static inline bool lay_signal(intake *in, const seen_name *name, PyObject *value)
 {
-    rv_update *update = further_update(in, signal);
-    update->value.kind = RV_UNKNOWN;
-    update->value.as.whole = RV_IS_NONE;
-    if ((value != Py_None) && !number_of(value, &in->readings[signal], &update->value)) {
+    rv_update *update = further_update(in, name->number);
+    if ((name->kind == IS_REAL) && PyFloat_CheckExact(value)) {
+        take_float(value, &update->value);
+    } else if ((name->kind == IS_BOOLEAN) && ((value == Py_True) || (value == Py_False))) {
+        update->value.kind = RV_WHOLE;
+        update->value.as.whole = (value == Py_True) ? 1 : 0;
+        return true;
+    } else if (value == Py_None) {
+        update->value.kind = RV_UNKNOWN;
+        update->value.as.whole = RV_IS_NONE;
+    } else if (!number_of(value, &in->readings[name->number], &update->value)) {
         return false;
+    } else {
+        /* It is laid out. */
     }
     if (update->value.kind == RV_UNKNOWN) {
         update->says = RV_SAYS_UNKNOWN;
+        in->is_odd = true;
     }
     return true;
 }
@@ -184,6 +211,7 @@ static bool lay_payload(intake *in, int32_t name, PyObject *payload)
         return false;
     }
     in->fields_count += count;
+    in->is_odd = true;
     for (i = 0; i < count; i++) {
         fields[i].kind = RV_UNKNOWN;
         fields[i].as.whole = IS_NOT_SAID;
@@ -257,6 +285,7 @@ static bool lay_event(intake *in, int32_t name, PyObject *value, bool looked)
         further_update(in, name)->says = RV_SAYS_NO;
     } else if (value == Py_None) {
         further_update(in, name)->says = RV_SAYS_UNKNOWN;
+        in->is_odd = true;
     } else if (PyTuple_CheckExact(value)) {
         return lay_payloads(in, name, value, looked);
     } else {
@@ -272,22 +301,19 @@ static bool lay(intake *in, PyObject *values, bool looked)
     PyObject *name;
     PyObject *value;
     Py_ssize_t at = 0;
-    int32_t place = 0;
-    bool done = true;
+    int32_t place;
     in->count = 0;
     in->fields_count = 0;
-    while (done && (PyDict_Next(values, &at, &name, &value) != 0)) {
-        const int32_t number = number_of_name(in, name, place);
-        if (number < 0) {
-            done = false;
-        } else if (number < in->signals) {
-            done = lay_signal(in, number, value);
-        } else {
-            done = lay_event(in, number, value, looked);
+    in->is_odd = false;
+    for (place = 0; PyDict_Next(values, &at, &name, &value) != 0; place++) {
+        const seen_name *seen = name_at(in, name, place);
+        if ((seen == NULL)
+            || !((seen->number < in->signals) ? lay_signal(in, seen, value)
+                                              : lay_event(in, seen->number, value, looked))) {
+            return false;
         }
-        place++;
     }
-    return done;
+    return true;
 }
 
 static void note_unknown(arrival *a, const rv_number *value, int64_t t)
@@ -300,11 +326,11 @@ static void note_unknown(arrival *a, const rv_number *value, int64_t t)
 }
 
 /* Note what the sample brought that was taken at `t`. */
-static void note_arrivals(const intake *in, int64_t t)
+static void note_arrivals(intake *in, int64_t t)
 {
     static const rv_number none = {RV_UNKNOWN, {RV_IS_NONE}};
     int64_t i;
-    for (i = 0; i < in->count; i++) {
+    for (i = 0; (in->is_odd || (in->to_come > 0)) && (i < in->count); i++) {
         const rv_update *u = &in->updates[i];
         arrival *a = &in->arrivals[u->name];
         if (u->name < in->signals) {
@@ -312,7 +338,10 @@ static void note_arrivals(const intake *in, int64_t t)
             if (!known && (in->readings[u->name].single != 0)) {
                 continue;
             }
-            a->came = (a->came == RV_NO_TIME) ? t : a->came;
+            if (a->came == RV_NO_TIME) {
+                a->came = t;
+                in->to_come--;
+            }
             if (!known) {
                 note_unknown(a, &u->value, t);
             }
@@ -332,27 +361,37 @@ static void note_arrivals(const intake *in, int64_t t)
     }
 }
 
+/* Count the signals that were told of in no sample. */
+static void count_to_come(intake *in)
+{
+    int32_t i;
+    in->to_come = 0;
+    for (i = 0; i < in->signals; i++) {
+        in->to_come += (in->arrivals[i].came == RV_NO_TIME) ? 1 : 0;
+    }
+}
+
 /* Forget what came. */
-static void forget_arrivals(const intake *in)
+static void forget_arrivals(intake *in)
 {
     int32_t i;
     for (i = 0; i < in->all; i++) {
         (void)memset(&in->arrivals[i], 0, sizeof in->arrivals[i]);
         in->arrivals[i].came = RV_NO_TIME;
     }
+    count_to_come(in);
 }
 
 static void free_intake(intake *in)
 {
     int32_t i;
-    for (i = 0; (in->came != NULL) && (i < in->names); i++) {
-        Py_XDECREF(in->came[i]);
+    for (i = 0; (in->seen != NULL) && (i < in->names); i++) {
+        Py_XDECREF(in->seen[i].name);
     }
     PyMem_Free(in->readings);
     PyMem_Free(in->arrivals);
     PyMem_Free(in->first_fields);
-    PyMem_Free(in->order);
-    PyMem_Free(in->came);
+    PyMem_Free(in->seen);
     PyMem_Free(in->updates);
     PyMem_Free(in->fields);
     (void)memset(in, 0, sizeof *in);
@@ -382,12 +421,11 @@ static bool make_intake(intake *in, const rv_monitor *m, PyObject *numbers, PyOb
     in->readings = PyMem_Calloc((size_t)all + 1, sizeof *in->readings);
     in->arrivals = PyMem_Calloc((size_t)all + 1, sizeof *in->arrivals);
     in->first_fields = PyMem_Calloc((size_t)sizes.events + 1, sizeof *in->first_fields);
-    in->order = PyMem_Calloc((size_t)names + 1, sizeof *in->order);
-    in->came = PyMem_Calloc((size_t)names + 1, sizeof *in->came);
+    in->seen = PyMem_Calloc((size_t)names + 1, sizeof *in->seen);
     in->updates = PyMem_Calloc((size_t)in->room, sizeof *in->updates);
     in->fields = PyMem_Calloc((size_t)in->fields_room, sizeof *in->fields);
-    if ((in->readings == NULL) || (in->arrivals == NULL) || (in->first_fields == NULL) || (in->order == NULL)
-        || (in->came == NULL) || (in->updates == NULL) || (in->fields == NULL)) {
+    if ((in->readings == NULL) || (in->arrivals == NULL) || (in->first_fields == NULL) || (in->seen == NULL)
+        || (in->updates == NULL) || (in->fields == NULL)) {
         (void)PyErr_NoMemory();
         return false;
     }

@@ -1,8 +1,9 @@
-/* How module.c gives out notes: as bytes, which attempts share. Included there alone.
+/* How module.c gives out notes. Included there alone.
  *
- * What is given out outlives the monitor: nothing of it is the core's memory. A piece of letters becomes
- * bytes once it is full, and hangs on to them; of the last one there are bytes for each length at which
- * it was asked for. */
+ * What is given out outlives the monitor: nothing of it is the core's memory. An attempt has a copy of
+ * its words, which become bytes when someone asks. A piece of letters, which attempts share, becomes bytes
+ * once it is full, and hangs on to them; of the last one there are bytes for each length at which it was
+ * asked for. */
 #ifndef RVMON_MODULE_NOTES_H
 #define RVMON_MODULE_NOTES_H
 
@@ -10,12 +11,19 @@
 #include "python_abi.h"
 
 typedef struct {
-    PyObject *standing;        /* what was given out last */
-    int64_t standing_place;
     PyObject **dropped;        /* what pieces hung on to that are gone */
     size_t dropped_count;
     size_t dropped_room;
 } note_cache;
+
+/* The note of an attempt. */
+typedef struct {
+    int64_t *words;            /* NULL: there is none; behind them those of how all stood */
+    PyObject *pieces;          /* letters; NULL: they do not matter */
+    PyObject *last;
+    int32_t count;
+    int32_t standing_count;    /* 0: nobody asks */
+} note_copy;
 
 /* A piece is gone, which may be while other threads of Python run. */
 static void note_dropped(void *user, void *held)
@@ -40,13 +48,6 @@ static void free_dropped(note_cache *cache)
         cache->dropped_count--;
         Py_DECREF(cache->dropped[cache->dropped_count]);
     }
-}
-
-/* Forget what was given out last: its place may be another's next. */
-static void forget_standing(note_cache *cache)
-{
-    Py_CLEAR(cache->standing);
-    free_dropped(cache);
 }
 
 static PyObject *bytes_of_words(const int64_t *words, int64_t count)
@@ -128,40 +129,56 @@ static bool letters_of(const rv_note *note, PyObject **pieces, PyObject **last)
     return (*pieces != NULL) && (*last != NULL);
 }
 
-/* What an attempt keeps, of which values that it captured are a part: (captured, note, standing, pieces,
- * last piece). The reference to `captured` is taken over. */
-static PyObject *noted_with(note_cache *cache, const rv_monitor *m, const rv_record *record,
-                            PyObject *captured)
+/* Copy the note of a record; false with an error. */
+static bool copy_note(note_copy *to, const rv_monitor *m, const rv_record *record)
 {
     rv_note note;
-    PyObject *words = NULL;
-    PyObject *pieces = NULL;
-    PyObject *last = NULL;
+    if (!rv_note_of(m, record, &note)) {
+        return true;
+    }
+    to->words = PyMem_Malloc((size_t)(note.count + note.standing_count) * sizeof *to->words);
+    if (to->words == NULL) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    to->count = (int32_t)note.count;
+    to->standing_count = (int32_t)note.standing_count;
+    (void)memcpy(to->words, note.words, (size_t)note.count * sizeof *to->words);
+    if (note.standing_count > 0) {
+        (void)memcpy(&to->words[note.count], note.standing,
+                     (size_t)note.standing_count * sizeof *to->words);
+    }
+    return (note.first == NULL) || letters_of(&note, &to->pieces, &to->last);
+}
+
+static void free_note(note_copy *note)
+{
+    PyMem_Free(note->words);
+    note->words = NULL;
+    Py_CLEAR(note->pieces);
+    Py_CLEAR(note->last);
+}
+
+/* The values that an attempt captured, or None; with a note (values, note, standing, pieces, last
+ * piece), None for what there is not. */
+static PyObject *noted_with(const note_copy *note, PyObject *values)
+{
+    PyObject *words;
+    PyObject *standing;
     PyObject *made = NULL;
-    if ((captured == NULL) || !rv_note_of(m, record, &note)) {
-        return captured;
+    if (note->words == NULL) {
+        return Py_NewRef(values);
     }
-    if (note.standing == NULL) {
-        forget_standing(cache);
-        cache->standing_place = -1;
-    } else if ((cache->standing == NULL) || (cache->standing_place != note.words[1])) {
-        forget_standing(cache);
-        cache->standing = bytes_of_words(note.standing, note.standing_count);
-        cache->standing_place = note.words[1];
-    } else {
-        /* It is the one before. */
-    }
-    if ((note.standing == NULL) || (cache->standing != NULL)) {
-        words = bytes_of_words(note.words, note.count);
-        if ((words != NULL) && letters_of(&note, &pieces, &last)) {
-            made = PyTuple_Pack(5, captured, words,
-                                (cache->standing != NULL) ? cache->standing : Py_None, pieces, last);
-        }
+    words = bytes_of_words(note->words, note->count);
+    standing = (note->standing_count > 0)
+        ? bytes_of_words(&note->words[note->count], note->standing_count) : Py_NewRef(Py_None);
+    if ((words != NULL) && (standing != NULL)) {
+        made = PyTuple_Pack(5, values, words, standing,
+                            (note->pieces != NULL) ? note->pieces : Py_None,
+                            (note->last != NULL) ? note->last : Py_None);
     }
     Py_XDECREF(words);
-    Py_XDECREF(pieces);
-    Py_XDECREF(last);
-    Py_DECREF(captured);
+    Py_XDECREF(standing);
     return made;
 }
 

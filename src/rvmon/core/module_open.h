@@ -8,7 +8,7 @@
 /* Open the plan in some bytes; false with an error. */
 static bool open_plan(monitor *c, PyObject *data)
 {
-    const rv_memory heap = {malloc, free, NULL, 0};
+    const rv_memory heap = {malloc, realloc, free, NULL, 0};
     const size_t size = (size_t)PyBytes_Size(data);
     const void *plan = PyBytes_AsString(data);
     c->data = Py_NewRef(data);

@@ -23,6 +23,7 @@ static PyObject *take_arrivals_of(monitor *c, PyObject *bytes)
         return Py_NewRef(Py_False);
     }
     (void)memcpy(c->in.arrivals, PyBytes_AsString(bytes), (size_t)size);
+    count_to_come(&c->in);
     return Py_NewRef(Py_True);
 }
 
@@ -55,12 +56,12 @@ static PyObject *open_of(monitor *c, PyObject *unused)
     (void)unused;
     begin_gathering(&g, c);
     gather_records(c, 0, true, &g);
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     if (!g.failed) {
         rv_each_open(c->m, gather, &g);
     }
     made = attempts_of(&g);
-    forget_standing(&c->notes);
+    free_dropped(&c->notes);
     return made;
 }
 

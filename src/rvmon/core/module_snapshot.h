@@ -20,7 +20,7 @@ static PyObject *save_of(monitor *c, PyObject *unused)
 /* load(bytes): go on as that run; false, and nothing is done, if they are no run of this plan. */
 static PyObject *load_of(monitor *c, PyObject *bytes)
 {
-    const rv_memory heap = {malloc, free, NULL, 0};
+    const rv_memory heap = {malloc, realloc, free, NULL, 0};
     const rv_record *records;
     PyObject *data = PyTuple_GetItem(c->owner, 0);
     rv_monitor *made;
@@ -42,7 +42,7 @@ static PyObject *load_of(monitor *c, PyObject *bytes)
     if (code == RV_OK) {
         (void)rv_reset(c->m); /* pieces give back what hangs on them */
         rv_free(c->m);
-        forget_standing(&c->notes);
+        free_dropped(&c->notes);
         c->m = made;
         c->given = rv_records(made, &records);
         return Py_NewRef(Py_True);

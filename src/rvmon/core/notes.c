@@ -45,9 +45,7 @@ bool make_notes(run *r)
             return false;
         }
         r->standing->nodes = arena_take(a, ((size_t)stood_count + 1U) * sizeof *r->standing->nodes);
-        r->standing->before =
-            arena_take(a, (2U * (size_t)stood_count + 1U) * sizeof *r->standing->before);
-        if ((r->standing->nodes == NULL) || (r->standing->before == NULL)) {
+        if (r->standing->nodes == NULL) {
             return false;
         }
     }
@@ -121,19 +119,22 @@ void stand_at_first(run *r, int64_t t)
     standing *s = r->standing;
     int32_t i;
     for (i = 0; i < r->part->stood; i++) {
-        s->nodes[i].since = t;
-        s->nodes[i].last[0] = s->nodes[i].last[1] = RV_NO_TIME;
+        stood_node *own = &s->nodes[i];
+        own->now.since = t;
+        own->now.last[0] = own->now.last[1] = RV_NO_TIME;
+        own->moved_at = RV_NO_TIME;
     }
-    s->before_count = 0;
     s->moved_at = t;
 }
 
 /* Have a run that goes on as another one does stand as that does. */
 void stand_like(run *made, const run *r)
 {
-    (void)memcpy(made->standing->nodes, r->standing->nodes,
-                 (size_t)r->part->stood * sizeof *r->standing->nodes);
-    made->standing->before_count = 0;
+    int32_t i;
+    for (i = 0; i < r->part->stood; i++) {
+        made->standing->nodes[i].now = r->standing->nodes[i].now;
+        made->standing->nodes[i].moved_at = RV_NO_TIME;
+    }
     made->standing->moved_at = r->standing->moved_at;
     made->standing->begun = r->standing->begun;
 }
@@ -141,63 +142,53 @@ void stand_like(run *made, const run *r)
 /* Take it that a node becomes another one than it `was` at the position `t`. */
 void note_node(run *r, int32_t node, uint8_t was, int64_t t)
 {
-    standing *s = r->standing;
     const int32_t slot = r->part->slots[node];
-    stood *own;
+    stood_node *own;
     if (slot < 0) {
         return;
     }
-    own = &s->nodes[slot];
-    if (s->moved_at != t) {
-        s->moved_at = t;
-        s->before_count = 0;
+    own = &r->standing->nodes[slot];
+    r->standing->moved_at = t;
+    if (own->moved_at != t) {
+        own->moved_at = t;
+        own->was = own->now;
+        own->truth = was;
     }
-    if (s->before_count < 2 * r->part->stood) {
-        s->before[s->before_count].slot = slot;
-        s->before[s->before_count].truth = was;
-        s->before[s->before_count].was = *own;
-        s->before_count++;
-    }
-    own->since = t;
+    own->now.since = t;
     if (was != IS_UNKNOWN) {
-        own->last[(was == IS_TRUE) ? 1 : 0] = r->at.before;
+        own->now.last[was / IS_TRUE] = r->at.before;
     }
 }
 
-/* How a node was before the last position at which one changed; NULL: as it is. */
-static const undone *undone_of(const run *r, int32_t node)
+/* How a node was before the last position at which one changed, if it did there; else NULL. */
+static const stood_node *moved_last(const run *r, int32_t node)
 {
-    const standing *s = r->standing;
-    const int32_t slot = r->part->slots[node];
-    int32_t i;
-    for (i = 0; i < s->before_count; i++) {
-        if (s->before[i].slot == slot) {
-            return &s->before[i];
-        }
-    }
-    return NULL;
+    const stood_node *own = &r->standing->nodes[r->part->slots[node]];
+    return ((own->moved_at == r->standing->moved_at) && (own->moved_at != RV_NO_TIME)) ? own : NULL;
 }
 
 stood stood_of(const run *r, int32_t node, bool before)
 {
-    const undone *was = before ? undone_of(r, node) : NULL;
-    return (was != NULL) ? was->was : r->standing->nodes[r->part->slots[node]];
+    const stood_node *own = &r->standing->nodes[r->part->slots[node]];
+    return (before && (moved_last(r, node) != NULL)) ? own->was : own->now;
 }
 
 /* The truths of some nodes, now or before the last position at which one changed. */
 void pack_truths(const run *r, list nodes, bool before, int64_t *words)
 {
     const int32_t *node = LIST(PLAN(r), nodes);
-    uint64_t word = 0;
-    int32_t i;
-    for (i = 0; i < nodes.count; i++) {
-        const undone *was = before ? undone_of(r, node[i]) : NULL;
-        const uint8_t truth = (was != NULL) ? was->truth : r->truth[node[i]];
-        word |= (uint64_t)truth << (2 * (i % TRUTHS_IN_WORD));
-        if ((i % TRUTHS_IN_WORD == TRUTHS_IN_WORD - 1) || (i == nodes.count - 1)) {
-            (void)memcpy(&words[i / TRUTHS_IN_WORD], &word, sizeof word);
-            word = 0;
+    const int32_t *end = node + nodes.count;
+    int64_t *to = words;
+    while (node < end) {
+        uint64_t word = 0;
+        int32_t shift;
+        for (shift = 0; (shift < 2 * TRUTHS_IN_WORD) && (node < end); shift += 2) {
+            const stood_node *was = before ? moved_last(r, *node) : NULL;
+            word |= (uint64_t)((was != NULL) ? was->truth : r->truth[*node]) << shift;
+            node++;
         }
+        (void)memcpy(to, &word, sizeof word);
+        to++;
     }
 }
 
@@ -208,6 +199,9 @@ const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
 {
     int32_t low = 0;
     int32_t high = ring->count;
+    if ((high > 0) && (entry_of(ring, high - 1, words)[0] <= t)) { /* as mostly */
+        return entry_of(ring, high - 1, words);
+    }
     while (low < high) {
         const int32_t middle = low + (high - low) / 2;
         if (entry_of(ring, middle, words)[0] <= t) {
@@ -259,24 +253,6 @@ int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words)
     return entry_of(ring, ring->count - 1, words);
 }
 
-/* Add an entry for the instant `t`; NULL: memory is short. Entries up to `oldest` may go. */
-static int64_t *add_truths(rv_monitor *m, truths *ring, int32_t words, int64_t t, int64_t oldest)
-{
-    int64_t *made;
-    if (ring->count == ring->room) {
-        drop_truths(ring, words, oldest);
-        if ((2 * (int64_t)ring->count > ring->room) /* else it would be full again soon */
-            && !grow_truths(m, ring, words)) {
-            return NULL;
-        }
-    }
-    made = next_truths(m, ring, words);
-    if (made != NULL) {
-        made[0] = t;
-    }
-    return made;
-}
-
 /* The trigger of the oldest attempt of a judge that is open. */
 static int64_t oldest_trigger(const run *r, int32_t index)
 {
@@ -291,24 +267,41 @@ static int64_t oldest_trigger(const run *r, int32_t index)
     return found;
 }
 
+/* Add an entry of a judge for the instant `t`; NULL: memory is short. */
+static int64_t *add_truths(const run *r, int32_t index, truths *ring, int32_t words, int64_t t)
+{
+    rv_monitor *m = r->home->monitor;
+    int64_t *made;
+    if (ring->count == ring->room) {
+        drop_truths(ring, words, least(oldest_trigger(r, index), t));
+        if ((2 * (int64_t)ring->count > ring->room) /* else it would be full again soon */
+            && !grow_truths(m, ring, words)) {
+            return NULL;
+        }
+    }
+    made = next_truths(m, ring, words);
+    if (made != NULL) {
+        made[0] = t;
+    }
+    return made;
+}
+
 /* Take it that an attempt begins that is triggered at `t`, at which the leaves are. */
 void note_trigger(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
     const list leaves = r->part->judges[index].leaves;
     const int32_t words = words_for(leaves.count);
-    truths *ring = &n->triggers;
-    int64_t *last = (ring->count > 0) ? entry_of(ring, ring->count - 1, words) : NULL;
-    int64_t *made = add_truths(r->home->monitor, ring, words, t,
-                               least(oldest_trigger(r, index), t));
+    int64_t *made = add_truths(r, index, &n->triggers, words, t);
+    const int64_t *last;
     n->began_at = t;
     if (made == NULL) {
         return;
     }
-    last = (ring->count > 1) ? entry_of(ring, ring->count - 2, words) : NULL;
     pack_truths(r, leaves, false, &made[1]);
+    last = (n->triggers.count > 1) ? entry_of(&n->triggers, n->triggers.count - 2, words) : NULL;
     if ((last != NULL) && (memcmp(&last[1], &made[1], (size_t)words * sizeof *made) == 0)) {
-        ring->count--; /* the one before stands for this, too */
+        n->triggers.count--; /* the one before stands for this, too */
     }
 }
 
@@ -323,7 +316,7 @@ void note_doubt(run *r, int32_t index, int64_t t)
     if ((ring->count > 0) && (entry_of(ring, ring->count - 1, words)[0] >= t)) {
         return;
     }
-    made = add_truths(r->home->monitor, ring, words, t, least(oldest_trigger(r, index), t));
+    made = add_truths(r, index, ring, words, t);
     n->doubted_at = t;
     if (made != NULL) {
         pack_truths(r, leaves, false, &made[1]);
@@ -365,7 +358,7 @@ void note_parting(run *r, int32_t index, attempt *x)
 }
 
 /* Whether something is unknown that a judge's attempts may hang on. */
-bool is_in_doubt(const run *r, int32_t index)
+static bool is_in_doubt(const run *r, int32_t index)
 {
     const list propositions = r->part->judges[index].propositions;
     const int32_t *nodes = LIST(PLAN(r), propositions);

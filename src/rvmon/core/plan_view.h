@@ -10,6 +10,7 @@
 
 typedef struct chunk {
     struct chunk *next;
+    struct chunk **link;       /* what points to it */
 } chunk;
 
 typedef struct {
@@ -22,7 +23,9 @@ typedef struct {
 } arena;
 
 void *arena_take(arena *a, size_t size);          /* zeroed; NULL: there is none */
+void *arena_enlarge(arena *a, void *old, size_t size, size_t wanted); /* NULL: memory is short, it stays */
 void arena_give(arena *a, void *block, size_t size);
+void arena_move(arena *to, const arena *from);    /* `from` is not used any more */
 void arena_release(arena *a);                     /* all of it */
 
 /* ---- plan.c: the plan, checked, with a pointer for each section */
@@ -54,6 +57,21 @@ typedef struct {
     int32_t classes;
 } machine;
 
+/* A comparison of a real signal with a constant, which one leaf shows. */
+typedef struct {
+    double constant;
+    uint64_t dirty;            /* its leaf, among those to be worked out */
+    int32_t word;
+    int32_t atom;
+    int32_t holds_for;         /* bits, see atoms.c */
+} quick_compare;
+
+/* A signal that a few of these read and nothing else, once all is born. */
+typedef struct {
+    const quick_compare *compares;
+    int32_t count;             /* 0: it is none */
+} quick_signal;
+
 typedef struct {
     const part_plan *plan;
     const signal_plan *signals;
@@ -67,6 +85,7 @@ typedef struct {
     machine *machines;         /* by judge that has an automaton */
     int32_t *timed;            /* by timer, the node */
     int32_t *perishable;       /* by number among these, the signal */
+    quick_signal *quick;       /* by signal */
     int32_t *networked;        /* judges that networks are, neither automata nor chains */
     int32_t networked_count;
     int32_t *slots;            /* by node, its number among those that notes tell of; -1: it is none */

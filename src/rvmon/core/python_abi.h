@@ -50,6 +50,8 @@ typedef int (*inquiry)(PyObject *);
 typedef int (*visitproc)(PyObject *, void *);
 typedef int (*traverseproc)(PyObject *, visitproc, void *);
 typedef void (*freefunc)(void *);
+typedef PyObject *(*getter)(PyObject *, void *);
+typedef int (*setter)(PyObject *, PyObject *, void *);
 
 #endif
 #ifdef RVMON_OWN_PYTHON_H
@@ -68,6 +70,14 @@ typedef struct PyMemberDef {
     int flags;
     const char *doc;
 } PyMemberDef;
+
+typedef struct PyGetSetDef {
+    const char *name;
+    getter get;
+    setter set;
+    const char *doc;
+    void *closure;
+} PyGetSetDef;
 
 typedef struct PyType_Slot {
     int slot;
@@ -142,6 +152,7 @@ typedef struct bufferinfo {
 #define Py_tp_new 65
 #define Py_tp_traverse 71
 #define Py_tp_members 72
+#define Py_tp_getset 73
 
 #define Py_TPFLAGS_DEFAULT 0UL
 #define Py_TPFLAGS_IMMUTABLETYPE (1UL << 8)
@@ -159,6 +170,7 @@ typedef struct bufferinfo {
 extern PyObject _Py_NoneStruct;
 extern PyLongObject _Py_FalseStruct;
 extern PyLongObject _Py_TrueStruct;
+extern PyObject *PyExc_AttributeError;
 extern PyObject *PyExc_RuntimeError;
 extern PyObject *PyExc_TypeError;
 extern PyObject *PyExc_ValueError;
@@ -194,10 +206,13 @@ PyObject *PyModuleDef_Init(PyModuleDef *);
 
 PyObject *PyType_FromModuleAndSpec(PyObject *, PyType_Spec *, PyObject *);
 PyObject *PyType_GenericAlloc(PyTypeObject *, Py_ssize_t);
+unsigned long PyType_GetFlags(PyTypeObject *);
 void *PyType_GetSlot(PyTypeObject *, int);
 int PyType_IsSubtype(PyTypeObject *, PyTypeObject *);
 
 PyObject *PyObject_Call(PyObject *, PyObject *, PyObject *);
+PyObject *PyObject_GetAttrString(PyObject *, const char *);
+void PyObject_Free(void *);
 void PyObject_GC_Del(void *);
 void PyObject_GC_UnTrack(void *);
 int PyObject_SetAttrString(PyObject *, const char *, PyObject *);
@@ -232,6 +247,7 @@ PyObject *PyTuple_New(Py_ssize_t);
 PyObject *PyTuple_Pack(Py_ssize_t, ...);
 int PyTuple_SetItem(PyObject *, Py_ssize_t, PyObject *);
 Py_ssize_t PyTuple_Size(PyObject *);
+PyObject *PyUnicode_FromString(const char *);
 
 #endif
 #ifdef RVMON_OWN_PYTHON_H

@@ -26,7 +26,7 @@ int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count)
 bool grow_records(rv_monitor *m, int64_t wanted)
 {
     int32_t room = (int32_t)m->record_room;
-    rv_record *made = grown(m, m->records, &room, wanted, sizeof *made);
+    rv_record *made = widened(m, m->records, &room, wanted, sizeof *made);
     if (made == NULL) {
         return false;
     }

@@ -92,6 +92,8 @@ run *new_run(home *h)
     }
     made->home = h;
     made->part = h->part;
+    made->all = &m->plan;
+    made->gap = m->plan.header->gap;
     (void)cut_block(&c, made);
     c.block = arena_take(&m->memory, c.used);
     if ((c.block == NULL) || !register_run(h, made)) {
@@ -338,6 +340,7 @@ run *forked(const run *r)
 /* Give a sample to a run, unless that began by it. */
 void give(run *r, int64_t t, const incoming *in, int32_t count)
 {
+    const quick_signal *quick;
     int32_t i;
     if (t <= r->at.after) {
         return;
@@ -349,8 +352,11 @@ void give(run *r, int64_t t, const incoming *in, int32_t count)
     if (r->part->plan->captured > 0) {
         forget_last(r);
     }
+    quick = quick_now(r);
     for (i = 0; i < count; i++) {
-        take_update(r, t, &in[i]);
+        if (in[i].event || (quick == NULL) || !take_quickly(r, quick, in[i].local, in[i].update)) {
+            take_update(r, t, &in[i]);
+        }
     }
     arrive(r, t);
 }

@@ -19,17 +19,18 @@ void carry_standing(carrier *c, run *r)
 {
     standing *s = r->standing;
     int32_t i;
-    for (i = 0; (i < r->part->stood) && !is_lost(c); i++) {
-        carry_stood(c, &s->nodes[i]);
-    }
     carry_position(c, &s->moved_at);
     carry_position(c, &s->begun);
-    carry_size(c, &s->before_count, 2 * (int64_t)r->part->stood, 29);
-    for (i = 0; (i < s->before_count) && !is_lost(c); i++) {
-        undone *one = &s->before[i];
-        carry_stood(c, &one->was);
-        carry_int(c, &one->slot, 0, r->part->stood);
-        carry_byte(c, &one->truth, IS_TRUE);
+    for (i = 0; (i < r->part->stood) && !is_lost(c); i++) {
+        stood_node *own = &s->nodes[i];
+        uint8_t moved = ((own->moved_at == s->moved_at) && (s->moved_at != RV_NO_TIME)) ? 1 : 0;
+        carry_stood(c, &own->now);
+        carry_byte(c, &moved, 1);
+        if (moved != 0U) {
+            own->moved_at = s->moved_at;
+            carry_stood(c, &own->was);
+            carry_byte(c, &own->truth, IS_TRUE);
+        }
     }
 }
 

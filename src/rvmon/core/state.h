@@ -93,18 +93,17 @@ typedef struct {
     int64_t last[2];
 } stood;
 
-/* How such a node was before the last position at which one changed. */
+/* The same, now and before the position at which it changed last. */
 typedef struct {
+    stood now;
     stood was;
-    int32_t slot;
-    uint8_t truth;
-} undone;
+    int64_t moved_at;          /* that position; RV_NO_TIME: it never did */
+    uint8_t truth;             /* before it */
+} stood_node;
 
 /* Such nodes of a run. */
 typedef struct {
-    stood *nodes;
-    undone *before;
-    int32_t before_count;
+    stood_node *nodes;
     int64_t moved_at;          /* the last position at which one changed */
     int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
 } standing;
@@ -161,6 +160,8 @@ typedef struct {
 struct run {
     home *home;
     const part *part;
+    const plan *all;           /* the whole plan */
+    int64_t gap;               /* ticks between two positions; 0: only samples are positions */
     run *next;                 /* of the same list */
     run *previous;
     run *parent;               /* in which its attempt was triggered */

@@ -20,11 +20,13 @@
 
 static int64_t *further_words(rv_monitor *m, int64_t count)
 {
-    int64_t *made = grown(m, m->notes, &m->note_room, m->note_count + count, sizeof *made);
-    if (made == NULL) {
-        return NULL;
+    if (m->note_count + count > m->note_room) {
+        int64_t *made = widened(m, m->notes, &m->note_room, m->note_count + count, sizeof *made);
+        if (made == NULL) {
+            return NULL;
+        }
+        m->notes = made;
     }
-    m->notes = made;
     m->note_count += count;
     return &m->notes[m->note_count - count];
 }
@@ -89,7 +91,8 @@ static int64_t flags_of(const run *r, int32_t index, const attempt *x)
     return flags;
 }
 
-/* Begin a note, with so many words; -1: there is no room. */
+/* Begin a note, with so many words behind the leaves at its trigger, which the caller fills; -1: there is
+ * no room. */
 static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind, int64_t flags,
                           int64_t count)
 {
@@ -98,19 +101,19 @@ static int64_t begin_note(run *r, int32_t index, const attempt *x, int64_t kind,
     const int32_t words = words_for(r->part->judges[index].leaves.count);
     const int64_t *then = truths_at(&n->triggers, words, x->triggered);
     int64_t *made;
+    int32_t i;
     drop_told_open(m);
     made = further_words(m, NOTE_HEAD + words + count);
     if (made == NULL) {
         return -1;
     }
-    (void)memset(made, 0, (size_t)(NOTE_HEAD + words + count) * sizeof *made); /* not all are used */
     made[0] = kind | ((flags_of(r, index, x) | flags) << 8) | ((int64_t)index << 24)
               | ((NOTE_HEAD + words + count) << 40);
     made[1] = made[2] = made[3] = -1;
     made[4] = made[5] = RV_NO_TIME;
     made[6] = begin_of(r, index, x);
-    if (then != NULL) {
-        (void)memcpy(&made[NOTE_HEAD], &then[1], (size_t)words * sizeof *made);
+    for (i = 0; i < words; i++) {
+        made[NOTE_HEAD + i] = (then != NULL) ? then[1 + i] : 0;
     }
     return made - m->notes;
 }
@@ -210,9 +213,8 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
     const int64_t stood_at = place_standing(r, index, NEVER);
     const int64_t *doubt = doubt_of(r, index, x);
     const int64_t doubted_at = (doubt != NULL) ? doubt[0] : RV_NO_TIME;
-    const int64_t note = begin_note(r, index, x, NOTE_OPEN, hollow ? NOTE_HOLLOW : 0,
-                                    words + 2 * ((int64_t)most + 1)
-                                        + unknowns_count(r, doubted_at));
+    const int64_t more = words + 2 * ((int64_t)most + 1) + unknowns_count(r, doubted_at);
+    const int64_t note = begin_note(r, index, x, NOTE_OPEN, hollow ? NOTE_HOLLOW : 0, more);
     int64_t *to;
     if ((note < 0) || (stood_at < 0)) {
         return -1;
@@ -221,6 +223,7 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
     m->notes[note + 2] = now;
     m->notes[note + 5] = end;
     to = behind_trigger(r, index, note);
+    (void)memset(to, 0, (size_t)more * sizeof *to); /* not all are used */
     if (doubt != NULL) {
         m->notes[note + 4] = doubt[0];
         (void)memcpy(to, &doubt[1], (size_t)words * sizeof *to);

@@ -96,14 +96,13 @@ class Attempt(Record):
     robustness: float | None = None
     in_doubt: bool = False
 
-    def __getattr__(self, name: str) -> Any:
-        """Called for a field that was never set: those are worked out when one is asked for."""
-        if name in ("_details", "_noted") or not hasattr(self, "_details"):
-            raise AttributeError(f"an attempt has no `{name}`")
-        for field_name, value in self._details(self, self._noted).items():
-            setattr(self, field_name, value)
+    def _work_out(self) -> None:
+        """Set the fields that were never set: called when someone asks for one."""
+        if not hasattr(self, "_details"):
+            raise AttributeError("of this attempt nothing more is known")
+        for name, value in self._details(self, self._noted).items():
+            setattr(self, name, value)
         del self._details, self._noted
-        return getattr(self, name)
 
     def __reduce__(self) -> tuple[type[Attempt], tuple[Any, ...]]:
         """What copies and other processes get: all fields, worked out."""

@@ -94,7 +94,7 @@ int main(void)
     while (scanf(" %c %" SCNd64, &what, &t) == 2) {
         int code = RV_OK;
         if (what == 'c') { /* a plan, and the size of a block; -1: a heap */
-            rv_memory memory = {malloc, free, NULL, 0};
+            rv_memory memory = {malloc, realloc, free, NULL, 0};
             int64_t size;
             if (scanf("%" SCNd64, &size) != 1) {
                 return 2;

@@ -231,14 +231,15 @@ int main(void)
     size_t size;
     int32_t attempts;
     for (size = 0; size < sizeof block; size += 16) {
-        const rv_memory memory = {NULL, NULL, block, size};
+        const rv_memory memory = {NULL, NULL, NULL, block, size};
         if (rv_new(door_plan, sizeof door_plan, memory) != NULL) {
             break;
         }
     }
     printf("%zu %d\\n", size, (int)DOOR_MEMORY(0));
     for (attempts = 0; attempts <= 64; attempts++) {
-        const rv_memory memory = {NULL, NULL, (char *)block + attempts % 16, DOOR_MEMORY(attempts)};
+        const rv_memory memory = {
+            NULL, NULL, NULL, (char *)block + attempts % 16, DOOR_MEMORY(attempts)};
         rv_monitor *m = rv_new(door_plan, sizeof door_plan, memory);
         if ((m == NULL) || (rv_reserve(m, attempts) != RV_OK)) {
             return 1;

@@ -9,8 +9,10 @@ from rvmon.testing.law.kleene import (
     Truth,
     born_or_false,
     born_or_true,
+    both,
     conjunction,
     disjunction,
+    either,
     negation,
 )
 from rvmon.testing.law.word import Letter
@@ -58,8 +60,8 @@ def since(
             there = right(j)
             seen.add(there)
             if there is not Truth.UNBORN:
-                value = disjunction([value, conjunction([so_far, there])])
-        so_far = conjunction([so_far, born_or_true(left(j))])
+                value = either(value, both(so_far, there))
+        so_far = both(so_far, born_or_true(left(j)))
         if value is Truth.TRUE or (so_far is Truth.FALSE and seen & shows_birth):
             return value
     return disjunction(seen) if seen and not seen & shows_birth else value

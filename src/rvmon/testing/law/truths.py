@@ -30,8 +30,10 @@ from rvmon.testing.law.kleene import (
     Truth,
     born_or_false,
     born_or_true,
+    both,
     conjunction,
     disjunction,
+    either,
     negation,
     truth_of,
 )
@@ -345,8 +347,8 @@ class Truths:
         value, so_far = Truth.FALSE, Truth.TRUE
         for j in range(i, self._known):
             if is_within(self._letters[j].instant - now, interval):
-                value = disjunction([value, conjunction([so_far, right(j)])])
-            so_far = conjunction([so_far, left(j)])
+                value = either(value, both(so_far, right(j)))
+            so_far = both(so_far, left(j))
             if value is Truth.TRUE or so_far is Truth.FALSE:
                 return value
         over = interval.high is not None and self._reached > now + interval.high
