@@ -11,6 +11,7 @@ import handover
 from handover.campaign.closing import closing
 from handover.campaign.documents import table_document
 from handover.campaign.flow_chart import flow_chart
+from handover.campaign.gates import expected_failures, gates
 from handover.campaign.model_page import model_sections
 from handover.campaign.paper import paper_table
 from handover.campaign.strategies import STRATEGIES
@@ -68,6 +69,8 @@ def handover_campaign(
         code=robot_code(),
         states=STATES,
         transitions=TRANSITIONS,
+        expected_failures=expected_failures(robots) if monitors else (),
+        gates=gates(robots) if monitors else {},
         control=Control("without start-up loss", without_loss),
         sources=(Path(handover.__file__).parent,),
         packages=("pymunk",),

@@ -7,10 +7,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.gate import accepted_failures
+from rvmon.cdv.expected import accepted_failures
 from rvmon.cdv.measured import measured_groups
+from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.model import Group, Item, Model, model_of
+from rvmon.coverage.hits import merged, share
+from rvmon.coverage.model import Group, Item, Model, model_of, without
 from rvmon.coverage.record import TestRecord
 from rvmon.errors import RvmonError
 from rvmon.loading import load
@@ -72,6 +74,18 @@ def coverage_model(campaign: Campaign, robot: str) -> Model:
             f"robot `{robot}`: {error}: its requirements, coverpoints, crosses and goals need "
             "names of their own; states, transitions and blocks of code have theirs"
         ) from None
+
+
+def covered_share(campaign: Campaign, robot: str, played: Sequence[Played]) -> float:
+    """The share of what tests of a robot can show that some of them have shown, from 0 to 1.
+
+    Raises:
+        RvmonError: see `coverage_model`.
+        UnknownNameError: the campaign calls unreachable what there is not.
+    """
+    model = coverage_model(campaign, robot)
+    out = unreachable_items(campaign, robot, model)
+    return share(merged(one.outcome.hits for one in played), without(model, out))
 
 
 def write_database(path: Path, robot: str, played: Sequence[Played], results: Results) -> None:

@@ -16,6 +16,7 @@ from rvmon.cdv.close import Budget, Closed, close
 from rvmon.cdv.close.document import closed_document
 from rvmon.cdv.close.text import print_closed
 from rvmon.cdv.documents import to_json
+from rvmon.cdv.gate import CampaignJudgement
 from rvmon.cdv.outcome import Results
 from rvmon.cdv.plan import Plan
 from rvmon.cdv.program import typed
@@ -33,7 +34,7 @@ def conduct_closing(
     strategies: Sequence[str],
     arguments: Namespace,
     words: Sequence[object],
-) -> tuple[Closed, Sequence[str]]:
+) -> tuple[Closed, CampaignJudgement]:
     """Close holes, show what came of it, write the suite.
 
     Args:
@@ -44,7 +45,7 @@ def conduct_closing(
         words: the command that does it again, and its other options.
 
     Returns:
-        What came of it, and what of the suite was not as expected.
+        What came of it, and how the suite stands against what was expected.
     """
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     folder = made(arguments.out) if arguments.out else None
@@ -79,7 +80,7 @@ def conduct_closing(
         if folder is not None:
             replayed = typed(campaign.program, ["run", *others, "--suite", folder / TESTS])
             say(f"Play the suite again: {replayed}")
-    return closed, conducted.judged(strict=False).wrong
+    return closed, conducted.judged(strict=False)
 
 
 def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from rvmon.spec.checked.goals import BinKind
@@ -104,3 +104,18 @@ def model_of(groups: Sequence[Group]) -> Model:
         double = next(one.name for one in groups if named[one.name] is not one)
         raise ValueError(f"two groups of one name: `{double}`")
     return Model(named)
+
+
+def without(model: Model, items: Collection[tuple[str, str]]) -> Model:
+    """A model in which some items, by group and name, have no goal.
+
+    >>> gaze = group_of("gaze", Subject.COVERPOINT, [Item("yes"), Item("no")])
+    >>> without(model_of([gaze]), [("gaze", "no")]).groups["gaze"].items["no"].kind.value
+    'ignore'
+    """
+    groups = dict(model.groups)
+    for group, item in items:
+        known = groups[group].items
+        left = {**known, item: replace(known[item], kind=BinKind.IGNORE)}
+        groups[group] = replace(groups[group], items=left)
+    return Model(groups)

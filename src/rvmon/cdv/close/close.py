@@ -9,7 +9,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.close.goals import Goals, argued_goals
+from rvmon.cdv.close.goals import Goals
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
 from rvmon.cdv.close.witnesses import Witnesses
@@ -17,6 +17,7 @@ from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.execute import INTERRUPTED, outcomes
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import Job
+from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.model import model_of
 from rvmon.coverage.record import Ending
 from rvmon.coverage.smallest import Smallest, smallest
@@ -148,8 +149,7 @@ def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals
     model = coverage_model(campaign, robot)
     if witnesses is not None:
         model = model_of([*model.groups.values(), *witnesses.groups])
-    unreachable = [one for one in campaign.closing.unreachable if one.robot in ("", robot)]
-    return Goals(model, argued_goals(unreachable, model, campaign.code))
+    return Goals(model, unreachable_items(campaign, robot, model))
 
 
 def _smallest(tests: Sequence[Added], goals: Goals) -> Smallest:

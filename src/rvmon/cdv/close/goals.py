@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 
 from rvmon.cdv.close.nearest import Goal
-from rvmon.cdv.closing import Unreachable
-from rvmon.cdv.code import Code
 from rvmon.coverage.hits import Hits
-from rvmon.coverage.model import Model, Subject
-from rvmon.errors import UnknownNameError
+from rvmon.coverage.model import Model
 from rvmon.spec.checked.goals import BinKind
-
-_CODE = (Subject.STATEMENTS, Subject.BRANCHES)
-_ARROW = " → "
 
 
 class Goals:
@@ -84,63 +77,3 @@ class Goals:
                 elif self.is_met(goal) and not before:
                     added.append(goal)
         return added
-
-
-def argued_goals(
-    unreachable: Sequence[Unreachable], model: Model, code: Code | None
-) -> dict[Goal, str]:
-    """The items of a model that a campaign calls unreachable, each with the reason.
-
-    Args:
-        unreachable: what it says.
-        model: what there is to be covered.
-        code: that is measured.
-
-    Raises:
-        UnknownNameError: nothing in the model is called so.
-    """
-    texts = {} if code is None else _texts(code)
-    found: dict[Goal, str] = {}
-    for one in unreachable:
-        goals = [*_goals_of(one, model, texts)]
-        if not goals:
-            place = f"{one.group}: {one.item}" if one.group else f"code `{one.item}`"
-            raise UnknownNameError(
-                f"the campaign calls unreachable what there is not: {place}: nothing that is "
-                "measured is called so; take it out of `Closing.unreachable`"
-            )
-        found |= dict.fromkeys(goals, one.reason)
-    return found
-
-
-def _goals_of(
-    one: Unreachable, model: Model, texts: Mapping[str, Mapping[str, str]]
-) -> Iterable[Goal]:
-    if one.item in getattr(model.groups.get(one.group), "items", ()):
-        yield one.group, one.item
-        return
-    source, _, target = one.item.rpartition(_ARROW)
-    for group in model.groups.values():
-        if group.subject not in _CODE or one.group not in ("", group.name):
-            continue
-        lines = texts[group.name.partition(" of ")[2]]
-        for item in group.items:
-            first, _, last = item.rpartition(_ARROW)
-            if lines.get(last) == target and (not source or lines.get(first) == source):
-                yield group.name, item
-
-
-def _texts(code: Code) -> dict[str, dict[str, str]]:
-    """The text of each line of each block, by the name of the block and the line's number."""
-    files = {
-        path: Path(path).read_text(encoding="utf-8").splitlines()
-        for path in {block.path for block in code.blocks}
-    }
-    return {
-        block.name: {
-            str(number): files[block.path][number - 1].strip()
-            for number in block.lines
-            if number <= len(files[block.path])
-        }
-        for block in code.blocks
-    }
