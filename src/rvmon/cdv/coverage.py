@@ -107,8 +107,9 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
     path.unlink(missing_ok=True)
     with Database.open(path) as database:
         database.declare(_with_the_rest(model, played))
-        for (group, item), reason in results.reasons.items():
-            database.explain(group, item, reason)
+        argued = unreachable_items(campaign, robot, model)
+        for (group, item), reason in {**argued, **results.unreachable}.items():
+            database.exclude(group, item, reason)
         for number, one in enumerate(played):
             test, outcome = one.job.test, one.outcome
             record = TestRecord(

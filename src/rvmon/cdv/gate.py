@@ -7,11 +7,12 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure, Gate
-from rvmon.cdv.coverage import covered_share
+from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.expected import accepted_failures, is_about
 from rvmon.cdv.outcome import Played, Results
 from rvmon.cdv.run_share import Decision
 from rvmon.cdv.summary import differences
+from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.loading import load
@@ -80,7 +81,8 @@ def judge_campaign(
 
     A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
     to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, something was
-    hit that must not be, its code crashed, it hung or was lost. An expected failure that did not
+    hit that must not be, its code crashed, it hung or was lost. So is a hit of what the campaign
+    calls unreachable, by any test. An expected failure that did not
     occur is wrong as well, unless no test was played in which it could.
 
     Args:
@@ -107,6 +109,7 @@ def judge_campaign(
     checks: dict[str, str] = {}
     if not results.cut_short:
         checks |= _expected_failures(expected, results.played)
+        checks |= dict(_contradicted(campaign, results.played))
         checks |= dict(_gated(campaign, requirements, results.played)) if strict else {}
         for (robot, name), found in decisions.items():
             if not any(_is_of(why, robot, name) for why in expected):
@@ -190,6 +193,24 @@ def _named(why: ExpectedFailure) -> str:
     places = {"strategy": why.strategy, "test": why.test, "robot": why.robot}
     named = [f"{kind} {name}" for kind, name in places.items() if name]
     return " of ".join([why.requirement, *named])
+
+
+def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tuple[str, str]]:
+    """Whether what the campaign calls unreachable was not hit."""
+    if not campaign.closing.unreachable:
+        return
+    for robot in campaign.robots:
+        out = unreachable_items(campaign, robot, coverage_model(campaign, robot))
+        first = {
+            f"{group}: {item}": one.job.test.name
+            for one in reversed(played)
+            if one.job.robot == robot and one.job.test.mutation is None
+            for group, items in one.outcome.hits.items()
+            for item in items
+            if (group, item) in out
+        }
+        wrong = "; ".join(f"{item}, by {test}" for item, test in first.items())
+        yield f"what is called unreachable is not hit ({robot})", wrong
 
 
 def _gate_name(campaign: Campaign, one: Played) -> str:

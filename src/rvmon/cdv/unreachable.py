@@ -15,13 +15,17 @@ _CODE = (Subject.STATEMENTS, Subject.BRANCHES)
 _ARROW = " → "
 
 
-def unreachable_items(campaign: Campaign, robot: str, model: Model) -> dict[tuple[str, str], str]:
+def unreachable_items(
+    campaign: Campaign, robot: str, model: Model, *, whole: bool = False
+) -> dict[tuple[str, str], str]:
     """The items of a model that a campaign calls unreachable, each with the reason.
 
     Args:
         campaign: what says so.
         robot: of its robots the one whose tests are meant.
         model: what there is to be covered.
+        whole: the model has all that is ever measured: what it lacks there is not. Of any other,
+            such as one without the edges that closing measures, that is passed over.
 
     Raises:
         UnknownNameError: nothing in the model is called so.
@@ -32,7 +36,7 @@ def unreachable_items(campaign: Campaign, robot: str, model: Model) -> dict[tupl
         if one.robot not in ("", robot):
             continue
         items = [*_named(one, model, texts)]
-        if not items:
+        if not items and whole:
             place = f"{one.group}: {one.item}" if one.group else f"code `{one.item}`"
             raise UnknownNameError(
                 f"the campaign calls unreachable what there is not: {place}: nothing that is "

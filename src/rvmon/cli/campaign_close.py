@@ -88,7 +88,7 @@ def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:
     tests = [one.job.test for one in closed.suite]
     plan = Plan(campaign, seed, {test.strategy: tests for test in tests})
     seconds = sum(one.outcome.seconds for one in closed.suite)
-    return Results(plan, tuple(closed.suite), seconds, "", closed.groups, closed.reasons)
+    return Results(plan, tuple(closed.suite), seconds, "", closed.groups, closed.proofs)
 
 
 def _text(closed: Closed) -> str:

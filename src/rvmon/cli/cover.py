@@ -33,7 +33,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("databases", metavar="DB", nargs="+", help="written by run --coverage")
     parser.add_argument("--campaign", metavar="NAME", help="show the tests of this one only")
-    parser.add_argument("--holes", action="store_true", help="list what is missing, and why")
+    parser.add_argument(
+        "--holes", action="store_true", help="list what is missing, and what cannot be hit, and why"
+    )
     parser.add_argument(
         "--bins",
         metavar="[=GROUP]",
@@ -60,13 +62,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--require",
         metavar="PERCENT",
         type=percentage,
-        help="exit with 1 if less is covered, or something illegal was hit",
+        help="exit with 1 if less is covered, or something was hit that is illegal, or called "
+        "unreachable",
     )
     parser.add_argument(
         "--strict",
         action="store_true",
-        help="exit with 1 if something illegal was hit, a test failed or did not complete, or "
-        "--compare shows a loss",
+        help="exit with 1 if something was hit that is illegal, or called unreachable, a test "
+        "failed or did not complete, or --compare shows a loss",
     )
     add_max_memory(parser)
 
@@ -171,7 +174,8 @@ def _write_page(summary: Summary, path: str) -> None:
 
 def _code(summary: Summary, arguments: argparse.Namespace) -> int:
     """1 if what was asked for is not reached."""
-    wrong = (arguments.strict or arguments.require is not None) and bool(summary.illegal)
+    is_held = arguments.strict or arguments.require is not None
+    wrong = is_held and bool(summary.illegal or summary.contradicted)
     if arguments.require is not None:
         wrong |= summary.is_void or summary.share < arguments.require
         if summary.is_void:

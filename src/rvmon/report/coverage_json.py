@@ -69,6 +69,7 @@ def _group(summary: Summary, name: str) -> dict[str, Any]:
                 "tests": int(summary.totals.tests[place]),
                 "first": _first(summary, place),
                 "reasons": summary.coverage.reasons.get((name, item.name), ()),
+                "unreachable": summary.coverage.unreachable.get((name, item.name), ()),
             }
             for place, item in summary.places(group)
         ],

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from math import prod
 
+import numpy as np
+
 from rvmon.coverage.answers import Comparison, Goals, Step, Totals
 from rvmon.coverage.compare import compare
 from rvmon.coverage.hits import Score
@@ -14,6 +16,7 @@ from rvmon.coverage.model import Group, Item
 from rvmon.coverage.questions import (
     by_strategy,
     campaigns,
+    contradicted,
     goals_of,
     growth,
     hitters,
@@ -90,6 +93,30 @@ class Summary:
     def illegal(self) -> Sequence[int]:
         """Items that were hit and must not be."""
         return illegal_hits(self.coverage, self.totals.counts)
+
+    @cached_property
+    def contradicted(self) -> Sequence[int]:
+        """Items that were hit and cannot be, as it was said."""
+        return contradicted(self.coverage, self.totals.counts)
+
+    @cached_property
+    def unreachable(self) -> Mapping[str, Sequence[int]]:
+        """Items that cannot be hit, by the reasons."""
+        found: dict[str, list[int]] = {}
+        for place in np.flatnonzero(self.goals.unreachable).tolist():
+            reasons = self.coverage.unreachable[self.coverage.items[place]]
+            found.setdefault("; ".join(reasons), []).append(place)
+        return found
+
+    def kind(self, place: int, item: Item) -> BinKind:
+        """What a hit of an item means; what cannot be hit counts for nothing."""
+        return BinKind.IGNORE if self.goals.unreachable[place] else item.kind
+
+    def kind_text(self, place: int, item: Item) -> str:
+        """Why an item is no goal, in brackets; empty if it is one."""
+        if self.goals.unreachable[place]:
+            return " (cannot be hit)"
+        return "" if item.kind is BinKind.GOAL else f" ({item.kind})"
 
     @cached_property
     def steps(self) -> Sequence[Step]:

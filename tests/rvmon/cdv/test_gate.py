@@ -122,6 +122,15 @@ def test_a_gate_has_a_bar_of_coverage(campaign):
         assert [one.partition(":")[0] for one in told] == wrong
 
 
+def test_what_is_called_unreachable_is_not_to_be_hit(campaign):
+    """The list of it is to stay true: who hit it is told."""
+    for item, wrong in (("away", ""), ("up", "states: up, by low")):
+        out = cdv.Closing(unreachable=[cdv.Unreachable("states", item, "the motor is weak")])
+        options = {"states": ("down", "up", "away"), "closing": out}
+        found = judged(campaign(LOW, ("lower", {"level": 2.0}), **options))
+        assert found.checks == {"what is called unreachable is not hit (toy)": wrong}
+
+
 @pytest.mark.parametrize("what", [{"requirement": "T9"}, {"strategy": "luck"}, {"robot": "r"}])
 def test_a_failure_of_what_there_is_not_is_told(campaign, what):
     """A misspelt name would excuse nothing, and nobody would know why."""

@@ -50,6 +50,29 @@ def test_holes_stand_with_their_reasons(door, capsys):
     assert lines[at + 2] == "near: far 0 of 1 hit: the arm is 1 m long: `far` begins at 1 m"
 
 
+def test_what_cannot_be_hit_stands_apart(door, capsys):
+    """It leaves the share and the holes, and has a list with its reason; a hit of it is wrong."""
+    with Database.open(door) as database:
+        database.exclude("near", "reach", "a fence is there")
+        database.exclude("near", "far", "a fence is there")
+        database.exclude("situation", "yes × reach", "a fence is there")
+    code, lines = shown(capsys, door, "--holes", "--strict")
+    assert code == 1
+    assert "4 holes:" not in lines
+    assert "near coverpoint 1 of 1 100 % ████████████████████" in lines
+    heading = lines.index("no goals, as they cannot be hit:")
+    told = "a fence is there: near: reach, near: far, situation: yes × reach"
+    assert lines[heading + 1] == told
+    assert main(["cover", door, "--require", "1%"]) == 1  # something illegal was hit
+    _, lines = shown(capsys, door, "--bins=near")
+    assert "reach (cannot be hit) –" in lines
+    with Database.open(door) as database:
+        database.exclude("gaze", "yes", "nobody looks")
+    _, lines = shown(capsys, door)
+    at = lines.index("hit, and said to be unreachable:")
+    assert lines[at + 1] == "gaze: yes 3 hits by 2 tests, first calm-1 at 1 s"
+
+
 def test_bins_and_crosses(door, capsys):
     """Who was first; a cross is a grid; a group that is not there is named."""
     _, lines = shown(capsys, door, "--bins=gaze")

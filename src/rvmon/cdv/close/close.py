@@ -123,6 +123,7 @@ def close(
         needed=len(found.places),
         fewest=found.at_least,
         goals=goals.met + len(goals.open),
+        share=goals.share,
         proved=goals.proved,
         argued={goal: why for goal, why in goals.argued.items() if goal not in goals.proved},
         open=goals.open,
@@ -149,7 +150,7 @@ def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals
     model = coverage_model(campaign, robot)
     if witnesses is not None:
         model = model_of([*model.groups.values(), *witnesses.groups])
-    return Goals(model, unreachable_items(campaign, robot, model))
+    return Goals(model, unreachable_items(campaign, robot, model, whole=True))
 
 
 def _smallest(tests: Sequence[Added], goals: Goals) -> Smallest:

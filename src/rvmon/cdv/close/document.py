@@ -16,6 +16,7 @@ def closed_document(closed: Closed) -> dict[str, object]:
     return {
         "goals": closed.goals,
         "met": closed.met,
+        "share": closed.share,
         "ended": closed.ended,
         "tests": [
             {

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rvmon.cdv.close.nearest import Goal
-from rvmon.coverage.hits import Hits
-from rvmon.coverage.model import Model
+from rvmon.coverage.hits import Hits, merged, share
+from rvmon.coverage.model import Model, without
 from rvmon.spec.checked.goals import BinKind
 
 
@@ -37,6 +37,7 @@ class Goals:
         self.argued = {goal: why for goal, why in argued.items() if goal in self.wanted}
         self.proved: dict[Goal, str] = {}
         self.wrong: dict[Goal, str] = {}
+        self._seen: list[Hits] = []
         self._counts: dict[Goal, int] = {}
 
     @property
@@ -58,6 +59,11 @@ class Goals:
         """Whether an item was hit as often as it is to be."""
         return self._counts.get(goal, 0) >= self.wanted[goal]
 
+    @property
+    def share(self) -> float:
+        """The share of the model that is covered, from 0 to 1, without what cannot be."""
+        return share(merged(self._seen), without(self.model, [*self.proved, *self.argued]))
+
     def _is_out(self, goal: Goal) -> bool:
         """Whether an item cannot be hit, as it is proved or declared."""
         return goal in self.proved or goal in self.argued
@@ -65,6 +71,7 @@ class Goals:
     def add(self, test: str, hits: Hits) -> list[Goal]:
         """Count what a test hit, and return what was met with it for the first time."""
         added = []
+        self._seen.append(hits)
         for group, items in hits.items():
             for item, hit in items.items():
                 goal = group, item

@@ -37,6 +37,7 @@ class Closed:
         needed: how many of them there are for what they meet.
         fewest: no suite that meets as much has fewer; `needed` if it is known to be the smallest.
         goals: how many there are, without those that cannot be met.
+        share: of the coverage model that is covered, from 0 to 1, without what cannot be.
         proved: goals that cannot be met, each with the query that the model answers so.
         argued: those of which the campaign says so, each with its reason.
         open: what no test met.
@@ -51,6 +52,7 @@ class Closed:
     needed: int
     fewest: int
     goals: int
+    share: float
     proved: Mapping[Goal, str]
     argued: Mapping[Goal, str]
     open: Sequence[Goal]
@@ -65,7 +67,6 @@ class Closed:
         return self.goals - len(self.open)
 
     @property
-    def reasons(self) -> dict[Goal, str]:
-        """Why goals cannot be met, in words."""
-        proofs = {goal: f"unreachable: proved: {query}" for goal, query in self.proved.items()}
-        return {**proofs, **self.argued}
+    def proofs(self) -> dict[Goal, str]:
+        """Why goals cannot be met of which the model says so, in words."""
+        return {goal: f"the model proves it: {query}" for goal, query in self.proved.items()}

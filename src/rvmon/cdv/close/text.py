@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.close.outcome import Added, Closed
-from rvmon.report.coverage_summary import counted, name_of
+from rvmon.report.coverage_summary import counted, name_of, share_text
 from rvmon.report.percent import percent_text
 from rvmon.report.wrapped import wrapped
 
@@ -36,12 +36,11 @@ def print_closed(closed: Closed, console: Console) -> None:
         console.print(f"{counted(len(closed.open), 'open goal')}:", style="bold")
         for goal in closed.open:
             console.print(wrapped(f"{name_of(goal)}", console.width))
-    share = percent_text(closed.met, closed.goals)
     style = "bold red" if closed.wrong else "yellow" if closed.open else "bold green"
     left = f"; {closed.ended}" if closed.ended else ""
     console.print(
-        f"{closed.met} of {closed.goals} goals met ({share}) by {len(closed.tests)} tests in "
-        f"{closed.seconds:.1f} s{left}.",
+        f"{share_text(closed.share)} covered: {closed.met} of {closed.goals} goals met by "
+        f"{len(closed.tests)} tests in {closed.seconds:.1f} s{left}.",
         style=style,
     )
     console.print(_suite_text(closed))
