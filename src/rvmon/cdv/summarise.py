@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from rvmon.cdv.measured import STATES, TRANSITIONS, measured_groups, source_and_target
+from rvmon.cdv.measured import measured_groups, source_and_target
 from rvmon.cdv.meter import branches_name, statements_name
 from rvmon.cdv.outcome import Outcome, Played, Results
 from rvmon.cdv.run_share import decide
@@ -17,7 +17,7 @@ from rvmon.cdv.summary import (
     RobotSummary,
     StrategySummary,
 )
-from rvmon.coverage.model import Group
+from rvmon.coverage.model import STATES, TRANSITIONS, Group
 from rvmon.coverage.record import Ending
 from rvmon.report.table import Counts
 from rvmon.session import Spec

@@ -8,6 +8,11 @@ from enum import StrEnum
 
 from rvmon.spec.checked.goals import BinKind
 
+STATES = "states"
+TRANSITIONS = "transitions"
+PAIRS = "pairs of transitions"
+"""Names of the groups of a system's own states; the items of the last two are joined by arrows."""
+
 
 class Subject(StrEnum):
     """What the items of a group are."""
@@ -30,11 +35,13 @@ class Item:
         name: unique in its group.
         kind: what a hit means: progress, nothing, or an error.
         goal: hits that it needs.
+        text: what it is, for people: a condition, a line of code; empty where the name says it.
     """
 
     name: str
     kind: BinKind = BinKind.GOAL
     goal: int = 1
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +55,7 @@ class Group:
         weight: of the group in the total; 0: it is shown, and counts for nothing.
         axes: of a cross, the bins of each of its coverpoints by that one's name; its items are
             named by `combination`.
+        title: what it is about, for people, such as the text of a requirement.
     """
 
     name: str
@@ -55,6 +63,7 @@ class Group:
     items: Mapping[str, Item]
     weight: int = 1
     axes: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    title: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +86,9 @@ def combination(bins: Sequence[str]) -> str:
     return " × ".join(f"`{one}`" if "×" in one else one for one in bins)
 
 
-def group_of(name: str, subject: Subject, items: Sequence[Item], weight: int = 1) -> Group:
+def group_of(
+    name: str, subject: Subject, items: Sequence[Item], weight: int = 1, title: str = ""
+) -> Group:
     """A group without axes.
 
     Raises:
@@ -86,7 +97,7 @@ def group_of(name: str, subject: Subject, items: Sequence[Item], weight: int = 1
     named = {item.name: item for item in items}
     if len(named) < len(items):
         raise ValueError(f"two items of `{name}` have one name")
-    return Group(name, subject, named, weight)
+    return Group(name, subject, named, weight, title=title)
 
 
 def model_of(groups: Sequence[Group]) -> Model:

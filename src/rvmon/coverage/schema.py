@@ -20,10 +20,10 @@ VERSION = 3
 TABLES = (
     "CREATE TABLE groups (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, "
     "subject TEXT NOT NULL, weight INTEGER NOT NULL, axes TEXT NOT NULL, "
-    "position INTEGER NOT NULL)",
+    "position INTEGER NOT NULL, title TEXT NOT NULL)",
     "CREATE TABLE items (id INTEGER PRIMARY KEY, owner INTEGER NOT NULL REFERENCES groups, "
     "name TEXT NOT NULL, kind TEXT NOT NULL, goal INTEGER NOT NULL, position INTEGER NOT NULL, "
-    "UNIQUE (owner, name))",
+    "text TEXT NOT NULL, UNIQUE (owner, name))",
     "CREATE TABLE reasons (item INTEGER NOT NULL REFERENCES items, reason TEXT NOT NULL, "
     "PRIMARY KEY (item, reason)) WITHOUT ROWID",
     "CREATE TABLE unreachable (item INTEGER NOT NULL REFERENCES items, reason TEXT NOT NULL, "

@@ -216,6 +216,8 @@ def _holes(summary: Summary) -> ET.Element | None:
                 item_link(summary, place),
                 e("span", {"class": "soft"}, f" {of}"),
                 *(with_code(f": {why}") if why else ()),
+                e("br"),
+                e("small", None, *with_code(str(summary.hole_texts[place]))),
             )
         )
     return e("section", None, e("h2", None, "Holes ", _count(lines)), *_list(lines))

@@ -11,8 +11,10 @@ import numpy as np
 
 from rvmon.coverage.answers import Comparison, Goals, Step, Totals
 from rvmon.coverage.compare import compare
-from rvmon.coverage.hits import Score
+from rvmon.coverage.hits import Hit, Hits, Score
+from rvmon.coverage.holes import Hole, hole_of
 from rvmon.coverage.model import Group, Item
+from rvmon.coverage.nearest import nearest_tests
 from rvmon.coverage.questions import (
     by_strategy,
     campaigns,
@@ -88,6 +90,35 @@ class Summary:
     def holes(self) -> Sequence[int]:
         """Items that were hit too rarely."""
         return holes(self.coverage, self.totals.counts)
+
+    @cached_property
+    def hole_texts(self) -> Mapping[int, Hole]:
+        """Each hole in words."""
+        model, items = self.coverage.model, self.coverage.items
+        hits: dict[str, dict[str, Hit]] = {}
+        for place in np.flatnonzero(self.totals.counts).tolist():
+            group, item = items[place]
+            hits.setdefault(group, {})[item] = Hit(int(self.totals.counts[place]))
+        nearest = nearest_tests([items[place] for place in self.holes], self._hits, model)
+        return {
+            place: hole_of(items[place], model, hits, nearest.get(items[place], ""))
+            for place in self.holes
+        }
+
+    @property
+    def _hits(self) -> list[tuple[str, Hits]]:
+        """What each test has hit; of tests that have hit the same, the first."""
+        found: dict[bytes, tuple[str, Hits]] = {}
+        for entry in self.coverage.entries:
+            key = entry.row.items.tobytes()
+            if key not in found:
+                hits: dict[str, dict[str, Hit]] = {}
+                row = zip(entry.row.items.tolist(), entry.row.counts.tolist(), strict=True)
+                for place, count in row:
+                    group, item = self.coverage.items[place]
+                    hits.setdefault(group, {})[item] = Hit(count)
+                found[key] = entry.record.name, hits
+        return [*found.values()]
 
     @cached_property
     def illegal(self) -> Sequence[int]:
@@ -207,7 +238,9 @@ class Summary:
         """Tests by strategy, requirement and verdict."""
         counts: dict[str, dict[str, Counter[Verdict]]] = {}
         tests: Counter[str] = Counter()
-        names: dict[str, str] = {}
+        # What the model knows stands in its order, as in the specification.
+        judged = {name for entry in self.coverage.entries for name in entry.record.verdicts}
+        names = {name: "" for name in self.coverage.model.groups if name in judged}
         for entry in self.coverage.entries:
             strategy = strategy_name(entry.record.strategy)
             tests[strategy] += 1

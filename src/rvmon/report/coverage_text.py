@@ -73,6 +73,7 @@ def print_holes(summary: Summary, console: Console) -> None:
         line = f"{name_of(item)}  {count:,} of {counted(goal, 'hit')}"
         why = "; ".join(summary.coverage.reasons.get(item, ()))
         console.print(wrapped(f"{line}: {why}" if why else line, console.width))
+        console.print(wrapped(f"  {summary.hole_texts[place]}", console.width), style="dim")
     if summary.unreachable:
         console.print("no goals, as they cannot be hit:", style="bold")
     for reason, places in summary.unreachable.items():

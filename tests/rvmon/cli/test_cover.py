@@ -11,6 +11,7 @@ from rvmon.cli import main
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
 from rvmon.coverage.record import TestRecord
+from rvmon.verdict.verdict import Verdict
 
 
 @pytest.fixture
@@ -47,7 +48,24 @@ def test_holes_stand_with_their_reasons(door, capsys):
     _, lines = shown(capsys, door, "--holes")
     at = lines.index("6 holes:")
     assert lines[at + 1] == "near: reach 0 of 1 hit"
-    assert lines[at + 2] == "near: far 0 of 1 hit: the arm is 1 m long: `far` begins at 1 m"
+    assert "near: far 0 of 1 hit: the arm is 1 m long: `far` begins at 1 m" in lines
+    told = " ".join(lines[at:])
+    assert (
+        "situation: no × far 0 of 1 hit at one instant gaze no, near far. No run has shown near "
+        "far; needs a run in which all of them meet. Nearest: wild-1." in told
+    )
+
+
+def test_requirements_stand_in_the_order_of_the_file(tmp_path, capsys):
+    """T10 behind T2, as the specification has them, whatever the records say."""
+    groups = [group_of(name, Subject.REQUIREMENT, [Item("passed")]) for name in ("T2", "T10")]
+    path = str(tmp_path / "a.cov")
+    with Database.open(path) as database:
+        database.declare(model_of(groups))
+        database.record(TestRecord("t", verdicts={"T10": Verdict.PASS, "T2": Verdict.FAIL}), {})
+    _, lines = shown(capsys, path)
+    verdicts = [line.split()[0] for line in lines if line.startswith("T") and "·" in line]
+    assert verdicts == ["T2", "T10"]
 
 
 def test_what_cannot_be_hit_stands_apart(door, capsys):

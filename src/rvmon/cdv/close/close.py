@@ -126,7 +126,7 @@ def close(
         share=goals.share,
         proved=goals.proved,
         argued={goal: why for goal, why in goals.argued.items() if goal not in goals.proved},
-        open=goals.open,
+        open=goals.holes(),
         wrong=goals.wrong,
         groups=() if witnesses is None else witnesses.groups,
         seconds=time.monotonic() - begun,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rvmon.cdv.close.nearest import Goal
 from rvmon.coverage.hits import Hits, merged, share
+from rvmon.coverage.holes import Hole, hole_of
 from rvmon.coverage.model import Model, without
+from rvmon.coverage.nearest import Goal, nearest_tests
 from rvmon.spec.checked.goals import BinKind
 
 
@@ -37,7 +38,7 @@ class Goals:
         self.argued = {goal: why for goal, why in argued.items() if goal in self.wanted}
         self.proved: dict[Goal, str] = {}
         self.wrong: dict[Goal, str] = {}
-        self._seen: list[Hits] = []
+        self._seen: list[tuple[str, Hits]] = []
         self._counts: dict[Goal, int] = {}
 
     @property
@@ -62,7 +63,14 @@ class Goals:
     @property
     def share(self) -> float:
         """The share of the model that is covered, from 0 to 1, without what cannot be."""
-        return share(merged(self._seen), without(self.model, [*self.proved, *self.argued]))
+        hits = merged(found for _, found in self._seen)
+        return share(hits, without(self.model, [*self.proved, *self.argued]))
+
+    def holes(self) -> dict[Goal, Hole]:
+        """What is open, in words."""
+        hits = merged(found for _, found in self._seen)
+        nearest = nearest_tests(self.open, self._seen, self.model)
+        return {goal: hole_of(goal, self.model, hits, nearest.get(goal, "")) for goal in self.open}
 
     def _is_out(self, goal: Goal) -> bool:
         """Whether an item cannot be hit, as it is proved or declared."""
@@ -71,7 +79,7 @@ class Goals:
     def add(self, test: str, hits: Hits) -> list[Goal]:
         """Count what a test hit, and return what was met with it for the first time."""
         added = []
-        self._seen.append(hits)
+        self._seen.append((test, hits))
         for group, items in hits.items():
             for item, hit in items.items():
                 goal = group, item

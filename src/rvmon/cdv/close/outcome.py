@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.outcome import Played
+from rvmon.coverage.holes import Hole
 from rvmon.coverage.model import Group
+from rvmon.coverage.nearest import Goal
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class Closed:
         share: of the coverage model that is covered, from 0 to 1, without what cannot be.
         proved: goals that cannot be met, each with the query that the model answers so.
         argued: those of which the campaign says so, each with its reason.
-        open: what no test met.
+        open: what no test met, in words.
         wrong: goals that cannot be met, as it is declared, and that a test met, with its name.
         groups: what was measured beside what the campaign measures.
         seconds: that it took.
@@ -55,7 +56,7 @@ class Closed:
     share: float
     proved: Mapping[Goal, str]
     argued: Mapping[Goal, str]
-    open: Sequence[Goal]
+    open: Mapping[Goal, Hole]
     wrong: Mapping[Goal, str]
     groups: Sequence[Group]
     seconds: float

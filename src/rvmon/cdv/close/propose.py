@@ -17,12 +17,12 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.close.goals import Goals
 from rvmon.cdv.close.learned import Draw, Learned
 from rvmon.cdv.close.mutate import Mutator
-from rvmon.cdv.close.nearest import Goal, nearness
 from rvmon.cdv.close.witnesses import Proof, Witness, Witnesses
 from rvmon.cdv.files import TestError, from_json, to_json
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import plan
 from rvmon.coverage.model import Subject
+from rvmon.coverage.nearest import Goal, nearness
 from rvmon.errors import RvmonError
 
 _Option = TypeVar("_Option", bound=Hashable)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.close.outcome import Added, Closed
+from rvmon.coverage.nearest import Goal
 from rvmon.report.coverage_summary import counted, name_of, share_text
 from rvmon.report.percent import percent_text
 from rvmon.report.wrapped import wrapped
@@ -34,8 +34,9 @@ def print_closed(closed: Closed, console: Console) -> None:
             console.print(wrapped(f"{name_of(goal)}, by {test}", console.width))
     if closed.open:
         console.print(f"{counted(len(closed.open), 'open goal')}:", style="bold")
-        for goal in closed.open:
-            console.print(wrapped(f"{name_of(goal)}", console.width))
+        for goal, hole in closed.open.items():
+            console.print(wrapped(name_of(goal), console.width))
+            console.print(wrapped(f"  {hole}", console.width), style="dim")
     style = "bold red" if closed.wrong else "yellow" if closed.open else "bold green"
     left = f"; {closed.ended}" if closed.ended else ""
     console.print(
