@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cdv.code_files import cobertura, lcov
 from rvmon.cdv.expected import accepted_failures
 from rvmon.cdv.measured import measured_groups
 from rvmon.cdv.unreachable import unreachable_items
@@ -46,6 +47,9 @@ class CoverageFigures:
 
 DATABASE = "coverage.db"
 """The file in a campaign's folder; of several robots, each has one in a folder of its name."""
+
+LCOV, COBERTURA = "code.lcov", "cobertura.xml"
+"""The same of the code alone, beside it."""
 
 
 def spec_coverages(robot: Robot) -> list[SpecCoverage]:
@@ -144,7 +148,7 @@ def _with_the_rest(model: Model, played: Sequence[Played]) -> Model:
 def write_coverage(
     folder: Path, results: Results, pages: Mapping[tuple[str, str], str]
 ) -> dict[str, CoverageFigures]:
-    """Write the database of each robot's tests, and a page beside it.
+    """Write the database of each robot's tests, and a page beside it; the code for other tools.
 
     Args:
         folder: of the campaign.
@@ -169,6 +173,12 @@ def write_coverage(
         summary = Summary(f"{campaign.name}, {title}", read([path]), pages=own)
         page = path.with_suffix(".html")
         write_whole(page, coverage_page(summary))
+        if campaign.code is not None:
+            model = coverage_model(campaign, robot)
+            model = without(model, unreachable_items(campaign, robot, model))
+            hits = merged(one.outcome.hits for one in played)
+            write_whole(path.with_name(LCOV), lcov(campaign.code, model, hits))
+            write_whole(path.with_name(COBERTURA), cobertura(campaign.code, model, hits))
         figures[robot] = CoverageFigures(
             page.relative_to(folder).as_posix(),
             summary.share,

@@ -55,6 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add_format(parser)
     parser.add_argument("--report", metavar="FILE", help="write a page to look at")
+    parser.add_argument("--ucis", metavar="FILE", help="write it as UCIS XML, for other tools")
     parser.add_argument(
         "--merge", metavar="OUT", help="write all that the databases hold into this one"
     )
@@ -90,7 +91,14 @@ def run(arguments: argparse.Namespace) -> int:
     summary = Summary(name, coverage, earlier, arguments.compare or "")
     groups = _groups(coverage, arguments.bins)
     if arguments.report is not None:
-        _write_page(summary, arguments.report)
+        from rvmon.report.coverage_page import coverage_page
+
+        _write(arguments.report, coverage_page(summary))
+    if arguments.ucis is not None:
+        from rvmon import __version__
+        from rvmon.report.coverage_ucis import coverage_ucis
+
+        _write(arguments.ucis, coverage_ucis(summary, __version__))
     if arguments.format == "json":
         import msgspec
 
@@ -160,12 +168,11 @@ def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Gro
         print_tests(summary, console)
 
 
-def _write_page(summary: Summary, path: str) -> None:
-    from rvmon.report.coverage_page import coverage_page
+def _write(path: str, text: str) -> None:
     from rvmon.writing import write_whole
 
     try:
-        write_whole(path, coverage_page(summary))
+        write_whole(path, text)
     except OSError as error:
         raise RvmonError(
             f"cannot write {path}: {error.strerror or error}: name a file in a folder that is there"

@@ -76,6 +76,11 @@ class Model:
 
     groups: Mapping[str, Group]
 
+    def goals_of(self, group: str) -> list[tuple[str, str]]:
+        """What is to be hit of a group, by names of group and item; none if there is no such."""
+        items = self.groups[group].items if group in self.groups else {}
+        return [(group, one.name) for one in items.values() if one.kind is BinKind.GOAL]
+
 
 def combination(bins: Sequence[str]) -> str:
     """The name of the item of a cross that has one bin of each axis, in the order of the axes.

@@ -75,7 +75,8 @@ def test_the_demo_leaves_all_its_files(demo):
     robots = {"correct", "legacy"}
     assert names == {*tables, *robots, "coverage.json", "report.html", "tests", "runs", "templates"}
     for robot in robots:
-        assert {path.name for path in (demo / robot).iterdir()} == {"coverage.db", "coverage.html"}
+        covered = {"coverage.db", "coverage.html", "code.lcov", "cobertura.xml"}
+        assert {path.name for path in (demo / robot).iterdir()} == covered
     columns = json.loads((demo / "table.json").read_text())["robots"]["correct"]["strategies"]
     assert {path.name for path in (demo / "templates").iterdir()} <= columns.keys()
     assert "likeliest by the model's weights" in " ".join((demo / "table.txt").read_text().split())

@@ -91,6 +91,34 @@ def test_what_cannot_be_hit_stands_apart(door, capsys):
     assert lines[at + 1] == "gaze: yes 3 hits by 2 tests, first calm-1 at 1 s"
 
 
+def test_ucis_is_as_its_schema_has_it(door, tmp_path, capsys):
+    """The functional part: bins with hits, what is ignored and why, the tests."""
+    ucis = pytest.importorskip("ucis")
+    etree = pytest.importorskip("lxml.etree")
+    with Database.open(door) as database:
+        database.exclude("near", "reach", "a fence is there")
+    path = tmp_path / "door.xml"
+    assert main(["cover", door, "--ucis", str(path)]) == 0
+    schema = Path(ucis.__file__).parent / "xml" / "schema" / "ucis.xsd"
+    document = etree.parse(path)
+    etree.XMLSchema(etree.parse(schema)).assertValid(document)
+    bins = {one.get("name"): one for one in document.iter("coverpointBin", "crossBin")}
+    counts = {name: one.find(".//contents").get("coverageCount") for name, one in bins.items()}
+    assert (counts["yes"], counts["no × touch"], counts["far"]) == ("3", "1", "0")
+    assert [one.text for one in bins["no × far"].iter("index")] == ["1", "2"]
+    assert bins["no × touch"].get("type") == "illegal"
+    assert (bins["reach"].get("type"), bins["reach"].find("userAttr").text) == (
+        "ignore",
+        "a fence is there",
+    )
+    passed = {
+        one.get("logicalName"): one.get("testStatus") for one in document.iter("historyNodes")
+    }
+    assert passed["wild-2"] == "false"
+    assert main(["cover", door, "--ucis", str(tmp_path / "no" / "x.xml")]) == 2
+    capsys.readouterr()
+
+
 def test_bins_and_crosses(door, capsys):
     """Who was first; a cross is a grid; a group that is not there is named."""
     _, lines = shown(capsys, door, "--bins=gaze")

@@ -95,7 +95,7 @@ def test_what_kills_stands_beside_each_mutant():
     text = report_text(found)
     assert line.split() in [one.split() for one in text.splitlines()]
     assert HIDDEN[0].identity not in text
-    assert "killed by" not in report_text(found, most=3).split("third")[0]
+    assert SHOWN[0].identity not in report_text(found, most=3)
     assert "requirement (R1) in t" in mutation_page(found)
 
 
