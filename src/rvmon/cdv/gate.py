@@ -11,7 +11,7 @@ from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.expected import accepted_failures, is_about
 from rvmon.cdv.outcome import Played, Results
 from rvmon.cdv.run_share import Decision
-from rvmon.cdv.summary import differences
+from rvmon.cdv.summary import differences, missed
 from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
@@ -80,7 +80,8 @@ def judge_campaign(
     """Hold all tests against what was expected of them.
 
     A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
-    to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, something was
+    to fail; if a verdict that it knows came out otherwise; if it does not reach what it is made to;
+    if, on the robot as it is, something was
     hit that must not be, its code crashed, it hung or was lost. So is a hit of what the campaign
     calls unreachable, by any test. An expected failure that did not
     occur is wrong as well, unless no test was played in which it could.
@@ -154,6 +155,7 @@ def judge_test(
     accepted = accepted_failures(one, expected)
     if outcome.verdicts:
         wrong.extend(differences(test.expected, outcome.verdicts))
+    wrong.extend(missed(test.reaches, outcome.hits))
     if test.mutation is None:
         wrong.extend(outcome.illegal)
     for name, verdict in outcome.verdicts.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary, differences
+from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
 from rvmon.cdv.tables import INTERVALS, LEGEND, RobotTables
 from rvmon.report.percent import percent_text
 from rvmon.report.table_text import table_text
@@ -101,4 +101,4 @@ def _known(figures: RobotSummary) -> Iterator[str]:
     )
     for one in figures.known:
         if not one.as_expected:
-            yield f"  {one.test}: {', '.join(differences(one.expected, one.verdicts))}"
+            yield f"  {one.test}: {', '.join(one.wrong)}"

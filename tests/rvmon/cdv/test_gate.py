@@ -122,6 +122,14 @@ def test_a_gate_has_a_bar_of_coverage(campaign):
         assert [one.partition(":")[0] for one in told] == wrong
 
 
+def test_a_test_is_what_it_says(campaign):
+    """It reaches what it is made to, or is wrong; also where all verdicts are as it knows them."""
+    climbs_to_up = {"level": 3.0, "reaches": {"states": ["up"]}}
+    lost = {**climbs_to_up, "expected": {"T1": "P"}, "reaches": {"states": ["up", "away"]}}
+    found = judged(campaign(("up", climbs_to_up), ("away", lost)))
+    assert found.wrong == ["away (toy): states: away is not reached"]
+
+
 def test_what_is_called_unreachable_is_not_to_be_hit(campaign):
     """The list of it is to stay true: who hit it is told."""
     for item, wrong in (("away", ""), ("up", "states: up, by low")):

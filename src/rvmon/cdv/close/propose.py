@@ -186,7 +186,7 @@ class Proposer:
         if made is None:
             return None
         origin = f"{nearest.name}, changed towards {goal[0]}: {goal[1]}"
-        made = structs.replace(made, expected={})
+        made = structs.replace(made, expected={}, reaches={})
         return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
 
     def _biased(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
