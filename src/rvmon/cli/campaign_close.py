@@ -13,6 +13,7 @@ import msgspec
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_files import TESTS, TEXT_COLUMNS, dated_files, left_over
 from rvmon.cdv.close import Budget, Closed, close
+from rvmon.cdv.close.close import MARGIN
 from rvmon.cdv.close.document import closed_document
 from rvmon.cdv.close.text import print_closed
 from rvmon.cdv.documents import to_json
@@ -57,12 +58,15 @@ def conduct_closing(
             robot,
             seed=arguments.seed,
             strategies=strategies,
+            margin=arguments.margin,
             budget=Budget(arguments.tests, arguments.seconds),
             jobs=arguments.dask or arguments.jobs,
             progress=lambda met, goals: show(met / goals),
         )
     amount: list[object] = ["--tests", arguments.tests, "--seed", arguments.seed]
     amount += ["--strategy", ",".join(strategies)] if strategies else []
+    if arguments.margin != MARGIN:
+        amount += ["--margin", arguments.margin]
     if arguments.seconds is not None:
         amount += ["--seconds", arguments.seconds]
     command, *others = words

@@ -87,6 +87,14 @@ def add_closing_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)"
     )
+    parser.add_argument(
+        "--margin",
+        metavar="N",
+        type=positive,
+        default=2,
+        help="keep so many tests that show each goal, where so many were found (2): one covers it, "
+        "more see more faults",
+    )
     add_playing_options(parser)
     add_judging_options(parser)
 

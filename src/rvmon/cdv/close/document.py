@@ -30,7 +30,7 @@ def closed_document(closed: Closed) -> dict[str, object]:
             for one in closed.tests
         ],
         "suite": [one.job.test.name for one in closed.suite],
-        "needed": closed.needed,
+        "sizes": closed.sizes,
         "at_least": closed.fewest,
         "open": [{"goal": goal, "hole": hole} for goal, hole in closed.open.items()],
         "proved": _texts(closed.proved),

@@ -34,9 +34,10 @@ class Closed:
 
     Attributes:
         tests: that were played, in order.
-        suite: of these the fewest known that meet as much, and one for all that went wrong.
-        needed: how many of them there are for what they meet.
-        fewest: no suite that meets as much has fewer; `needed` if it is known to be the smallest.
+        suite: of these the fewest known that meet as much with the margin that was asked for, and
+            one for all that went wrong.
+        sizes: how many meet as much, by the tests that show each goal, up to the margin.
+        fewest: no suite of that margin has fewer; its size if it is known to be the smallest.
         goals: how many there are, without those that cannot be met.
         share: of the coverage model that is covered, from 0 to 1, without what cannot be.
         proved: goals that cannot be met, each with the query that the model answers so.
@@ -50,7 +51,7 @@ class Closed:
 
     tests: Sequence[Added]
     suite: Sequence[Played]
-    needed: int
+    sizes: Mapping[int, int]
     fewest: int
     goals: int
     share: float
@@ -61,6 +62,11 @@ class Closed:
     groups: Sequence[Group]
     seconds: float
     ended: str
+
+    @property
+    def needed(self) -> int:
+        """How many tests of the suite there are for what they meet."""
+        return self.sizes[max(self.sizes)]
 
     @property
     def met(self) -> int:

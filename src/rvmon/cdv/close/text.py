@@ -51,7 +51,13 @@ def _suite_text(closed: Closed) -> str:
     fewest = "no fewer would do"
     if closed.fewest < closed.needed:
         fewest = f"no smaller choice was found; at least {closed.fewest} are needed"
-    text = f"The suite: {closed.needed} of them cover the same, {fewest}"
+    *fewer, margin = closed.sizes
+    text = f"The suite: {closed.needed} of them cover the same"
+    if fewer:
+        text += f", each goal by {margin} tests where so many were found"
+    text += f", {fewest}"
+    for one in fewer:
+        text += f"; {closed.sizes[one]} would do with {counted(one, 'test')} for each"
     if kept := len(closed.suite) - closed.needed:
         text += f"; {kept} more are kept for what went wrong"
     return f"{text}."
