@@ -29,6 +29,9 @@ from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.errors import not_installed
 
+FOREMOST = ("R1", "R2", "R3", "R4", "R5")
+"""The paper's requirements, which both robots are judged by."""
+
 ROBOTS = {
     "correct": "Correct robot",
     "legacy": "Robot of the paper's testbench",
@@ -87,6 +90,7 @@ def handover_campaign(
             chart_legend="Filled by the share of the state's statements that ran; the number "
             "beside a line is how many tests took it, a dashed line was taken by none.",
             sections=partial(model_sections, count=conforming),
+            foremost=FOREMOST if monitors else (),
             robot_words=_robot_words,
             write_more=_write_templates,
         ),

@@ -83,6 +83,22 @@ def test_the_demo_leaves_all_its_files(demo):
     assert "constrained-002" in {path.stem for path in (demo / "tests").iterdir()}
 
 
+def test_the_terminal_fits_two_screens(capsys):
+    """The paper's requirements, and of the others those that failed somewhere; Table 1 is last."""
+    words = ["demo", "--tests", "2", "--jobs", "1"]
+    assert main(words) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 100
+    rows = [line.split()[0] for line in lines if re.match(r"[RT]\d+ .*\d", line)]
+    assert {"R1", "R5", "T59"} <= set(rows)
+    assert "T40" not in rows
+    heads = [line for line in lines if "checked against" in line]
+    assert [line.split(",")[0] for line in heads] == [
+        "Correct robot",
+        "Robot of the paper's testbench",
+    ]
+
+
 def test_a_failing_test_is_shrunk(demo, tmp_path, capsys):
     """To the protocol and the readings; the smallest test finds the fault again."""
     test = demo / "tests/mutant-releases-late.json"
