@@ -91,9 +91,11 @@ def _print_in_short(
     own = replace(
         tables.own,
         requirements={name: "" for name in counts if name not in rest},
+        notes=(),
         shows_intervals=False,
     )
-    _print_verdicts(replace(tables, own=own), console)
+    control = tables.control and replace(tables.control, shows_intervals=False)
+    _print_verdicts(replace(tables, own=own, control=control), console)
     if rest:
         passed = sum(bool(verdicts[Verdict.PASS]) for verdicts in rest.values())
         console.print(
@@ -103,11 +105,16 @@ def _print_in_short(
 
 
 def _together(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
-    """Verdicts by requirement, under all strategies."""
+    """Verdicts by requirement, under all strategies, but those that their tests know."""
     found: dict[str, Counter[Verdict]] = {name: Counter() for name in figures.requirements}
     for strategy in figures.strategies.values():
         for name, verdicts in strategy.counts.items():
             found[name].update(verdicts)
+    for one in figures.known:
+        if one.mutation is None:
+            for name, verdict in one.expected.items():
+                if one.verdicts[name] == verdict:
+                    found[name][one.verdicts[name]] -= 1
     return found
 
 
