@@ -28,6 +28,15 @@ _LACKS: Mapping[str, Collection[str]] = {
 }
 """By strategy, what its tests show by chance if at all."""
 
+_COVERAGE = {
+    "pseudorandom": 45.0,
+    "constrained": 55.0,
+    **dict.fromkeys(_MODEL_BASED, 65.0),
+    "disturbed": 90.0,
+    "directed": 97.0,
+}
+"""Percent of the correct robot's coverage model that a hundred tests cover whatever the seed."""
+
 _SELDOM = ("T54", "T55")
 """What disturbed tests trigger in one of a hundred, or none."""
 
@@ -56,6 +65,9 @@ def gates(robots: Collection[str]) -> dict[str, Gate]:
             )
     if "correct" in robots:
         found["disturbed"] = Gate(_SELDOM, inconclusive=("R5",))  # the distance sensor may be dead
+    if "legacy" not in robots:
+        for strategy, percent in _COVERAGE.items():
+            found[strategy] = replace(found.get(strategy, Gate()), coverage=percent)
     return found
 
 
