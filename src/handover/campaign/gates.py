@@ -37,8 +37,8 @@ _COVERAGE = {
 }
 """Percent of the correct robot's coverage model that a hundred tests cover whatever the seed."""
 
-_SELDOM = ("T54", "T55")
-"""What disturbed tests trigger in one of a hundred, or none."""
+_SELDOM = ("T54", "T55", *_NEEDS["a human who does not come"])
+"""What disturbed tests trigger in one or two of a hundred, or none."""
 
 
 def gates(robots: Collection[str]) -> dict[str, Gate]:
