@@ -66,7 +66,7 @@ def _timed(
     print(
         f"{campaign.name}, seed {seed}: {closed.met} of {closed.goals} goals by "
         f"{len(closed.tests)} tests, {_cpu_s() - before:.1f} s of CPU; {shares}; suite "
-        f"{closed.needed}, at least {closed.fewest}",
+        f"{closed.needed} ({closed.sizes}), at least {closed.fewest}",
         flush=True,
     )
     return closed

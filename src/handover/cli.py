@@ -1,8 +1,6 @@
 """The command `handover`: campaigns of simulated handovers, and replays of single tests.
 
-Exit codes: 0 the campaign completed (a replay: no requirement failed), 1 with `--strict` a test
-did not end as it should, or a requirement was never triggered (a replay: one failed), 2 wrong
-input, 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
+Exit codes: those of `rvmon.cli.campaign`.
 """
 
 from __future__ import annotations
@@ -15,18 +13,14 @@ from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli import evidence, guarded
-from rvmon.cli.campaign import (
-    INTERRUPTED,
+from rvmon.cli.campaign import close_holes, judged_by, mutate_code, names_of, run_tests
+from rvmon.cli.campaign_options import (
     add_campaign_options,
     add_closing_options,
     add_judging_options,
     add_mutate_options,
     add_replay_options,
     add_shrink_options,
-    close_holes,
-    judged_by,
-    mutate_code,
-    names_of,
 )
 from rvmon.cli.numbers import positive
 from rvmon.cli.parser import Parser
@@ -81,7 +75,6 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     parser.add_argument("--legacy", action="store_true", help="the robot of the paper's testbench")
     add_judging_options(parser)
     parser.add_argument("--no-monitors", action="store_true", help="evaluate nothing: only play")
-    parser.add_argument("--strict", action="store_true", help="exit with 1 unless all is well")
     _add_conform(parser, 0)
     parser.set_defaults(run=_run)
 
@@ -165,50 +158,46 @@ def _add_mutate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 def _run(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
-    from rvmon.cli.campaign_run import conduct, show
 
-    robots = ("legacy" if arguments.legacy else "correct",)
     campaign = handover_campaign(
-        robots, monitors=not arguments.no_monitors, conforming=arguments.conform
+        (_robot(arguments),), monitors=not arguments.no_monitors, conforming=arguments.conform
     )
-    if not arguments.no_monitors:
-        campaign = judged_by(campaign, arguments.spec)
     strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    words: list[object] = ["run", "--strategy", arguments.strategy]
-    words += ["--legacy"] if arguments.legacy else []
-    words += ["--spec", arguments.spec] if arguments.spec else []
-    words += ["--no-monitors"] if arguments.no_monitors else []
+    words: list[object] = ["run", *_legacy(arguments)]
+    if arguments.no_monitors:
+        words += ["--no-monitors"]
+        arguments.spec = None
     words += ["--conform", arguments.conform] if arguments.conform else []
-    conducted = conduct(campaign, strategies, arguments, words)
-    show(campaign, conducted, arguments.format)
-    if conducted.interrupted:
-        return INTERRUPTED
-    return int(arguments.strict and bool(conducted.judged(strict=True).wrong))
+    return run_tests(campaign, strategies, arguments, words)
 
 
 def _demo(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
     from rvmon.cdv.write_pages import REPORT
-    from rvmon.cli.campaign_run import conduct, show
 
     campaign = handover_campaign(("legacy", "correct"), conforming=arguments.conform)
-    conducted = conduct(
-        campaign, tuple(campaign.strategies), arguments, ["demo", "--conform", arguments.conform]
-    )
-    show(campaign, conducted, "text")
+    words = ["demo", "--conform", arguments.conform]
+    code = run_tests(campaign, tuple(campaign.strategies), arguments, words)
     if arguments.out:
         print(f"Look at {Path(arguments.out) / REPORT}")
-    return INTERRUPTED if conducted.interrupted else 0
+    return code
 
 
 def _close(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
 
-    robot = "legacy" if arguments.legacy else "correct"
-    campaign = judged_by(handover_campaign((robot,)), arguments.spec)
-    words: list[object] = ["close", *(["--legacy"] if arguments.legacy else [])]
-    words += ["--spec", arguments.spec] if arguments.spec else []
-    return close_holes(campaign, robot, arguments, words)
+    robot = _robot(arguments)
+    words = ["close", *_legacy(arguments)]
+    return close_holes(handover_campaign((robot,)), robot, arguments, words)
+
+
+def _robot(arguments: argparse.Namespace) -> str:
+    return "legacy" if arguments.legacy else "correct"
+
+
+def _legacy(arguments: argparse.Namespace) -> list[object]:
+    """The option that chooses the robot, as words of a command."""
+    return ["--legacy"] if arguments.legacy else []
 
 
 def _replay(arguments: argparse.Namespace) -> int:

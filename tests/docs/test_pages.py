@@ -30,7 +30,9 @@ def names_for(page, folder):
             (folder / "pole.rv").write_text(text)
             return {"spec": rvmon.load(ROOT / "specs" / "handover.rv")}
         case "docs/reference/coverage.md":
-            points = "coverpoint gaze = g {yes: true}\ncoverpoint near = d {touch: true}\n"
+            points = (
+                "coverpoint gaze = g {yes: true}\ncoverpoint near = d {touch: true, reach: false}\n"
+            )
             (folder / "robot.rv").write_text(f"signal g, d : bool\n{points}")
             for name in ("monday", "tuesday", "grasp-17"):
                 (folder / f"{name}.csv").write_text("t,g,d\n0,true,false\n")

@@ -11,6 +11,7 @@ import handover
 from handover.campaign.closing import closing
 from handover.campaign.documents import table_document
 from handover.campaign.flow_chart import flow_chart
+from handover.campaign.gates import expected_failures, gates
 from handover.campaign.model_page import model_sections
 from handover.campaign.paper import paper_table
 from handover.campaign.strategies import STRATEGIES
@@ -27,6 +28,9 @@ from rvmon.cdv.campaign_files import TEMPLATES
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.errors import not_installed
+
+FOREMOST = ("R1", "R2", "R3", "R4", "R5")
+"""The paper's requirements, which both robots are judged by."""
 
 ROBOTS = {
     "correct": "Correct robot",
@@ -68,6 +72,8 @@ def handover_campaign(
         code=robot_code(),
         states=STATES,
         transitions=TRANSITIONS,
+        expected_failures=expected_failures(robots) if monitors else (),
+        gates=gates(robots) if monitors else {},
         control=Control("without start-up loss", without_loss),
         sources=(Path(handover.__file__).parent,),
         packages=("pymunk",),
@@ -84,6 +90,7 @@ def handover_campaign(
             chart_legend="Filled by the share of the state's statements that ran; the number "
             "beside a line is how many tests took it, a dashed line was taken by none.",
             sections=partial(model_sections, count=conforming),
+            foremost=FOREMOST if monitors else (),
             robot_words=_robot_words,
             write_more=_write_templates,
         ),

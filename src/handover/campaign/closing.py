@@ -176,7 +176,6 @@ UNREACHABLE = tuple(
         ],
         _HELD: [
             ("`T5` edges", "start → P"),
-            ("T9", "`gripper_holds` decides"),
             ("T9", "`not gripper_holds since person_holds` decides"),
         ],
         "three plans take 6.6 s at most": [("T19", AT)],

@@ -89,9 +89,13 @@ class Human:
         return self._grasp_force() + contact_force(self._scene.hand, self._scene.piece)
 
     def hand_force(self) -> float:
-        """N between the hand and all that is the robot's or that the robot holds."""
-        parts = (self._scene.piece, self._scene.links[2], *self._scene.fingers)
-        return self._grasp_force() + contact_force(self._scene.hand, *parts)
+        """N with which one body presses on the hand, the most of the robot's and the piece.
+
+        Fingers that clamp it press from both sides, each as hard as the other: that is no more.
+        """
+        parts = (self._scene.links[2], *self._scene.fingers)
+        by_robot = (contact_force(self._scene.hand, part) for part in parts)
+        return max(self.holding_force(), *by_robot)
 
     def holds(self) -> bool:
         """Whether the hand has taken hold of the piece."""

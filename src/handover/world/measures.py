@@ -14,16 +14,21 @@ _BETWEEN_PADS = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
 """On the palm, from its centre, metres."""
 
 
-def contact_force(body: pymunk.Body, *others: pymunk.Body) -> float:
-    """N between a body and others in the last physics step, by contact alone; 0 without any."""
-    impulses: list[float] = []
+def contact_force(body: pymunk.Body, other: pymunk.Body) -> float:
+    """N between two bodies in the last physics step, by contact alone; 0 without any.
+
+    They may touch at several places: these forces add up as vectors.
+    """
+    impulses: list[pymunk.Vec2d] = []
 
     def collect(arbiter: pymunk.Arbiter) -> None:
-        if any(touching in others for touching in arbiter.bodies):
-            impulses.append(arbiter.total_impulse.length)
+        if other in arbiter.bodies:
+            impulse = arbiter.total_impulse
+            impulses.append(impulse if arbiter.bodies[0] is body else -impulse)
 
     body.each_arbiter(collect)
-    return sum(impulses) / (p.STEP_NS / p.NS)
+    whole = sum(impulses, pymunk.Vec2d.zero())
+    return float(whole.length / (p.STEP_NS / p.NS))
 
 
 def seen_piece(scene: Scene) -> tuple[float, float]:

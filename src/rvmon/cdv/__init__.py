@@ -7,7 +7,7 @@ made of it, in order: `plan` (tests), `execute` (on all cores: `play` judges and
 """
 
 from rvmon.cdv.abstract_test import Test
-from rvmon.cdv.campaign import Campaign, Control, ExpectedFailure, Robot, Strategy
+from rvmon.cdv.campaign import Campaign, Control, ExpectedFailure, Gate, Robot, Strategy
 from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
 from rvmon.cdv.code import Block, Code, blocks_of
 from rvmon.cdv.files import TestError
@@ -21,6 +21,7 @@ __all__ = [
     "Code",
     "Control",
     "ExpectedFailure",
+    "Gate",
     "Observer",
     "Robot",
     "Run",

@@ -24,6 +24,8 @@ class Test(
         robot: the only one of a campaign's robots that it is written for; `None`: any.
         mutation: the fault that is planted into the robot; `None`: it is as it is.
         expected: verdicts by requirement, for tests that know them.
+        reaches: items of the coverage model, by group, that it is made to hit: else it is not what
+            it says.
         removable: fields that are sequences whose parts a smaller test may lack, the one with the
             most to say first.
 
@@ -43,6 +45,7 @@ class Test(
     robot: str | None = None
     mutation: str | None = None
     expected: dict[str, VerdictName] = {}
+    reaches: dict[str, tuple[str, ...]] = {}
 
     def simpler(self) -> Iterable[Self]:
         """Tests in which one value is simpler, for `rvmon.cdv.shrink`; the simplest first."""

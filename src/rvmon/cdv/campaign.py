@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -54,7 +54,9 @@ class Control:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedFailure:
-    """A failure that is known, and is not to fail a campaign; that it fails no more, is reported.
+    """A failure that is known, and is not to fail a campaign.
+
+    That it fails no more is wrong as well: the entry is to go.
 
     Attributes:
         requirement: that fails.
@@ -62,6 +64,7 @@ class ExpectedFailure:
         strategy: in tests of this strategy only; empty: of any.
         test: in this test only; empty: in any.
         robot: of this robot only; empty: of any.
+        seldom: no test need fail: it is a risk that remains, and is accepted.
     """
 
     requirement: str
@@ -69,6 +72,22 @@ class ExpectedFailure:
     strategy: str = ""
     test: str = ""
     robot: str = ""
+    seldom: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """What the tests of a strategy have to bring together, for `--strict`.
+
+    Attributes:
+        untriggered: requirements that need not be triggered; every other one is to pass or fail.
+        inconclusive: requirements that a test may leave open.
+        coverage: percent of the coverage model that the tests have to cover.
+    """
+
+    untriggered: Collection[str] = ()
+    inconclusive: Collection[str] = ()
+    coverage: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +104,8 @@ class Campaign:
         transitions: that its code allows, likewise.
         control: what is played beside a test.
         expected_failures: that do not fail it.
+        gates: by strategy, what its tests have to bring; those of all strategies without one are
+            held against that of the name "" together, and without that against `Gate()`.
         timeout_s: seconds that a test may take before it is ended; `None`: any.
         sources: files and folders that runs depend on, beside those that define tests, strategies
             and systems: where one has changed, an unfinished campaign is not gone on with.
@@ -103,6 +124,7 @@ class Campaign:
     transitions: Sequence[tuple[str, str]] = ()
     control: Control | None = None
     expected_failures: Sequence[ExpectedFailure] = ()
+    gates: Mapping[str, Gate] = field(default_factory=dict)
     timeout_s: float | None = 600.0
     sources: Sequence[str | Path] = ()
     packages: Sequence[str] = ()

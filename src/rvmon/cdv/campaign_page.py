@@ -210,7 +210,7 @@ def _known_row(
     address = tests.get((robot, one.test))
     name: Child = one.test if address is None else e("a", {"href": address}, one.test)
     cells = [_verdict_cell(one, requirement, address) for requirement in ids]
-    purpose = e("td", {"class": "text purpose"}, one.text)
+    purpose = e("td", {"class": "text purpose"}, one.text, *(f" – {what}" for what in one.missed))
     fault = e("td", {"class": "text"}, one.mutation or "") if faults else None
     return e("tr", None, e("th", {"scope": "row"}, name), purpose, fault, *cells)
 

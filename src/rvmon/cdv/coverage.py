@@ -7,10 +7,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.gate import accepted_failures
+from rvmon.cdv.code_files import cobertura, lcov
+from rvmon.cdv.expected import accepted_failures
 from rvmon.cdv.measured import measured_groups
+from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.model import Group, Item, Model, model_of
+from rvmon.coverage.hits import merged, share
+from rvmon.coverage.model import Group, Item, Model, model_of, without
 from rvmon.coverage.record import TestRecord
 from rvmon.errors import RvmonError
 from rvmon.loading import load
@@ -45,6 +48,9 @@ class CoverageFigures:
 DATABASE = "coverage.db"
 """The file in a campaign's folder; of several robots, each has one in a folder of its name."""
 
+LCOV, COBERTURA = "code.lcov", "cobertura.xml"
+"""The same of the code alone, beside it."""
+
 
 def spec_coverages(robot: Robot) -> list[SpecCoverage]:
     """The coverage models of a robot's specifications: its requirements', and the further ones.
@@ -74,6 +80,18 @@ def coverage_model(campaign: Campaign, robot: str) -> Model:
         ) from None
 
 
+def covered_share(campaign: Campaign, robot: str, played: Sequence[Played]) -> float:
+    """The share of what tests of a robot can show that some of them have shown, from 0 to 1.
+
+    Raises:
+        RvmonError: see `coverage_model`.
+        UnknownNameError: the campaign calls unreachable what there is not.
+    """
+    model = coverage_model(campaign, robot)
+    out = unreachable_items(campaign, robot, model)
+    return share(merged(one.outcome.hits for one in played), without(model, out))
+
+
 def write_database(path: Path, robot: str, played: Sequence[Played], results: Results) -> None:
     """Write the database of a robot's tests; one that is there is replaced.
 
@@ -93,8 +111,9 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
     path.unlink(missing_ok=True)
     with Database.open(path) as database:
         database.declare(_with_the_rest(model, played))
-        for (group, item), reason in results.reasons.items():
-            database.explain(group, item, reason)
+        argued = unreachable_items(campaign, robot, model)
+        for (group, item), reason in {**argued, **results.unreachable}.items():
+            database.exclude(group, item, reason)
         for number, one in enumerate(played):
             test, outcome = one.job.test, one.outcome
             record = TestRecord(
@@ -129,7 +148,7 @@ def _with_the_rest(model: Model, played: Sequence[Played]) -> Model:
 def write_coverage(
     folder: Path, results: Results, pages: Mapping[tuple[str, str], str]
 ) -> dict[str, CoverageFigures]:
-    """Write the database of each robot's tests, and a page beside it.
+    """Write the database of each robot's tests, and a page beside it; the code for other tools.
 
     Args:
         folder: of the campaign.
@@ -154,6 +173,12 @@ def write_coverage(
         summary = Summary(f"{campaign.name}, {title}", read([path]), pages=own)
         page = path.with_suffix(".html")
         write_whole(page, coverage_page(summary))
+        if campaign.code is not None:
+            model = coverage_model(campaign, robot)
+            model = without(model, unreachable_items(campaign, robot, model))
+            hits = merged(one.outcome.hits for one in played)
+            write_whole(path.with_name(LCOV), lcov(campaign.code, model, hits))
+            write_whole(path.with_name(COBERTURA), cobertura(campaign.code, model, hits))
         figures[robot] = CoverageFigures(
             page.relative_to(folder).as_posix(),
             summary.share,

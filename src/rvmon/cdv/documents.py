@@ -55,6 +55,7 @@ def _robot(robot: RobotSummary, kind: str, control_key: str) -> dict[str, object
                 "mutation": one.mutation,
                 "expected": one.expected,
                 "verdicts": one.verdicts,
+                "missed": one.missed,
                 "as_expected": one.as_expected,
             }
             for one in robot.known

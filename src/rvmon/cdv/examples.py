@@ -84,4 +84,8 @@ def _without_fault(job: Job) -> list[Job]:
     if job.test.mutation is None:
         return []
     name = f"{job.test.name} on the robot as it is"
-    return [replace(job, test=structs.replace(job.test, name=name, mutation=None, expected={}))]
+    return [
+        replace(
+            job, test=structs.replace(job.test, name=name, mutation=None, expected={}, reaches={})
+        )
+    ]

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rvmon.cdv.campaign import Campaign, ExpectedFailure
+from rvmon.cdv.campaign import Campaign, ExpectedFailure, Gate
+from rvmon.cdv.coverage import coverage_model, covered_share
+from rvmon.cdv.expected import accepted_failures, is_about
 from rvmon.cdv.outcome import Played, Results
 from rvmon.cdv.run_share import Decision
-from rvmon.cdv.summary import differences
+from rvmon.cdv.summary import differences, missed
+from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.loading import load
@@ -43,10 +47,12 @@ class CampaignJudgement:
         tests: each by itself, in the order of the plan.
         checks: what is asked of the tests together, in words, with what is wrong about it; empty if
             nothing is.
+        cut_short: why not all tests were played; empty if they were.
     """
 
     tests: tuple[TestJudgement, ...]
     checks: Mapping[str, str] = field(default_factory=dict)
+    cut_short: str = ""
 
     @property
     def wrong(self) -> list[str]:
@@ -57,6 +63,11 @@ class CampaignJudgement:
             for what in one.wrong
         ]
         return of_tests + [f"{check}: {what}" for check, what in self.checks.items() if what]
+
+    @property
+    def known(self) -> dict[str, int]:
+        """The failures that were expected, in words, each with the number of its tests."""
+        return dict(Counter(what for one in self.tests for what in one.known))
 
 
 def judge_campaign(
@@ -69,39 +80,43 @@ def judge_campaign(
     """Hold all tests against what was expected of them.
 
     A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
-    to fail; if a verdict that it knows came out otherwise; if, on the robot as it is, something was
-    hit that must not be, its code crashed, it hung or was lost. An expected failure that did not
+    to fail; if a verdict that it knows came out otherwise; if it does not reach what it is made to;
+    if, on the robot as it is, something was
+    hit that must not be, its code crashed, it hung or was lost. So is a hit of what the campaign
+    calls unreachable, by any test. An expected failure that did not
     occur is wrong as well, unless no test was played in which it could.
 
     Args:
         results: what was played; of a campaign that was cut short only the tests are judged.
-        requirements: by robot, the ids of those that were judged.
+        requirements: by robot, the ids of those that were judged; none: only endings count.
         shares: what the tests of each strategy say of those that are to hold in a share of runs: a
             single test that fails them is not wrong, a strategy that rejects the share is. With
             `strict` it is wrong as well that none decides it.
         strict: verdicts that are inconclusive are wrong as well, unless the test knows them, and so
-            are requirements that were never triggered: that no test passed or failed.
+            is what the gates of strategies want and their tests did not bring.
     """
-    expected = results.plan.campaign.expected_failures
+    campaign = results.plan.campaign
+    expected = campaign.expected_failures
     decisions = shares or {}
     tests = tuple(
         judge_test(
             one,
             expected,
             [name for robot, name in decisions if robot == one.job.robot],
-            strict=strict,
+            gate=_gate_of(campaign, one) if strict else None,
         )
         for one in results.played
     )
     checks: dict[str, str] = {}
     if not results.cut_short:
         checks |= _expected_failures(expected, results.played)
-        checks |= _triggered(requirements, results.played) if strict else {}
+        checks |= dict(_contradicted(campaign, results.played))
+        checks |= dict(_gated(campaign, requirements, results.played)) if strict else {}
         for (robot, name), found in decisions.items():
             if not any(_is_of(why, robot, name) for why in expected):
                 share = next(iter(found.values())).share
                 checks[f"{name} {share} ({robot})"] = _undecided(found, strict=strict)
-    return CampaignJudgement(tests, checks)
+    return CampaignJudgement(tests, checks, results.cut_short)
 
 
 def _is_of(why: ExpectedFailure, robot: str, requirement: str) -> bool:
@@ -121,7 +136,7 @@ def judge_test(
     expected: Sequence[ExpectedFailure],
     shared: Collection[str] = (),
     *,
-    strict: bool = False,
+    gate: Gate | None = None,
 ) -> TestJudgement:
     """Hold one test against what was expected of it, as `judge_campaign` does with all.
 
@@ -129,7 +144,8 @@ def judge_test(
         one: the test.
         expected: failures that its campaign expects.
         shared: requirements of which not this test decides, but all together.
-        strict: verdicts that are inconclusive are wrong, unless the test knows them.
+        gate: verdicts that are inconclusive are wrong, unless it or the test knows them; default:
+            none is.
     """
     test, outcome = one.job.test, one.outcome
     wrong: list[str] = []
@@ -139,6 +155,7 @@ def judge_test(
     accepted = accepted_failures(one, expected)
     if outcome.verdicts:
         wrong.extend(differences(test.expected, outcome.verdicts))
+    wrong.extend(missed(test.reaches, outcome.hits))
     if test.mutation is None:
         wrong.extend(outcome.illegal)
     for name, verdict in outcome.verdicts.items():
@@ -151,38 +168,9 @@ def judge_test(
                 known.append(f"{name} failed, as expected: {accepted[name]}")
             else:
                 wrong.append(outcome.reasons.get(name, f"{name} failed"))
-        elif verdict is Verdict.INCONCLUSIVE and strict:
+        elif verdict is Verdict.INCONCLUSIVE and gate and name not in gate.inconclusive:
             wrong.append(f"{name} is inconclusive")
     return TestJudgement(one, tuple(wrong), tuple(known))
-
-
-def accepted_failures(one: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
-    """The requirements that may fail in a test, each with the reason.
-
-    Args:
-        one: the test.
-        expected: what its campaign expects to fail.
-    """
-    accepted = {
-        name: "this test is made to fail it"
-        for name, verdict in one.job.test.expected.items()
-        if verdict == Verdict.FAIL.value
-    }
-    for why in expected:
-        if _is_about(why, one):
-            accepted.setdefault(why.requirement, why.reason)
-    return accepted
-
-
-def _is_about(why: ExpectedFailure, one: Played) -> bool:
-    """Whether a failure is expected in a test: on the robot as it is."""
-    test = one.job.test
-    return (
-        test.mutation is None
-        and why.strategy in ("", test.strategy)
-        and why.test in ("", test.name)
-        and why.robot in ("", one.job.robot)
-    )
 
 
 def _expected_failures(
@@ -190,10 +178,12 @@ def _expected_failures(
 ) -> dict[str, str]:
     checks = {}
     for why in expected:
+        if why.seldom:
+            continue
         verdicts = [
             one.outcome.verdicts[why.requirement]
             for one in played
-            if why.requirement in one.outcome.verdicts and _is_about(why, one)
+            if why.requirement in one.outcome.verdicts and is_about(why, one)
         ]
         if verdicts:
             missing = "" if Verdict.FAIL in verdicts else f"it did not, in {len(verdicts)} tests"
@@ -207,31 +197,66 @@ def _named(why: ExpectedFailure) -> str:
     return " of ".join([why.requirement, *named])
 
 
-def _triggered(
-    requirements: Mapping[str, Sequence[str]], played: Sequence[Played]
-) -> dict[str, str]:
-    checks = {}
-    for robot, names in requirements.items():
-        for name in names:
-            seen = {
-                one.outcome.verdicts[name]
-                for one in played
-                if one.job.robot == robot and one.job.test.mutation is None
-            }
-            is_decided = not seen.isdisjoint((Verdict.PASS, Verdict.FAIL))
-            wrong = "" if is_decided else "no test passed or failed it"
-            checks[f"{name} is triggered ({robot})"] = wrong
-    return checks
+def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tuple[str, str]]:
+    """Whether what the campaign calls unreachable was not hit."""
+    if not campaign.closing.unreachable:
+        return
+    for robot in campaign.robots:
+        out = unreachable_items(campaign, robot, coverage_model(campaign, robot))
+        first = {
+            f"{group}: {item}": one.job.test.name
+            for one in reversed(played)
+            if one.job.robot == robot and one.job.test.mutation is None
+            for group, items in one.outcome.hits.items()
+            for item in items
+            if (group, item) in out
+        }
+        wrong = "; ".join(f"{item}, by {test}" for item, test in first.items())
+        yield f"what is called unreachable is not hit ({robot})", wrong
+
+
+def _gate_name(campaign: Campaign, one: Played) -> str:
+    """The strategy whose gate a test is held against; empty: that of all which have none."""
+    strategy = one.job.test.strategy
+    return strategy if strategy in campaign.gates else ""
+
+
+def _gate_of(campaign: Campaign, one: Played) -> Gate:
+    return campaign.gates.get(_gate_name(campaign, one), Gate())
+
+
+def _gated(
+    campaign: Campaign, requirements: Mapping[str, Sequence[str]], played: Sequence[Played]
+) -> Iterator[tuple[str, str]]:
+    """What gates want of tests together, with what is wrong about it."""
+    groups: dict[tuple[str, str], list[Played]] = {}
+    for one in played:
+        if one.job.test.mutation is None:  # a planted fault says nothing about the robot
+            groups.setdefault((one.job.robot, _gate_name(campaign, one)), []).append(one)
+    for (robot, strategy), tests in groups.items():
+        gate = campaign.gates.get(strategy, Gate())
+        place = f"{strategy}, {robot}" if strategy else robot
+        count = f"{len(tests)} test{'s' if len(tests) > 1 else ''}"
+        for name in requirements[robot]:
+            if name not in gate.untriggered:
+                seen = {one.outcome.verdicts[name] for one in tests}
+                decided = not seen.isdisjoint((Verdict.PASS, Verdict.FAIL))
+                wrong = "" if decided else f"none of {count} passed or failed it"
+                yield f"{name} is triggered ({place})", wrong
+        if gate.coverage:
+            share = 100 * covered_share(campaign, robot, tests)
+            wrong = "" if share >= gate.coverage else f"{count} covered {share:.1f} %"
+            yield f"at least {gate.coverage:g} % are covered ({place})", wrong
 
 
 def refuse_unknown(campaign: Campaign) -> None:
-    """See that all that is expected to fail exists; a test's name is only known with the tests.
+    """See that all that failures are expected of, and gates name, exists; tests come later.
 
     Args:
         campaign: as it was written.
 
     Raises:
-        UnknownNameError: a failure is expected of what there is not.
+        UnknownNameError: a failure is expected of what there is not, or a gate names it.
         SpecError: the requirements of a robot are wrong.
     """
     specs = [load(robot.spec) for robot in campaign.robots.values() if robot.spec is not None]
@@ -240,10 +265,18 @@ def refuse_unknown(campaign: Campaign) -> None:
         "strategy": {"", *campaign.strategies},
         "robot": {"", *campaign.robots},
     }
-    for why in campaign.expected_failures:
-        for kind, known in there_is.items():
-            if (name := getattr(why, kind)) not in known:
-                names = ", ".join(sorted(known - {""}))
-                raise UnknownNameError(
-                    f"a failure is expected of the {kind} `{name}`: there are {names}"
-                )
+    named = [
+        (f"a failure is expected of the {kind}", kind, getattr(why, kind))
+        for why in campaign.expected_failures
+        for kind in there_is
+    ]
+    for strategy, gate in campaign.gates.items():
+        named.append(("there is a gate of the strategy", "strategy", strategy))
+        named += [
+            ("a gate names the requirement", "requirement", name)
+            for name in (*gate.untriggered, *gate.inconclusive)
+        ]
+    for what, kind, name in named:
+        if name not in there_is[kind]:
+            names = ", ".join(sorted(there_is[kind] - {""}))
+            raise UnknownNameError(f"{what} `{name}`: there are {names}")

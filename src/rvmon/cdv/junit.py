@@ -10,7 +10,7 @@ from rvmon.coverage.record import Ending
 from rvmon.diagnostics.shown import shown
 
 
-def junit_xml(campaign: str, judgement: CampaignJudgement, cut_short: str = "") -> str:
+def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
     """A test suite per robot and strategy, a test case per test; one suite for all together.
 
     What is not as expected is a failure; a test that crashed, hung or was lost an error; one that
@@ -18,8 +18,7 @@ def junit_xml(campaign: str, judgement: CampaignJudgement, cut_short: str = "") 
 
     Args:
         campaign: its name.
-        judgement: on its tests.
-        cut_short: why not all of them were played, which is an error; empty if they were.
+        judgement: on its tests; that not all were played is an error.
     """
     root = ET.Element("testsuites", name=shown(campaign))
     groups: dict[str, list[TestJudgement]] = {}
@@ -29,9 +28,9 @@ def junit_xml(campaign: str, judgement: CampaignJudgement, cut_short: str = "") 
     for name, tests in groups.items():
         _suite(root, f"{campaign}.{name}", [_case(one) for one in tests])
     together = [_check(check, what) for check, what in judgement.checks.items()]
-    if cut_short:
+    if judgement.cut_short:
         case = ET.Element("testcase", name="all tests are played")
-        ET.SubElement(case, "error", message=shown(cut_short))
+        ET.SubElement(case, "error", message=shown(judgement.cut_short))
         together.append(case)
     if together:
         _suite(root, campaign, together)

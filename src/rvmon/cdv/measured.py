@@ -8,12 +8,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.meter import code_groups
 from rvmon.cdv.system import Run
 from rvmon.coverage.hits import Hit
-from rvmon.coverage.model import Group, Item, Subject, group_of
-
-STATES = "states"
-TRANSITIONS = "transitions"
-PAIRS = "pairs of transitions"
-"""Names of groups."""
+from rvmon.coverage.model import PAIRS, STATES, TRANSITIONS, Group, Item, Subject, group_of
 
 _ARROW = " → "
 

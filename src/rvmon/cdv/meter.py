@@ -105,11 +105,17 @@ def _groups(code: Code, files: Mapping[str, _File]) -> list[tuple[Group, str]]:
     groups = []
     for block in code.blocks:
         file = files[block.path]
-        items = [Item(str(line)) for line in sorted(file.statements & block.lines)]
+        items = [
+            Item(str(line), text=file.text(line)) for line in sorted(file.statements & block.lines)
+        ]
         group = group_of(statements_name(block.name), Subject.STATEMENTS, items)
         groups.append((group, block.path))
         if code.branches:
-            items = [Item(_arc(*arc)) for arc in sorted(file.branches) if arc[0] in block.lines]
+            items = [
+                Item(_arc(*arc), text=" → ".join(map(file.text, arc)))
+                for arc in sorted(file.branches)
+                if arc[0] in block.lines
+            ]
             if items:
                 group = group_of(branches_name(block.name), Subject.BRANCHES, items)
                 groups.append((group, block.path))
@@ -130,9 +136,14 @@ class _File:
                 line for line, exits in self._reporter.exit_counts().items() if exits > 1
             }
             possible = self._reporter.arcs()
+            self._lines = self._reporter.source().splitlines()
         except (CoverageException, OSError) as error:
             raise RvmonError(f"{path}: its code cannot be measured: {error}") from None
         self.branches = {arc for arc in possible if arc[0] in self._branching}
+
+    def text(self, line: int) -> str:
+        """A line as it is written; the way out of a function has no line."""
+        return self._lines[line - 1].strip() if line > 0 else "exit"
 
     def branches_of(self, arcs: object) -> set[str]:
         """The names of the branches among the ways that were gone."""

@@ -71,7 +71,8 @@ class Results:
         seconds: wall time.
         cut_short: why not all tests were played; empty if they were.
         groups: what was measured beside what the campaign measures.
-        reasons: why items of the coverage model cannot be hit, by group and item.
+        unreachable: why items of the coverage model cannot be hit, by group and item, beside those
+            of which the campaign says so.
     """
 
     plan: Plan
@@ -79,4 +80,4 @@ class Results:
     seconds: float
     cut_short: str = ""
     groups: Sequence[Group] = ()
-    reasons: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    unreachable: Mapping[tuple[str, str], str] = field(default_factory=dict)

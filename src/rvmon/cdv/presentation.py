@@ -91,6 +91,8 @@ class Presentation:
         chart_legend: how to read it.
         sections: further ones of the page, from the tests that were played and the addresses of
             their pages.
+        foremost: requirements that the terminal shows: with others only those that failed or were
+            left open somewhere, and shares of code as one line; default: it shows all of all.
         robot_words: what `replay` is given so that it takes a robot.
         write_more: writes further files to a campaign's folder, given the strategies of its tests.
     """
@@ -110,5 +112,6 @@ class Presentation:
     sections: Callable[
         [Mapping[RobotTest, Test], Mapping[RobotTest, str]], Sequence[ET.Element]
     ] = _no_sections
+    foremost: Sequence[str] = ()
     robot_words: Callable[[str], Sequence[str]] = _option_of_robot
     write_more: Callable[[Path, frozenset[str]], None] = _nothing_more

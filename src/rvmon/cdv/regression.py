@@ -59,6 +59,7 @@ def regression_test(campaign: Campaign, job: Job, shrunk: Shrunk[Test]) -> Test:
         text=f"the smallest test in which {failure}, as in {test.name}",
         robot=only,
         expected=expected,
+        reaches={},
     )
 
 

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from rvmon.cdv.measured import STATES, TRANSITIONS, measured_groups, source_and_target
+from rvmon.cdv.measured import measured_groups, source_and_target
 from rvmon.cdv.meter import branches_name, statements_name
 from rvmon.cdv.outcome import Outcome, Played, Results
 from rvmon.cdv.run_share import decide
@@ -16,8 +16,9 @@ from rvmon.cdv.summary import (
     KnownAnswer,
     RobotSummary,
     StrategySummary,
+    missed,
 )
-from rvmon.coverage.model import Group
+from rvmon.coverage.model import STATES, TRANSITIONS, Group
 from rvmon.coverage.record import Ending
 from rvmon.report.table import Counts
 from rvmon.session import Spec
@@ -54,7 +55,9 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
                 for strategy, several in by_strategy.items()
                 if any(one.control is not None for one in several)
             },
-            known=tuple(_known(one) for one in played if one.job.test.expected),
+            known=tuple(
+                _known(one) for one in played if one.job.test.expected or one.job.test.reaches
+            ),
         )
     outcomes = [one.outcome for one in results.played]
     return CampaignSummary(
@@ -181,5 +184,8 @@ def _sums(outcomes: Sequence[Outcome]) -> dict[str, float]:
 
 
 def _known(one: Played) -> KnownAnswer:
-    test = one.job.test
-    return KnownAnswer(test.name, test.text, test.mutation, test.expected, one.outcome.verdicts)
+    test, outcome = one.job.test, one.outcome
+    not_reached = missed(test.reaches, outcome.hits)
+    return KnownAnswer(
+        test.name, test.text, test.mutation, test.expected, outcome.verdicts, not_reached
+    )

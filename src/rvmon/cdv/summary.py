@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.cdv.run_share import Decision
+from rvmon.coverage.hits import Hits
 from rvmon.report.percent import percent
 from rvmon.report.table import Counts
 from rvmon.verdict.verdict import Verdict
@@ -93,6 +94,7 @@ class KnownAnswer:
         mutation: the fault that was planted into the robot, if any.
         expected: verdicts by requirement.
         verdicts: what came out, of all requirements.
+        missed: what it is made to reach and did not, in words.
     """
 
     test: str
@@ -100,11 +102,17 @@ class KnownAnswer:
     mutation: str | None
     expected: Mapping[str, str]
     verdicts: Mapping[str, Verdict]
+    missed: Sequence[str]
+
+    @property
+    def wrong(self) -> list[str]:
+        """What is not as the test knows it, each in a sentence."""
+        return [*differences(self.expected, self.verdicts), *self.missed]
 
     @property
     def as_expected(self) -> bool:
-        """Whether all expected verdicts came out."""
-        return not differences(self.expected, self.verdicts)
+        """Whether all expected verdicts came out, in the situation that it is about."""
+        return not self.wrong
 
 
 def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) -> list[str]:
@@ -117,6 +125,21 @@ def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) ->
         f"{name} is {verdicts.get(name, 'no requirement')}, not {verdict}"
         for name, verdict in expected.items()
         if verdicts.get(name) != verdict
+    ]
+
+
+def missed(reaches: Mapping[str, Sequence[str]], hits: Hits) -> list[str]:
+    """What a test is made to reach and did not, each in a sentence; nothing if none was measured.
+
+    >>> from rvmon.coverage.hits import Hit
+    >>> missed({"gaze": ["no"]}, {"gaze": {"yes": Hit(1)}})
+    ['gaze: no is not reached']
+    """
+    return [
+        f"{group}: {item} is not reached"
+        for group, items in (reaches if hits else {}).items()
+        for item in items
+        if item not in hits.get(group, {})
     ]
 
 

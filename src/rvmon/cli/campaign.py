@@ -14,12 +14,17 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cli import evidence, guarded
-from rvmon.cli.numbers import duration, number_or_folder, positive, shard
-from rvmon.cli.options import add_dask
+from rvmon.cli.campaign_options import (
+    add_campaign_options,
+    add_closing_options,
+    add_judging_options,
+    add_mutate_options,
+    add_replay_options,
+    add_shrink_options,
+)
 from rvmon.cli.parser import Parser
-from rvmon.cli.say import warn
 from rvmon.errors import UnknownNameError
-from rvmon.report.folder import refuse_no_file, write_file
+from rvmon.report.folder import refuse_no_file
 
 INTERRUPTED = 130
 """The exit code of a campaign that was interrupted."""
@@ -57,13 +62,6 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
     )
     add_campaign_options(run)
     add_judging_options(run)
-    run.add_argument(
-        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
-    )
-    run.add_argument("--junit", metavar="FILE", help="write what was expected, and what came out")
-    run.add_argument(
-        "--strict", action="store_true", help="what is inconclusive or never triggered is a failure"
-    )
     run.set_defaults(run=_run)
     close = commands.add_parser(
         "close",
@@ -79,9 +77,6 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
         "--robot", metavar="NAME", help=f"of {', '.join(campaign.robots)} (default: the first)"
     )
     add_closing_options(close)
-    close.add_argument(
-        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
-    )
     close.set_defaults(run=_close)
     replay = commands.add_parser(
         "replay",
@@ -114,138 +109,6 @@ def _parser(campaign: Campaign) -> argparse.ArgumentParser:
     mutate.set_defaults(run=_mutate)
     evidence.add_parser(commands, lambda: campaign)
     return parser
-
-
-def add_campaign_options(parser: argparse.ArgumentParser) -> None:
-    """Declare how many tests are played, and where their results go."""
-    parser.add_argument(
-        "--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)"
-    )
-    parser.add_argument(
-        "--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'"
-    )
-    parser.add_argument(
-        "--evidence", metavar="FILE", help="keep tests, verdicts and specifications in one archive"
-    )
-    parser.add_argument(
-        "--shard",
-        metavar="I/N",
-        type=shard,
-        help="with --out, play this share, as 2/4; the same without it joins what shards left",
-    )
-    add_playing_options(parser)
-
-
-def add_playing_options(parser: argparse.ArgumentParser) -> None:
-    """Declare how tests are played, and where their results go."""
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the campaign (1)")
-    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
-    add_dask(parser)
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        help="write tables, tests and pages there; a campaign that was ended there goes on",
-    )
-    parser.add_argument(
-        "--pages",
-        choices=("examples", "all"),
-        default="examples",
-        help="of which runs to write a page: an example of each count, or all (%(default)s)",
-    )
-    parser.add_argument(
-        "--shrink",
-        action="store_true",
-        help="with --out, shrink the tests with a page that fail, and are not made to",
-    )
-
-
-def add_shrink_options(parser: argparse.ArgumentParser) -> None:
-    """Declare which test is shrunk, by which failure, and where the smallest one goes."""
-    parser.epilog = "example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/small"
-    parser.description = (
-        "Take away from a failing test what its failure does not need, print what is left, and "
-        "write it as a regression test."
-    )
-    parser.add_argument("test", metavar="TEST", help="a .json file")
-    parser.add_argument(
-        "--requirement", metavar="ID", help="that is to fail (default: the first that does)"
-    )
-    parser.add_argument(
-        "--out", metavar="DIR", help="write it there, with a test of pytest that replays it"
-    )
-
-
-def add_closing_options(parser: argparse.ArgumentParser) -> None:
-    """Declare when closing gives up, and where the suite goes."""
-    parser.add_argument(
-        "--tests", metavar="N", type=positive, default=400, help="play at most so many (400)"
-    )
-    parser.add_argument(
-        "--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)"
-    )
-    add_playing_options(parser)
-    add_judging_options(parser)
-
-
-def add_replay_options(parser: argparse.ArgumentParser) -> None:
-    """Declare which test is played again, and where its page goes."""
-    parser.add_argument("test", metavar="TEST", help="a .json file")
-    parser.add_argument("--out", metavar="DIR", help="write the recording and a page there")
-    parser.add_argument(
-        "--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove"
-    )
-    parser.add_argument(
-        "--expected", action="store_true", help="exit with 0 if all came out as the test expects"
-    )
-    add_judging_options(parser)
-
-
-def add_mutate_options(parser: argparse.ArgumentParser) -> None:
-    """Declare which mutants are played by which tests, and where results go."""
-    parser.add_argument(
-        "--strategy", metavar="NAMES", help="suites: the tests of each of these (default: all)"
-    )
-    parser.add_argument(
-        "--tests",
-        metavar="N|DIR",
-        type=number_or_folder,
-        default=100,
-        help="of each random strategy (100); or a folder of tests, which is the suite",
-    )
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the tests (1)")
-    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
-    parser.add_argument(
-        "--of",
-        choices=("code", "spec", "both"),
-        default="both",
-        help="mutants of the code, of its requirements, or %(default)s (default)",
-    )
-    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has this")
-    parser.add_argument(
-        "--all", action="store_true", help="play all tests, also after a requirement failed"
-    )
-    parser.add_argument(
-        "--held-out", action="store_true", help="show also single mutants that are held out"
-    )
-    parser.add_argument("--list", action="store_true", help="list the mutants, and play nothing")
-    parser.add_argument(
-        "--strict", action="store_true", help="exit with 1 unless all mutants are killed"
-    )
-    parser.add_argument(
-        "--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there"
-    )
-    add_judging_options(parser)
-
-
-def add_judging_options(parser: argparse.ArgumentParser) -> None:
-    """Declare what judges, and in which form verdicts are printed."""
-    parser.add_argument("--spec", metavar="FILE", help="check against these requirements")
-    parser.add_argument(
-        "--format",
-        choices=("text", "json"),
-        default="text",
-        help="for people (default), or as data",
-    )
 
 
 def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, ...]:
@@ -290,47 +153,65 @@ def judged_by(campaign: Campaign, spec: str | None) -> Campaign:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from rvmon.cdv.gate import refuse_unknown
-    from rvmon.cdv.junit import junit_xml
+    campaign = arguments.campaign
+    robots = names_of(arguments.robot, tuple(campaign.robots), "robot")
+    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
+    return run_tests(
+        campaign, strategies, arguments, ["run", *_given(arguments, "robot")], robots=robots
+    )
+
+
+def run_tests(
+    campaign: Campaign,
+    strategies: Sequence[str],
+    arguments: argparse.Namespace,
+    words: Sequence[object],
+    *,
+    robots: Sequence[str] = (),
+) -> int:
+    """Play a campaign, show it, hold it against what was expected, and return an exit code.
+
+    Args:
+        campaign: what it is about.
+        strategies: that make tests.
+        arguments: those of `add_campaign_options`; perhaps `strategy`, `spec` and `format`.
+        words: the command that runs it again, and its options but those.
+        robots: of its robots those that are tested; default: all.
+    """
+    from rvmon.cli.campaign_gate import held
     from rvmon.cli.campaign_run import conduct, show
 
-    refuse_unknown(arguments.campaign)
+    campaign = _as_asked(campaign, arguments)
+    tested = robots or campaign.robots
+    campaign = replace(campaign, robots={name: campaign.robots[name] for name in tested})
+    words = [*words, *_given(arguments, "strategy", "spec", "timeout")]
+    conducted = conduct(campaign, strategies, arguments, words)
+    show(campaign, conducted, getattr(arguments, "format", "text"))
+    is_fine = held(campaign, conducted.judged(strict=arguments.strict), arguments)
+    return INTERRUPTED if conducted.interrupted else int(not is_fine)
+
+
+def _as_asked(campaign: Campaign, arguments: argparse.Namespace) -> Campaign:
+    """The campaign as the options change it; wrong ones are refused before anything is played."""
+    from rvmon.cdv.gate import refuse_unknown
+
+    refuse_unknown(campaign)
     if arguments.junit is not None:
         refuse_no_file(arguments.junit)
-    campaign = judged_by(arguments.campaign, arguments.spec)
-    robots = names_of(arguments.robot, tuple(campaign.robots), "robot")
-    campaign = replace(campaign, robots={name: campaign.robots[name] for name in robots})
     if arguments.timeout is not None:
         campaign = replace(campaign, timeout_s=arguments.timeout)
-    strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    words: list[object] = ["run"]
-    for option in ("strategy", "robot", "spec", "timeout"):
-        value = getattr(arguments, option)
-        words += [] if value is None else [f"--{option}", value]
-    conducted = conduct(campaign, strategies, arguments, words)
-    show(campaign, conducted, arguments.format)
-    judgement = conducted.judged(strict=arguments.strict)
-    cut_short = conducted.summary.cut_short
-    if arguments.junit is not None:
-        write_file(arguments.junit, junit_xml(campaign.name, judgement, cut_short))
-    for what in judgement.wrong:
-        warn(f"not as expected: {what}")
-    return INTERRUPTED if conducted.interrupted else int(bool(judgement.wrong))
+    return judged_by(campaign, getattr(arguments, "spec", None))
+
+
+def _given(arguments: argparse.Namespace, *options: str) -> list[object]:
+    """Those options that were given, as words of a command."""
+    values = ((option, getattr(arguments, option, None)) for option in options)
+    return [word for name, value in values if value is not None for word in (f"--{name}", value)]
 
 
 def _close(arguments: argparse.Namespace) -> int:
-    from rvmon.cdv.gate import refuse_unknown
-
-    refuse_unknown(arguments.campaign)
-    campaign = judged_by(arguments.campaign, arguments.spec)
-    robot = one_of(arguments.robot, tuple(campaign.robots), "robot")
-    if arguments.timeout is not None:
-        campaign = replace(campaign, timeout_s=arguments.timeout)
-    words: list[object] = ["close"]
-    for option in ("robot", "spec", "timeout"):
-        value = getattr(arguments, option)
-        words += [] if value is None else [f"--{option}", value]
-    return close_holes(campaign, robot, arguments, words)
+    robot = one_of(arguments.robot, tuple(arguments.campaign.robots), "robot")
+    return close_holes(arguments.campaign, robot, arguments, ["close", *_given(arguments, "robot")])
 
 
 def close_holes(
@@ -342,20 +223,23 @@ def close_holes(
         campaign: what it is about.
         robot: of its robots the one that is tested.
         arguments: those of `add_closing_options`, and `strategy`.
-        words: the command that does it again, and its options but those and `--strategy`.
+        words: the command that does it again, and its options but those.
     """
     from rvmon.cdv.execute import INTERRUPTED as BY_HAND
     from rvmon.cli.campaign_close import conduct_closing
+    from rvmon.cli.campaign_gate import held
+
+    campaign = _as_asked(campaign, arguments)
+    words = [*words, *_given(arguments, "spec", "timeout")]
 
     strategies: Sequence[str] = ()
     if arguments.strategy is not None:
         strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
-    closed, wrong = conduct_closing(campaign, robot, strategies, arguments, words)
-    for what in wrong:
-        warn(f"not as expected: {what}")
+    closed, judgement = conduct_closing(campaign, robot, strategies, arguments, words)
+    is_fine = held(campaign, judgement, arguments)
     if closed.ended == BY_HAND:
         return INTERRUPTED
-    return int(bool(closed.open or closed.wrong or wrong))
+    return int(bool(closed.open or closed.wrong) or not is_fine)
 
 
 def _replay(arguments: argparse.Namespace) -> int:

@@ -13,9 +13,11 @@ import msgspec
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_files import TESTS, TEXT_COLUMNS, dated_files, left_over
 from rvmon.cdv.close import Budget, Closed, close
+from rvmon.cdv.close.close import MARGIN
 from rvmon.cdv.close.document import closed_document
 from rvmon.cdv.close.text import print_closed
 from rvmon.cdv.documents import to_json
+from rvmon.cdv.gate import CampaignJudgement
 from rvmon.cdv.outcome import Results
 from rvmon.cdv.plan import Plan
 from rvmon.cdv.program import typed
@@ -33,7 +35,7 @@ def conduct_closing(
     strategies: Sequence[str],
     arguments: Namespace,
     words: Sequence[object],
-) -> tuple[Closed, Sequence[str]]:
+) -> tuple[Closed, CampaignJudgement]:
     """Close holes, show what came of it, write the suite.
 
     Args:
@@ -44,7 +46,7 @@ def conduct_closing(
         words: the command that does it again, and its other options.
 
     Returns:
-        What came of it, and what of the suite was not as expected.
+        What came of it, and how the suite stands against what was expected.
     """
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     folder = made(arguments.out) if arguments.out else None
@@ -56,12 +58,15 @@ def conduct_closing(
             robot,
             seed=arguments.seed,
             strategies=strategies,
+            margin=arguments.margin,
             budget=Budget(arguments.tests, arguments.seconds),
             jobs=arguments.dask or arguments.jobs,
             progress=lambda met, goals: show(met / goals),
         )
     amount: list[object] = ["--tests", arguments.tests, "--seed", arguments.seed]
     amount += ["--strategy", ",".join(strategies)] if strategies else []
+    if arguments.margin != MARGIN:
+        amount += ["--margin", arguments.margin]
     if arguments.seconds is not None:
         amount += ["--seconds", arguments.seconds]
     command, *others = words
@@ -79,7 +84,7 @@ def conduct_closing(
         if folder is not None:
             replayed = typed(campaign.program, ["run", *others, "--suite", folder / TESTS])
             say(f"Play the suite again: {replayed}")
-    return closed, conducted.judged(strict=False).wrong
+    return closed, conducted.judged(strict=False)
 
 
 def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:
@@ -87,7 +92,7 @@ def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:
     tests = [one.job.test for one in closed.suite]
     plan = Plan(campaign, seed, {test.strategy: tests for test in tests})
     seconds = sum(one.outcome.seconds for one in closed.suite)
-    return Results(plan, tuple(closed.suite), seconds, "", closed.groups, closed.reasons)
+    return Results(plan, tuple(closed.suite), seconds, "", closed.groups, closed.proofs)
 
 
 def _text(closed: Closed) -> str:

@@ -224,7 +224,7 @@ def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
         say_json(to_json(campaign.presentation.document(summary)).decode().removesuffix("\n"))
         return
     console = Terminal() if sys.stdout.isatty() else Terminal(width=100)
-    print_summary(summary, conducted.tables, console)
+    print_summary(summary, conducted.tables, console, campaign.presentation.foremost)
     work = campaign.presentation.work(summary)
     console.print(f"{summary.finished} tests in {summary.seconds:.1f} s: {work}.")
     if summary.cut_short:

@@ -32,7 +32,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("databases", metavar="DB", nargs="+", help="written by run --coverage")
     parser.add_argument("--campaign", metavar="NAME", help="show the tests of this one only")
-    parser.add_argument("--holes", action="store_true", help="list what is missing, and why")
+    parser.add_argument(
+        "--holes", action="store_true", help="list what is missing, and what cannot be hit, and why"
+    )
     parser.add_argument(
         "--bins",
         metavar="[=GROUP]",
@@ -52,6 +54,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add_format(parser)
     parser.add_argument("--report", metavar="FILE", help="write a page to look at")
+    parser.add_argument("--ucis", metavar="FILE", help="write it as UCIS XML, for other tools")
     parser.add_argument(
         "--merge", metavar="OUT", help="write all that the databases hold into this one"
     )
@@ -59,13 +62,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--require",
         metavar="PERCENT",
         type=percentage,
-        help="exit with 1 if less is covered, or something illegal was hit",
+        help="exit with 1 if less is covered, or something was hit that is illegal, or called "
+        "unreachable",
     )
     parser.add_argument(
         "--strict",
         action="store_true",
-        help="exit with 1 if something illegal was hit, a test failed or did not complete, or "
-        "--compare shows a loss",
+        help="exit with 1 if something was hit that is illegal, or called unreachable, a test "
+        "failed or did not complete, or --compare shows a loss",
     )
     add_max_memory(parser)
 
@@ -86,7 +90,14 @@ def run(arguments: argparse.Namespace) -> int:
     summary = Summary(name, coverage, earlier, arguments.compare or "")
     groups = _groups(coverage, arguments.bins)
     if arguments.report is not None:
-        _write_page(summary, arguments.report)
+        from rvmon.report.coverage_page import coverage_page
+
+        _write(arguments.report, coverage_page(summary))
+    if arguments.ucis is not None:
+        from rvmon import __version__
+        from rvmon.report.coverage_ucis import coverage_ucis
+
+        _write(arguments.ucis, coverage_ucis(summary, __version__))
     if arguments.format == "json":
         import msgspec
 
@@ -156,12 +167,11 @@ def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Gro
         print_tests(summary, console)
 
 
-def _write_page(summary: Summary, path: str) -> None:
-    from rvmon.report.coverage_page import coverage_page
+def _write(path: str, text: str) -> None:
     from rvmon.writing import write_whole
 
     try:
-        write_whole(path, coverage_page(summary))
+        write_whole(path, text)
     except OSError as error:
         raise RvmonError(
             f"cannot write {path}: {error.strerror or error}: name a file in a folder that is there"
@@ -170,7 +180,8 @@ def _write_page(summary: Summary, path: str) -> None:
 
 def _code(summary: Summary, arguments: argparse.Namespace) -> int:
     """1 if what was asked for is not reached."""
-    wrong = (arguments.strict or arguments.require is not None) and bool(summary.illegal)
+    is_held = arguments.strict or arguments.require is not None
+    wrong = is_held and bool(summary.illegal or summary.contradicted)
     if arguments.require is not None:
         wrong |= summary.is_void or summary.share < arguments.require
         if summary.is_void:

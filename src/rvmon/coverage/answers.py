@@ -20,12 +20,14 @@ class Goals:
     Attributes:
         goal: hits that it needs.
         wanted: whether it is to be hit, so that it counts.
+        unreachable: whether it would be, if it could be hit.
         illegal: whether a hit is an error.
         group: the place of its group in the model.
     """
 
     goal: NDArray[np.int64]
     wanted: NDArray[np.bool_]
+    unreachable: NDArray[np.bool_]
     illegal: NDArray[np.bool_]
     group: NDArray[np.int64]
 

@@ -20,6 +20,7 @@ from rvmon.spec.checked.formula import Formula
 from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.checked.tense import is_pulse
+from rvmon.spec.print.printer import format_formula
 
 
 class Bins:
@@ -95,7 +96,10 @@ def bin_groups(spec: CheckedSpec) -> Iterator[Group]:
 
 
 def _of_point(point: Coverpoint) -> Group:
-    items = {bin_.name: Item(bin_.name, bin_.kind, point.goal) for bin_ in point.bins}
+    items = {
+        bin_.name: Item(bin_.name, bin_.kind, point.goal, format_formula(bin_.formula))
+        for bin_ in point.bins
+    }
     return Group(point.name, Subject.COVERPOINT, items, point.weight)
 
 

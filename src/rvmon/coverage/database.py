@@ -99,13 +99,23 @@ class Database:
             write_entries(self._tables, [entry], self._items.ids)
 
     def explain(self, group: str, item: str, reason: str) -> None:
-        """Add why an item is not covered, such as that it cannot be; holes are shown with it.
+        """Add why an item is not covered; holes are shown with it.
 
         Raises:
             CoverageError: there is no such item, or the file cannot be written.
         """
         with transaction(self._tables, self._path):
             self._explain(_Items(self._stored()), {(group, item): [reason]})
+
+    def exclude(self, group: str, item: str, reason: str) -> None:
+        """Say that an item cannot be hit, and why: it is no goal any more, and a hit is an error.
+
+        Raises:
+            CoverageError: there is no such item, or the file cannot be written.
+        """
+        with transaction(self._tables, self._path):
+            items = _Items(self._stored())
+            self._explain(items, {(group, item): [reason]}, "unreachable")
 
     def merge(self, other: Database) -> None:
         """Add all that another database holds.
@@ -124,6 +134,7 @@ class Database:
             ids = np.array([own.ids[own.places[item]] for item in coverage.items], np.int64)
             write_entries(self._tables, coverage.entries, ids)
             self._explain(own, coverage.reasons)
+            self._explain(own, coverage.unreachable, "unreachable")
 
     def coverage(self) -> Coverage:
         """All that it holds.
@@ -140,21 +151,32 @@ class Database:
             items = _Items(stored)
             names = list(items.places)
             named = dict(zip(items.ids.tolist(), names, strict=True))
-            reasons: dict[tuple[str, str], list[str]] = {}
-            for item, reason in self._tables.execute(
-                "SELECT item, reason FROM reasons ORDER BY item, reason"
-            ):
-                if item not in named:
-                    raise damaged(self._path, "a reason stands at no item")
-                reasons.setdefault(named[item], []).append(str(reason))
+            reasons = self._reasons(named, "reasons")
+            unreachable = self._reasons(named, "unreachable")
             entries = read_entries(self._tables, self._path, items.ids)
-        return stored, Coverage(model_from(stored), names, entries, reasons)
+        return stored, Coverage(model_from(stored), names, entries, reasons, unreachable)
+
+    def _reasons(
+        self, named: Mapping[int, tuple[str, str]], table: str
+    ) -> dict[tuple[str, str], list[str]]:
+        found: dict[tuple[str, str], list[str]] = {}
+        words = f"SELECT item, reason FROM {table} ORDER BY item, reason"  # noqa: S608 - our words
+        for item, reason in self._tables.execute(words):
+            if item not in named:
+                raise damaged(self._path, "a reason stands at no item")
+            found.setdefault(named[item], []).append(str(reason))
+        return found
 
     def _stored(self) -> Stored:
         with readable_errors(self._path):
             return read_groups(self._tables, self._path)
 
-    def _explain(self, items: _Items, reasons: Mapping[tuple[str, str], Iterable[str]]) -> None:
+    def _explain(
+        self,
+        items: _Items,
+        reasons: Mapping[tuple[str, str], Iterable[str]],
+        table: str = "reasons",
+    ) -> None:
         for (group, item), texts in reasons.items():
             if (group, item) not in items.places:
                 raise CoverageError(
@@ -163,7 +185,7 @@ class Database:
                 )
             number = int(items.ids[items.places[group, item]])
             self._tables.executemany(
-                "INSERT OR IGNORE INTO reasons (item, reason) VALUES (?, ?)",
+                f"INSERT OR IGNORE INTO {table} (item, reason) VALUES (?, ?)",  # noqa: S608
                 ((number, reason) for reason in texts),
             )
 

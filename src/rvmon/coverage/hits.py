@@ -76,25 +76,35 @@ def score(hits: Hits, group: Group) -> Score:
 
 
 def share(hits: Hits, model: Model) -> float:
-    """The share of a model that is covered: the mean of its groups by their weights.
+    """The share of a model that is covered: each subject counts alike, in it groups by weight.
 
     Returns:
         From 0 to 1, which stand for none and all alone; 1 if nothing is wanted.
     """
-    return weighted((group.weight, score(hits, group)) for group in model.groups.values())
+    return weighted((group, score(hits, group)) for group in model.groups.values())
 
 
-def weighted(scores: Iterable[tuple[int, Score]]) -> float:
-    """The mean of scores by their weights, rounded once; one without items counts for nothing.
+def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
+    """The mean over subjects of the means of their groups by weights, rounded once.
 
-    >>> weighted([(1, Score(4, 3)), (2, Score(2, 2)), (5, Score(0, 0))])
-    0.9166666666666666
+    So a whole cross counts, however many requirements stand beside it. What has no items, or no
+    weight, counts for nothing.
+
+    >>> from rvmon.coverage.model import Subject
+    >>> rest = [(Group(f"R{place}", Subject.REQUIREMENT, {}), Score(4, 4)) for place in range(99)]
+    >>> weighted([*rest, (Group("situation", Subject.CROSS, {}), Score(8, 0))])
+    0.5
     """
-    wanted = [(weight, one) for weight, one in scores if one.items]
-    whole = sum(weight for weight, _ in wanted)
-    if not whole:
-        return 1.0
-    return float(sum(Fraction(weight * one.covered, one.items) for weight, one in wanted) / whole)
+    subjects: dict[str, list[tuple[int, Score]]] = {}
+    for group, one in scores:
+        if one.items and group.weight:
+            subjects.setdefault(group.subject, []).append((group.weight, one))
+    means = [
+        sum(Fraction(weight * one.covered, one.items) for weight, one in own)
+        / sum(weight for weight, _ in own)
+        for own in subjects.values()
+    ]
+    return float(sum(means) / len(means)) if means else 1.0
 
 
 def illegal(hits: Hits, model: Model) -> list[tuple[Group, Item, Hit]]:

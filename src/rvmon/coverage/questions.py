@@ -21,9 +21,12 @@ def goals_of(coverage: Coverage) -> Goals:
     """What is wanted of each item."""
     groups = list(coverage.model.groups.values())
     items = [item for group in groups for item in group.items.values()]
+    has_goal = np.array([item.kind is BinKind.GOAL for item in items], np.bool_)
+    out = np.array([names in coverage.unreachable for names in coverage.items], np.bool_)
     return Goals(
         np.array([item.goal for item in items], np.int64),
-        np.array([item.kind is BinKind.GOAL for item in items], np.bool_),
+        has_goal & ~out,
+        has_goal & out,
         np.array([item.kind is BinKind.ILLEGAL for item in items], np.bool_),
         np.repeat(np.arange(len(groups)), [len(group.items) for group in groups]),
     )
@@ -51,9 +54,8 @@ def scores(coverage: Coverage, counts: NDArray[np.int64]) -> dict[str, Score]:
 
 
 def share_of(coverage: Coverage, scored: Mapping[str, Score]) -> float:
-    """The share of the model that is covered, from 0 to 1: the groups by their weights."""
-    groups = coverage.model.groups
-    return weighted((groups[name].weight, score) for name, score in scored.items())
+    """The share of the model that is covered, from 0 to 1, as `hits.share` has it."""
+    return weighted((coverage.model.groups[name], score) for name, score in scored.items())
 
 
 def holes(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
@@ -65,6 +67,11 @@ def holes(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
 def illegal_hits(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
     """The items that were hit and must not be."""
     return np.flatnonzero(goals_of(coverage).illegal & (counts > 0)).tolist()
+
+
+def contradicted(coverage: Coverage, counts: NDArray[np.int64]) -> list[int]:
+    """The items that were hit and cannot be, as it is said."""
+    return np.flatnonzero(goals_of(coverage).unreachable & (counts > 0)).tolist()
 
 
 def growth(coverage: Coverage, order: Sequence[int] | None = None) -> list[Step]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import heapq
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rvmon.coverage.answers import Step
 from rvmon.coverage.questions import goals_of, growth, totals
@@ -213,6 +215,15 @@ def fewest(coverage: Coverage) -> Smallest:
     return smallest(rows, {item: int(goals.goal[item]) for item in reached.tolist()})
 
 
+def _weights(coverage: Coverage, items: NDArray[np.int64]) -> list[float]:
+    """The weight of each group in the total: its part of its subject, which all count alike."""
+    groups = [*coverage.model.groups.values()]
+    whole: Counter[str] = Counter()
+    for group, count in zip(groups, items, strict=True):
+        whole[group.subject] += group.weight if count else 0
+    return [group.weight / max(1, whole[group.subject]) for group in groups]
+
+
 def ranking(coverage: Coverage, places: Collection[int] | None = None) -> list[Step]:
     """Tests that reach the coverage of all, the one that adds most first.
 
@@ -231,7 +242,7 @@ def ranking(coverage: Coverage, places: Collection[int] | None = None) -> list[S
     goals = goals_of(coverage)
     reached = goals.wanted & (totals(coverage).counts >= goals.goal)
     items = np.bincount(goals.group[goals.wanted], minlength=len(coverage.model.groups))
-    weights = np.array([group.weight for group in coverage.model.groups.values()], np.int64)
+    weights = np.array(_weights(coverage, items))
     worth = np.where(reached, weights[goals.group] / np.maximum(items[goals.group], 1), 0.0)
     worth /= np.maximum(goals.goal, 1)
     left = np.where(reached, goals.goal, 0)

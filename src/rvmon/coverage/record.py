@@ -118,9 +118,11 @@ class Coverage:
         items: names of group and item, in the order of the model.
         entries: the tests, in the order of their campaigns.
         reasons: why an item is not covered, by group and item, in words.
+        unreachable: why an item cannot be hit, likewise; it is no goal, and a hit is an error.
     """
 
     model: Model
     items: Sequence[tuple[str, str]]
     entries: Sequence[Entry]
     reasons: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)
+    unreachable: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)

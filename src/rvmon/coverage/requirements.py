@@ -65,10 +65,10 @@ MOST_LOCATIONS = 50
 """Larger automata are not shown: nobody would look at what of them was seen."""
 
 
-def _item(name: str, *, by_failure: bool = False) -> Item:
+def _item(name: str, text: str = "", *, by_failure: bool = False) -> Item:
     """An item; no run should show what only a failure does, so that has no goal."""
     fails = by_failure or name in (AFTER, FAILURE) or name.endswith(edge_name(("", FAILURE)))
-    return Item(name, BinKind.IGNORE if fails else BinKind.GOAL)
+    return Item(name, BinKind.IGNORE if fails else BinKind.GOAL, text=text)
 
 
 def locations_of(name: str) -> str:
@@ -121,14 +121,20 @@ class WatchedRequirement:
         items += [_item(decides(one.part), by_failure=one.by_failure) for one in self.variants]
         if self.deadline is not None:
             items += map(_item, (JUST_BEFORE, AT, AFTER))
-        yield group_of(name, Subject.REQUIREMENT, items)
+        title = self.requirement.text
+        yield group_of(name, Subject.REQUIREMENT, items, title=title)
         if self.graph is not None:
-            edges = dict.fromkeys(map(edge_name, _steps(self.graph)))
+            edges: dict[str, list[str]] = {}
+            for one in self.graph.edges:
+                if one.source != one.target:
+                    upon = " at ".join(part for part in (one.condition, one.when) if part)
+                    edges.setdefault(edge_name((one.source, one.target)), []).append(upon)
             # What is owed for ever is met by the end of the run alone: no edge leads to `P`.
             entered = {self.graph.places[0].name, *(one.target for one in self.graph.edges)}
-            places = [place.name for place in self.graph.places if place.name in entered]
-            yield group_of(locations_of(name), Subject.STATES, [*map(_item, places)])
-            yield group_of(edges_of(name), Subject.TRANSITIONS, [*map(_item, edges)])
+            owed = [_item(one.name, one.owed) for one in self.graph.places if one.name in entered]
+            yield group_of(locations_of(name), Subject.STATES, owed, title=title)
+            steps = [_item(step, "; or ".join(upon)) for step, upon in edges.items()]
+            yield group_of(edges_of(name), Subject.TRANSITIONS, steps, title=title)
 
 
 def deadline_of(owed: Formula) -> int | None:

@@ -14,17 +14,19 @@ from rvmon.errors import CoverageError
 APPLICATION = 0x72766376
 """In the header of the file, so that it is known by what it is: "rvcv"."""
 
-VERSION = 2
+VERSION = 3
 """Of the tables; raised with each change of them."""
 
 TABLES = (
     "CREATE TABLE groups (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, "
     "subject TEXT NOT NULL, weight INTEGER NOT NULL, axes TEXT NOT NULL, "
-    "position INTEGER NOT NULL)",
+    "position INTEGER NOT NULL, title TEXT NOT NULL)",
     "CREATE TABLE items (id INTEGER PRIMARY KEY, owner INTEGER NOT NULL REFERENCES groups, "
     "name TEXT NOT NULL, kind TEXT NOT NULL, goal INTEGER NOT NULL, position INTEGER NOT NULL, "
-    "UNIQUE (owner, name))",
+    "text TEXT NOT NULL, UNIQUE (owner, name))",
     "CREATE TABLE reasons (item INTEGER NOT NULL REFERENCES items, reason TEXT NOT NULL, "
+    "PRIMARY KEY (item, reason)) WITHOUT ROWID",
+    "CREATE TABLE unreachable (item INTEGER NOT NULL REFERENCES items, reason TEXT NOT NULL, "
     "PRIMARY KEY (item, reason)) WITHOUT ROWID",
     "CREATE TABLE tests (id INTEGER PRIMARY KEY, digest TEXT NOT NULL UNIQUE, "
     "campaign TEXT NOT NULL, name TEXT NOT NULL, strategy TEXT NOT NULL, "

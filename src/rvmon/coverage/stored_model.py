@@ -22,6 +22,7 @@ class StoredItem:
     kind: BinKind
     goal: int
     position: int
+    text: str
     id: int = 0
 
 
@@ -37,6 +38,7 @@ class StoredGroup:
     weight: int
     position: int
     axes: Mapping[str, Mapping[str, int]]
+    title: str
     items: Mapping[str, StoredItem]
 
 
@@ -55,8 +57,9 @@ def stored_of(model: Model) -> Stored:
                 axis: {name: place for place, name in enumerate(bins)}
                 for axis, bins in group.axes.items()
             },
+            group.title,
             {
-                item.name: StoredItem(item.kind, item.goal, place)
+                item.name: StoredItem(item.kind, item.goal, place, item.text)
                 for place, item in enumerate(group.items.values())
             },
         )
@@ -70,13 +73,13 @@ def model_from(stored: Stored) -> Model:
     for name in sorted(stored, key=lambda name: (stored[name].position, name)):
         group = stored[name]
         items = {
-            item: Item(item, one.kind, one.goal)
+            item: Item(item, one.kind, one.goal, one.text)
             for item, one in sorted(
                 group.items.items(), key=lambda named: (named[1].position, named[0])
             )
         }
         axes = {axis: _in_order(bins) for axis, bins in group.axes.items()}
-        groups[name] = Group(name, group.subject, items, group.weight, axes)
+        groups[name] = Group(name, group.subject, items, group.weight, axes, group.title)
     return Model(groups)
 
 
@@ -88,10 +91,10 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
     """
     items: dict[int, dict[str, StoredItem]] = {}
     try:
-        for number, owner, name, kind, goal, position in database.execute(
-            "SELECT id, owner, name, kind, goal, position FROM items"
+        for number, owner, name, kind, goal, position, text in database.execute(
+            "SELECT id, owner, name, kind, goal, position, text FROM items"
         ):
-            one = StoredItem(BinKind(kind), int(goal), int(position), int(number))
+            one = StoredItem(BinKind(kind), int(goal), int(position), str(text), int(number))
             items.setdefault(owner, {})[str(name)] = one
         stored = {
             str(name): StoredGroup(
@@ -99,10 +102,11 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
                 int(weight),
                 int(position),
                 dict(msgspec.json.decode(axes, type=list[tuple[str, dict[str, int]]])),
+                str(title),
                 items.get(number, {}),
             )
-            for number, name, subject, weight, axes, position in database.execute(
-                "SELECT id, name, subject, weight, axes, position FROM groups"
+            for number, name, subject, weight, axes, position, title in database.execute(
+                "SELECT id, name, subject, weight, axes, position, title FROM groups"
             )
         }
         for name, group in stored.items():
@@ -138,21 +142,27 @@ def write_groups(
         own = known.get(name)
         axes = _united(own.axes, group.axes) if own is not None else group.axes
         (number,) = database.execute(
-            "INSERT INTO groups (name, subject, weight, axes, position) VALUES (?, ?, ?, ?, ?) "
-            "ON CONFLICT (name) DO UPDATE SET axes = excluded.axes, "
-            "position = min(position, excluded.position) RETURNING id",
+            "INSERT INTO groups (name, subject, weight, axes, position, title) "
+            "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (name) DO UPDATE SET axes = excluded.axes, "
+            "position = min(position, excluded.position), title = max(title, excluded.title) "
+            "RETURNING id",
             (
                 name,
                 group.subject,
                 group.weight,
                 msgspec.json.encode(list(axes.items()), order="deterministic").decode(),
                 group.position,
+                group.title,
             ),
         ).fetchone()
         database.executemany(
-            "INSERT INTO items (owner, name, kind, goal, position) VALUES (?, ?, ?, ?, ?) "
-            "ON CONFLICT (owner, name) DO UPDATE SET position = min(position, excluded.position)",
-            ((number, item, one.kind, one.goal, one.position) for item, one in group.items.items()),
+            "INSERT INTO items (owner, name, kind, goal, position, text) "
+            "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (owner, name) DO UPDATE SET "
+            "position = min(position, excluded.position), text = max(text, excluded.text)",
+            (
+                (number, item, one.kind, one.goal, one.position, one.text)
+                for item, one in group.items.items()
+            ),
         )
 
 

@@ -98,7 +98,7 @@ def _list(summary: Summary, group: Group) -> ET.Element:
     rows = []
     for place, item in summary.places(group):
         tests = int(summary.totals.tests[place])
-        kind = "" if item.kind is BinKind.GOAL else f" ({item.kind})"
+        kind = summary.kind_text(place, item)
         rows.append(
             e(
                 "tr",
@@ -159,10 +159,10 @@ def _row_heads(axes: Sequence[Sequence[str]], number: int) -> list[Child]:
 
 
 def _cell(summary: Summary, place: int, item: Item, most: int) -> ET.Element:
-    count = int(summary.totals.counts[place])
-    text = cell_text(item.kind, item.goal, count)
+    kind, count = summary.kind(place, item), int(summary.totals.counts[place])
+    text = cell_text(kind, item.goal, count)
     style = None
-    match item.kind:
+    match kind:
         case BinKind.IGNORE:
             look = "ignored"
         case BinKind.ILLEGAL:

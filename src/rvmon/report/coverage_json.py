@@ -55,6 +55,7 @@ def _group(summary: Summary, name: str) -> dict[str, Any]:
     group, score = summary.coverage.model.groups[name], summary.scores[name]
     return {
         "name": name,
+        "title": group.title,
         "subject": group.subject,
         "weight": group.weight,
         "items": score.items,
@@ -63,12 +64,15 @@ def _group(summary: Summary, name: str) -> dict[str, Any]:
         "bins": [
             {
                 "name": item.name,
+                "text": item.text,
                 "kind": item.kind,
                 "goal": item.goal,
                 "hits": int(summary.totals.counts[place]),
                 "tests": int(summary.totals.tests[place]),
                 "first": _first(summary, place),
                 "reasons": summary.coverage.reasons.get((name, item.name), ()),
+                "hole": summary.hole_texts.get(place),
+                "unreachable": summary.coverage.unreachable.get((name, item.name), ()),
             }
             for place, item in summary.places(group)
         ],

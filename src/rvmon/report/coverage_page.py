@@ -113,8 +113,9 @@ def coverage_page(summary: Summary) -> str:
         _known(summary),
         _overview(summary),
         _comparison(summary),
-        _verdicts(summary),
         _holes(summary),
+        _unreachable(summary),
+        _verdicts(summary),
         _growth(summary),
         *groups_sections(summary),
         tests_section(summary, listed),
@@ -141,12 +142,15 @@ def _header(summary: Summary) -> ET.Element:
 def _wrong(summary: Summary) -> ET.Element | None:
     """Illegal hits, then tests that failed or did not complete."""
     parts: list[Child] = []
-    if summary.illegal:
-        lines = [
+    for heading, places in (
+        ("Illegal hits", summary.illegal),
+        ("Hit, and said to be unreachable", summary.contradicted),
+    ):
+        hits = [
             e("li", None, item_link(summary, place), f" {summary.hit_text(place)}")
-            for place in summary.illegal
+            for place in places
         ]
-        parts += [e("h3", None, "Illegal hits"), *_list(lines)]
+        parts += [e("h3", None, heading), *_list(hits)] if hits else []
     if summary.not_fine:
         lines = [_fault(summary, fault, places) for fault, places in summary.faults.items()]
         parts += [e("h3", None, "Tests that failed or did not complete"), *_list(lines)]
@@ -290,9 +294,26 @@ def _holes(summary: Summary) -> ET.Element | None:
                 item_link(summary, place),
                 e("span", {"class": "soft"}, f" {of}"),
                 *(with_code(f": {why}") if why else ()),
+                e("br"),
+                e("small", None, *with_code(str(summary.hole_texts[place]))),
             )
         )
     return e("section", None, e("h2", None, "Holes ", _count(lines)), *_list(lines))
+
+
+def _unreachable(summary: Summary) -> ET.Element | None:
+    """What is no goal, as it cannot be hit: by the reasons."""
+    if not summary.unreachable:
+        return None
+    lines = []
+    for reason, places in summary.unreachable.items():
+        names: list[Child] = []
+        for place in places:
+            names += [", " if names else ": ", item_link(summary, place)]
+        lines.append(e("li", None, *with_code(reason), *names))
+    count = e("small", None, f"{sum(map(len, summary.unreachable.values())):,}")
+    heading = e("summary", None, e("h2", None, "No goals, as they cannot be hit ", count))
+    return e("section", None, e("details", None, heading, *_list(lines)))
 
 
 def _growth(summary: Summary) -> ET.Element | None:

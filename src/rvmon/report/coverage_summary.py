@@ -7,13 +7,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from math import prod
 
+import numpy as np
+
 from rvmon.coverage.answers import Comparison, Goals, Step, Totals
-from rvmon.coverage.hits import Score
+from rvmon.coverage.hits import Hit, Hits, Score
+from rvmon.coverage.holes import Hole, hole_of
 from rvmon.coverage.model import Group, Item
+from rvmon.coverage.nearest import nearest_tests
 from rvmon.coverage.questions import (
     by_strategy,
     campaigns,
     compare,
+    contradicted,
     goals_of,
     growth,
     hitters,
@@ -86,9 +91,62 @@ class Summary:
         return holes(self.coverage, self.totals.counts)
 
     @cached_property
+    def hole_texts(self) -> Mapping[int, Hole]:
+        """Each hole in words."""
+        model, items = self.coverage.model, self.coverage.items
+        hits: dict[str, dict[str, Hit]] = {}
+        for place in np.flatnonzero(self.totals.counts).tolist():
+            group, item = items[place]
+            hits.setdefault(group, {})[item] = Hit(int(self.totals.counts[place]))
+        nearest = nearest_tests([items[place] for place in self.holes], self._hits, model)
+        return {
+            place: hole_of(items[place], model, hits, nearest.get(items[place], ""))
+            for place in self.holes
+        }
+
+    @property
+    def _hits(self) -> list[tuple[str, Hits]]:
+        """What each test has hit; of tests that have hit the same, the first."""
+        found: dict[bytes, tuple[str, Hits]] = {}
+        for entry in self.coverage.entries:
+            key = entry.row.items.tobytes()
+            if key not in found:
+                hits: dict[str, dict[str, Hit]] = {}
+                row = zip(entry.row.items.tolist(), entry.row.counts.tolist(), strict=True)
+                for place, count in row:
+                    group, item = self.coverage.items[place]
+                    hits.setdefault(group, {})[item] = Hit(count)
+                found[key] = entry.record.name, hits
+        return [*found.values()]
+
+    @cached_property
     def illegal(self) -> Sequence[int]:
         """Items that were hit and must not be."""
         return illegal_hits(self.coverage, self.totals.counts)
+
+    @cached_property
+    def contradicted(self) -> Sequence[int]:
+        """Items that were hit and cannot be, as it was said."""
+        return contradicted(self.coverage, self.totals.counts)
+
+    @cached_property
+    def unreachable(self) -> Mapping[str, Sequence[int]]:
+        """Items that cannot be hit, by the reasons."""
+        found: dict[str, list[int]] = {}
+        for place in np.flatnonzero(self.goals.unreachable).tolist():
+            reasons = self.coverage.unreachable[self.coverage.items[place]]
+            found.setdefault("; ".join(reasons), []).append(place)
+        return found
+
+    def kind(self, place: int, item: Item) -> BinKind:
+        """What a hit of an item means; what cannot be hit counts for nothing."""
+        return BinKind.IGNORE if self.goals.unreachable[place] else item.kind
+
+    def kind_text(self, place: int, item: Item) -> str:
+        """Why an item is no goal, in brackets; empty if it is one."""
+        if self.goals.unreachable[place]:
+            return " (cannot be hit)"
+        return "" if item.kind is BinKind.GOAL else f" ({item.kind})"
 
     @cached_property
     def steps(self) -> Sequence[Step]:
@@ -179,7 +237,9 @@ class Summary:
         """Tests by strategy, requirement and verdict."""
         counts: dict[str, dict[str, Counter[Verdict]]] = {}
         tests: Counter[str] = Counter()
-        names: dict[str, str] = {}
+        # What the model knows stands in its order, as in the specification.
+        judged = {name for entry in self.coverage.entries for name in entry.record.verdicts}
+        names = {name: "" for name in self.coverage.model.groups if name in judged}
         for entry in self.coverage.entries:
             strategy = strategy_name(entry.record.strategy)
             tests[strategy] += 1

@@ -40,19 +40,19 @@ def print_overview(summary: Summary, console: Console) -> None:
 
     from rvmon.report.table import table_text
 
-    heading = Text.assemble((summary.name, "bold"), f"  {summary.tests_text()}")
-    console.print(heading, soft_wrap=True)
+    first = Text.assemble((summary.name, "bold"), f"  {summary.tests_text()}")
+    console.print(first, soft_wrap=True)
     console.print(_groups(summary, console))
     table = summary.verdicts()
     if table.requirements:
         console.print(table_text(table))
         console.print()
-    _print_list(
-        console,
-        "illegal hits:",
-        [f"{summary.item_name(place)}  {summary.hit_text(place)}" for place in summary.illegal],
-        style="bold red",
-    )
+    for heading, places in (
+        ("illegal hits:", summary.illegal),
+        ("hit, and said to be unreachable:", summary.contradicted),
+    ):
+        hits = [f"{summary.item_name(place)}  {summary.hit_text(place)}" for place in places]
+        _print_list(console, heading, hits, style="bold red")
     faults = [
         f"{fault}  {counted(len(places), 'test')}: "
         + _first_of([summary.record(place).name for place in places])
@@ -64,17 +64,21 @@ def print_overview(summary: Summary, console: Console) -> None:
 
 
 def print_holes(summary: Summary, console: Console) -> None:
-    """Print what was hit too rarely, with reasons where there are some."""
-    if not summary.holes:
-        console.print("no holes")
-        return
-    console.print(f"{counted(len(summary.holes), 'hole')}:", style="bold")
+    """Print what was hit too rarely, and what cannot be hit, with reasons where there are some."""
+    holes = counted(len(summary.holes), "hole")
+    console.print(f"{holes}:" if summary.holes else "no holes", style="bold")
     for place in summary.holes:
         item = summary.coverage.items[place]
         count, goal = int(summary.totals.counts[place]), int(summary.goals.goal[place])
         line = f"{name_of(item)}  {count:,} of {counted(goal, 'hit')}"
         why = "; ".join(summary.coverage.reasons.get(item, ()))
         console.print(wrapped(f"{line}: {why}" if why else line, console.width))
+        console.print(wrapped(f"  {summary.hole_texts[place]}", console.width), style="dim")
+    if summary.unreachable:
+        console.print("no goals, as they cannot be hit:", style="bold")
+    for reason, places in summary.unreachable.items():
+        names = ", ".join(map(summary.item_name, places))
+        console.print(wrapped(f"{reason}: {names}", console.width))
 
 
 def print_bins(summary: Summary, groups: Sequence[Group], console: Console) -> None:
@@ -212,15 +216,15 @@ def _cell(summary: Summary, group: Group, place: int) -> Text:
     from rich.text import Text
 
     item = group.items[summary.coverage.items[place][1]]
-    count = int(summary.totals.counts[place])
-    match item.kind:
+    kind, count = summary.kind(place, item), int(summary.totals.counts[place])
+    match kind:
         case BinKind.IGNORE:
             style = "dim"
         case BinKind.ILLEGAL:
             style = "bold red" if count else "dim"
         case BinKind.GOAL:
             style = "green" if count >= item.goal else "bold yellow"
-    return Text(cell_text(item.kind, item.goal, count), style=style)
+    return Text(cell_text(kind, item.goal, count), style=style)
 
 
 def _bins(summary: Summary, group: Group) -> Table:
@@ -235,9 +239,8 @@ def _bins(summary: Summary, group: Group) -> Table:
     table.add_column("first")
     for place, item in summary.places(group):
         tests = int(summary.totals.tests[place])
-        name = item.name if item.kind is BinKind.GOAL else f"{item.name} ({item.kind})"
         table.add_row(
-            Text(name),
+            Text(f"{item.name}{summary.kind_text(place, item)}"),
             _cell(summary, group, place),
             f"{tests:,}" if tests else "",
             summary.first_text(place),

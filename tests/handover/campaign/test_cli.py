@@ -20,6 +20,7 @@ from handover.campaign.spread import spread, spread_text
 from handover.checker import spec_path
 from handover.cli import main
 from handover.generator.files import directed
+from handover.robot import behaviour
 from rvmon.cdv.execute import execute
 from rvmon.cdv.files import save
 from rvmon.cdv.plan import plan
@@ -74,11 +75,28 @@ def test_the_demo_leaves_all_its_files(demo):
     robots = {"correct", "legacy"}
     assert names == {*tables, *robots, "coverage.json", "report.html", "tests", "runs", "templates"}
     for robot in robots:
-        assert {path.name for path in (demo / robot).iterdir()} == {"coverage.db", "coverage.html"}
+        covered = {"coverage.db", "coverage.html", "code.lcov", "cobertura.xml"}
+        assert {path.name for path in (demo / robot).iterdir()} == covered
     columns = json.loads((demo / "table.json").read_text())["robots"]["correct"]["strategies"]
     assert {path.name for path in (demo / "templates").iterdir()} <= columns.keys()
     assert "likeliest by the model's weights" in " ".join((demo / "table.txt").read_text().split())
     assert "constrained-002" in {path.stem for path in (demo / "tests").iterdir()}
+
+
+def test_the_terminal_fits_two_screens(capsys):
+    """The paper's requirements, and of the others those that nobody knew to fail; Table 1 last."""
+    words = ["demo", "--tests", "2", "--jobs", "1"]
+    assert main(words) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 90
+    rows = [line.split()[0] for line in lines if re.match(r"[RT]\d+ .*\d", line)]
+    assert {"R1", "R5"} == {"R1", "R5"} & set(rows)
+    assert not [row for row in rows if row.startswith("T")]
+    heads = [line for line in lines if "checked against" in line]
+    assert [line.split(",")[0] for line in heads] == [
+        "Correct robot",
+        "Robot of the paper's testbench",
+    ]
 
 
 def test_a_failing_test_is_shrunk(demo, tmp_path, capsys):
@@ -190,12 +208,39 @@ def test_a_replay_is_shown_by_foxglove(tmp_path):
     assert layout["layout"]["second"] == "3D!scene"
 
 
-def test_exit_codes_of_a_campaign(capsys):
-    """0 when it completed, 1 with --strict if a requirement was never triggered."""
-    few = ["run", "--tests", "2", "--jobs", "1", "--format", "json"]
+def test_a_campaign_says_why_it_is_not_as_expected(tmp_path, capsys):
+    """Exit 1 with the reason, also as JUnit: two tests do not trigger what they should."""
+    junit = tmp_path / "junit.xml"
+    few = ["run", "--strategy", "pseudorandom", "--tests", "2", "--jobs", "1", "--format", "json"]
+    few += ["--junit", str(junit)]
     assert main(few) == 0
-    assert json.loads(capsys.readouterr().out)["robots"]["correct"]["strategies"]
+    shown = capsys.readouterr()
+    assert json.loads(shown.out)["robots"]["correct"]["strategies"]
+    assert not shown.err
+    assert "<failure" not in junit.read_text()
     assert main([*few, "--strict"]) == 1
+    lines = capsys.readouterr().err.splitlines()
+    told = "R3 is triggered (pseudorandom, correct): none of 2 tests passed or failed it"
+    assert f"not as expected: {told}" in lines
+    assert told.partition(":")[0] in junit.read_text()
+
+
+@pytest.mark.parametrize("robot", [[], ["--legacy"]])
+def test_the_unmodified_robot_passes_its_gates(robot, capsys):
+    """Of what people have written and of what the model says, whatever the seed."""
+    strategies = "directed,model-based,model-based-shortest,model-based-fastest"
+    assert main(["run", "--strict", "--strategy", strategies, "--seed", "5", *robot]) == 0
+    assert not capsys.readouterr().err
+
+
+def test_a_fault_in_the_robot_is_told(capsys, monkeypatch):
+    """The same command on a robot that decides too late: exit 1, without --strict."""
+    late = replace(behaviour.CORRECT, decide_s=0.2)
+    monkeypatch.setitem(behaviour.BEHAVIOURS, "correct", late)
+    assert main(["run", "--strategy", "model-based", "--jobs", "1"]) == 1
+    told = capsys.readouterr()
+    assert re.search(r"^T43 ", told.out, re.MULTILINE)
+    assert re.search(r"not as expected: model-based-R1 \(correct\): T43 ", told.err)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,8 @@ from tests.tools.shared_folder import shared_folder
 from handover.campaign.closing import UNREACHABLE, query_of
 from handover.cli import main
 from handover.model import handover_network
+from rvmon.cli import main as rvmon
+from rvmon.report.coverage_summary import share_text
 from rvmon.timed.language.elaborate import chosen_queries
 
 pytestmark = pytest.mark.campaign
@@ -39,6 +41,22 @@ def test_the_model_leads_to_all_outcomes_at_once(closed):
     assert "12 tests" in told
     assert document["ended"] == "after 12 tests"
     assert len(document["open"]) == document["goals"] - document["met"]
+
+
+def test_all_say_the_same_share(closed, capsys):
+    """What closing prints and keeps, its page, and what `cover` is held against."""
+    folder, _, told = closed
+    share = json.loads((folder / "closing.json").read_text())["share"]
+    words = f"{share_text(share)} covered"
+    assert f"{words}: " in told
+    assert f"<h1>{words}" in (folder / "coverage.html").read_text()
+    assert f">{words}</a>" in (folder / "report.html").read_text()
+    database = str(folder / "coverage.db")
+    below, above = (f"{100 * share + by}%" for by in (-0.01, 0.01))
+    assert rvmon(["cover", database, "--require", below]) == 0
+    assert rvmon(["cover", database, "--require", above]) == 1
+    assert "no goals, as they cannot be hit" in (folder / "coverage.html").read_text().lower()
+    capsys.readouterr()
 
 
 def test_what_the_model_excludes_is_proved_with_the_query(closed):

@@ -7,12 +7,14 @@ import pytest
 import rvmon
 from handover.checker import spec_path
 from handover.driver import run_test
+from handover.driver.play import begun
 from handover.generator.disturbed import disturbed
 from handover.generator.files import directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot import mutants
 from handover.robot.handover import END, HandoverRobot
+from handover.world.measures import contact_force
 from rvmon.cdv.checker import Checker
 
 pytestmark = pytest.mark.campaign
@@ -177,7 +179,7 @@ PLANTED = {
     "takes-any-signal": (other(readiness=EITHER), "activates-again", "T20"),
     "starts-at-any-signal": (other(activation=EITHER), "ready-first", "T18"),
     "checks-no-grip": (other(checks_grip=False), "piece-slips", "T13 T37"),
-    "minds-no-hand": (mutants.MindsNoHand, "hand-in-the-grip", "R5 T33 T39"),
+    "minds-no-hand": (mutants.MindsNoHand, "hand-in-the-grip", "R5 T33 T39 T58"),
     "resets-fast": (other(reset_s=0.9), "released", "T14"),
     "gives-no-time-to-take": (other(release_s=1.9), "released", "T31"),
     "says-released": (SaysReleased, "released", "T5 T6"),
@@ -207,9 +209,12 @@ PLANTED = {
 }
 """Fault, the directed test that meets it, and requirements of which each tells it."""
 
+FREE = {"hand_force": 0.0}
+CLAMPED = [(1, {"hand_force": 141.0}), (1.6, FREE)]
 BY_SAMPLES = {
-    "T15": [(0, {"hand_force": 0.0}), (1, {"hand_force": 281.0})],
-    "T16": [(0, {"hand_force": 0.0}), (1, {"hand_force": 141.0}), (1.6, {"hand_force": 0.0})],
+    "T15": [(0, {**FREE, "sensors_disturbed": False}), (1, {"hand_force": 281.0})],
+    "T16": [(0, {**FREE, "sensors_disturbed": False}), *CLAMPED],
+    "T59": [(0, {**FREE, "sensors_disturbed": True}), *CLAMPED],
     "T17": [
         (0, {"sensors_disturbed": False, "true_pressure": False, "true_location": True}),
         (0.5, {"true_gaze": True, "gaze_ok": True, "location_ok": True}),
@@ -233,6 +238,16 @@ def test_a_world_that_must_not_be_is_told(requirement):
     """Forces on the hand and sensors that lie without a cause fail their requirement."""
     report = SPEC.evaluate(BY_SAMPLES[requirement], end=3)
     assert report.verdicts[requirement] == "F"
+
+
+def test_a_clamped_hand_bears_what_one_finger_presses():
+    """Forces are of single bodies: two fingers that clamp it do not add up."""
+    world = begun(TESTS["hand-hidden-by-noise"]).world
+    world.run(17_200_000_000)
+    scene = world.scene
+    by_finger = [contact_force(scene.hand, finger) for finger in scene.fingers]
+    assert min(by_finger) > 140
+    assert world.human.hand_force() == max(by_finger) < sum(by_finger)
 
 
 def test_each_requirement_on_the_world_can_fail():

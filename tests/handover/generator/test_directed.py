@@ -12,6 +12,11 @@ from handover.generator.files import directed
 from rvmon.cdv.checker import Checker
 
 
+def test_each_says_which_situation_it_is_to_reach() -> None:
+    """In words of the coverage model, which the campaign looks for in its run."""
+    assert [test.name for test in directed() if not test.reaches] == []
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("test", directed(), ids=lambda test: test.name)
 def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:

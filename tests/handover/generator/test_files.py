@@ -111,13 +111,14 @@ def test_directed_tests_cover_every_verdict() -> None:
     tests = directed()
     assert len(tests) >= 10
     assert all(test.text and test.robot and not test.startup_loss for test in tests)
-    assert all(set(test.expected) == set(REQUIREMENTS) for test in tests)
+    assert all(set(test.expected) >= set(REQUIREMENTS) for test in tests)
     assert {test.mutation for test in tests} - {None} == set(MUTATIONS)
     covered = {
         (requirement, verdict)
         for test in tests
         if test.robot == "correct"
         for requirement, verdict in test.expected.items()
+        if requirement in REQUIREMENTS
     }
     everything = {(r, v) for r in REQUIREMENTS for v in ("P", "F", "NT", "I")}
     assert covered == everything - CANNOT_OCCUR

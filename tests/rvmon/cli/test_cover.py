@@ -11,6 +11,7 @@ from rvmon.cli import main
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
 from rvmon.coverage.record import TestRecord
+from rvmon.verdict.verdict import Verdict
 
 
 @pytest.fixture
@@ -47,7 +48,75 @@ def test_holes_stand_with_their_reasons(door, capsys):
     _, lines = shown(capsys, door, "--holes")
     at = lines.index("6 holes:")
     assert lines[at + 1] == "near: reach 0 of 1 hit"
-    assert lines[at + 2] == "near: far 0 of 1 hit: the arm is 1 m long: `far` begins at 1 m"
+    assert "near: far 0 of 1 hit: the arm is 1 m long: `far` begins at 1 m" in lines
+    told = " ".join(lines[at:])
+    assert (
+        "situation: no × far 0 of 1 hit at one instant gaze no, near far. No run has shown near "
+        "far; needs a run in which all of them meet. Nearest: wild-1." in told
+    )
+
+
+def test_requirements_stand_in_the_order_of_the_file(tmp_path, capsys):
+    """T10 behind T2, as the specification has them, whatever the records say."""
+    groups = [group_of(name, Subject.REQUIREMENT, [Item("passed")]) for name in ("T2", "T10")]
+    path = str(tmp_path / "a.cov")
+    with Database.open(path) as database:
+        database.declare(model_of(groups))
+        database.record(TestRecord("t", verdicts={"T10": Verdict.PASS, "T2": Verdict.FAIL}), {})
+    _, lines = shown(capsys, path)
+    verdicts = [line.split()[0] for line in lines if line.startswith("T") and "·" in line]
+    assert verdicts == ["T2", "T10"]
+
+
+def test_what_cannot_be_hit_stands_apart(door, capsys):
+    """It leaves the share and the holes, and has a list with its reason; a hit of it is wrong."""
+    with Database.open(door) as database:
+        database.exclude("near", "reach", "a fence is there")
+        database.exclude("near", "far", "a fence is there")
+        database.exclude("situation", "yes × reach", "a fence is there")
+    code, lines = shown(capsys, door, "--holes", "--strict")
+    assert code == 1
+    assert "4 holes:" not in lines
+    assert "near coverpoint 1 of 1 100 % ████████████████████" in lines
+    heading = lines.index("no goals, as they cannot be hit:")
+    told = "a fence is there: near: reach, near: far, situation: yes × reach"
+    assert lines[heading + 1] == told
+    assert main(["cover", door, "--require", "1%"]) == 1  # something illegal was hit
+    _, lines = shown(capsys, door, "--bins=near")
+    assert "reach (cannot be hit) –" in lines
+    with Database.open(door) as database:
+        database.exclude("gaze", "yes", "nobody looks")
+    _, lines = shown(capsys, door)
+    at = lines.index("hit, and said to be unreachable:")
+    assert lines[at + 1] == "gaze: yes 3 hits by 2 tests, first calm-1 at 1 s"
+
+
+def test_ucis_is_as_its_schema_has_it(door, tmp_path, capsys):
+    """The functional part: bins with hits, what is ignored and why, the tests."""
+    ucis = pytest.importorskip("ucis")
+    etree = pytest.importorskip("lxml.etree")
+    with Database.open(door) as database:
+        database.exclude("near", "reach", "a fence is there")
+    path = tmp_path / "door.xml"
+    assert main(["cover", door, "--ucis", str(path)]) == 0
+    schema = Path(ucis.__file__).parent / "xml" / "schema" / "ucis.xsd"
+    document = etree.parse(path)
+    etree.XMLSchema(etree.parse(schema)).assertValid(document)
+    bins = {one.get("name"): one for one in document.iter("coverpointBin", "crossBin")}
+    counts = {name: one.find(".//contents").get("coverageCount") for name, one in bins.items()}
+    assert (counts["yes"], counts["no × touch"], counts["far"]) == ("3", "1", "0")
+    assert [one.text for one in bins["no × far"].iter("index")] == ["1", "2"]
+    assert bins["no × touch"].get("type") == "illegal"
+    assert (bins["reach"].get("type"), bins["reach"].find("userAttr").text) == (
+        "ignore",
+        "a fence is there",
+    )
+    passed = {
+        one.get("logicalName"): one.get("testStatus") for one in document.iter("historyNodes")
+    }
+    assert passed["wild-2"] == "false"
+    assert main(["cover", door, "--ucis", str(tmp_path / "no" / "x.xml")]) == 2
+    capsys.readouterr()
 
 
 def test_bins_and_crosses(door, capsys):

@@ -48,13 +48,13 @@ def test_what_is_no_database_is_named(path):
     foreign = path.with_name("f.db")
     rewritten(foreign, "CREATE TABLE t (a)")
     assert "a database of something else" in refused(foreign)
-    rewritten(path, "PRAGMA user_version = 3")
+    rewritten(path, "PRAGMA user_version = 4")
     told = refused(path)
-    assert "written by a newer rvmon (version 3 of its tables, this one reads 2)" in told
+    assert "written by a newer rvmon (version 4 of its tables, this one reads 3)" in told
     assert "install that one, or record again" in told
     rewritten(path, "PRAGMA user_version = 1")
     told = refused(path)
-    assert "written by an older rvmon (version 1 of its tables, this one reads 2)" in told
+    assert "written by an older rvmon (version 1 of its tables, this one reads 3)" in told
     assert "record again, or install that one" in told
 
 
@@ -82,6 +82,7 @@ def test_what_is_no_database_is_named(path):
         "UPDATE tests SET hits = zeroblob(9000000)",
         "DELETE FROM items WHERE name = 'yes'",
         "INSERT INTO reasons VALUES (99, 'why')",
+        "INSERT INTO unreachable VALUES (99, 'why')",
     ],
 )
 def test_what_was_never_written_is_damage(path, words):

@@ -10,6 +10,7 @@ from rvmon.coverage import schema
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of, model_of
+from rvmon.coverage.questions import goals_of
 from rvmon.coverage.record import Ending, TestRecord
 from rvmon.errors import CoverageError
 from rvmon.spec.checked.goals import BinKind
@@ -39,6 +40,21 @@ def test_what_is_written_is_read_back(path):
     last = coverage.entries[-1].record
     assert (last.ending, last.error) == (Ending.CRASHED, "ZeroDivisionError: the gap is 0")
     assert coverage.reasons == {("near", "far"): ["the arm is 1 m long: `far` begins at 1 m"]}
+
+
+def test_what_cannot_be_hit_is_no_goal(path):
+    """In both databases of a merge, whichever said so; what is not there cannot be excluded."""
+    other = path.with_name("other.cov")
+    for one, said in ((path, False), (other, True)):
+        with Database.open(one) as database:
+            fill(database)
+            if said:
+                database.exclude("near", "reach", "the arm is short")
+    goals = [goals_of(read(paths)) for paths in ([path], [other], [path, other], [other, path])]
+    assert [int(one.wanted.sum()) for one in goals] == [11, 10, 10, 10]
+    assert read([other, path]).unreachable == {("near", "reach"): ["the arm is short"]}
+    with Database.open(path) as database, pytest.raises(CoverageError, match="there is no item"):
+        database.exclude("near", "nowhere", "why")
 
 
 def test_one_file_is_left(path):
@@ -161,6 +177,7 @@ def test_names_are_data(path):
             )
             database.record(record, hits_of((group.name, name)))
             database.explain(group.name, name, name)
+            database.exclude(group.name, name, name)
     coverage = read([path])
     assert coverage.model == model_of([group])
     assert [entry.record.name for entry in coverage.entries] == names

@@ -9,7 +9,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.close.goals import Goals, argued_goals
+from rvmon.cdv.close.goals import Goals
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
 from rvmon.cdv.close.witnesses import Witnesses
@@ -17,6 +17,7 @@ from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.execute import INTERRUPTED, outcomes
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import Job
+from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.model import model_of
 from rvmon.coverage.ranking import Smallest, smallest
 from rvmon.coverage.record import Ending
@@ -24,6 +25,10 @@ from rvmon.verdict.verdict import Verdict
 
 BATCH = 4
 """Tests that are played before anything is learned from them, whatever the number of processes."""
+
+
+MARGIN = 2
+"""Tests of a suite that show each goal, where so many were found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +54,7 @@ def close(
     *,
     seed: int = 1,
     strategies: Sequence[str] = (),
+    margin: int = MARGIN,
     budget: Budget = Budget(),
     jobs: int | str | None = None,
     progress: Progress | None = None,
@@ -65,6 +71,8 @@ def close(
         robot: of its robots the one that is.
         seed: everything follows from it.
         strategies: tests are drawn from; default: those that the campaign closes with.
+        margin: tests of the suite that show each goal, as far as so many were found. One is enough
+            to cover it, and sees fewer faults.
         budget: when to give up.
         jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         progress: called with how far it is.
@@ -77,7 +85,8 @@ def close(
     Source: Fine and Ziv, Coverage Directed Test Generation for Functional Verification using
     Bayesian Networks, DAC 2003 (closing the loop from coverage to generation); Zalewski, American
     Fuzzy Lop, 2014 (changing what came nearest); Blom, Hessel, Jonsson, Pettersson, FATES 2004
-    (tests from runs of a timed model).
+    (tests from runs of a timed model); Ma, Franco, McCluskey, An experimental chip to evaluate test
+    techniques, ITC 1995 (what is detected several times finds faults that nobody modelled).
     """
     begun = time.monotonic()
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
@@ -114,17 +123,21 @@ def close(
                     ended = f"after {budget.seconds:g} s"
     except KeyboardInterrupt:
         ended = INTERRUPTED
-    found = _smallest(tests, goals)
+    sizes = {}
+    for times in range(1, margin + 1):
+        found = _smallest(tests, goals, times)
+        sizes[times] = len(found.places)
     kept = {*found.places, *_gone_wrong(tests)}
     return Closed(
         tests=tests,
         suite=[one.played for place, one in enumerate(tests) if place in kept],
-        needed=len(found.places),
+        sizes=sizes,
         fewest=found.at_least,
         goals=goals.met + len(goals.open),
+        share=goals.share,
         proved=goals.proved,
         argued={goal: why for goal, why in goals.argued.items() if goal not in goals.proved},
-        open=goals.open,
+        open=goals.holes(),
         wrong=goals.wrong,
         groups=() if witnesses is None else witnesses.groups,
         seconds=time.monotonic() - begun,
@@ -148,24 +161,29 @@ def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals
     model = coverage_model(campaign, robot)
     if witnesses is not None:
         model = model_of([*model.groups.values(), *witnesses.groups])
-    unreachable = [one for one in campaign.closing.unreachable if one.robot in ("", robot)]
-    return Goals(model, argued_goals(unreachable, model, campaign.code))
+    return Goals(model, unreachable_items(campaign, robot, model, whole=True))
 
 
-def _smallest(tests: Sequence[Added], goals: Goals) -> Smallest:
-    """The fewest tests known that meet as much."""
+def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
+    """The fewest tests known that meet as much, each goal with so many of them."""
     sought = goals.sought
     places = {goal: place for place, goal in enumerate(sought)}
-    rows = [
-        {
+    wanted = {places[goal]: count for goal, count in sought.items()}
+    rows: list[dict[int, int]] = []
+    for one in tests:
+        hits = one.played.outcome.hits
+        row = {
             places[group, item]: hit.count
-            for group, items in one.played.outcome.hits.items()
+            for group, items in hits.items()
             for item, hit in items.items()
             if (group, item) in places
         }
-        for one in tests
-    ]
-    return smallest(rows, {places[goal]: count for goal, count in sought.items()})
+        if times > 1:  # beside its hits, each test counts as one
+            row |= {place + len(places): 1 for place in row}
+        rows.append(row)
+    if times > 1:
+        wanted |= dict.fromkeys(range(len(places), 2 * len(places)), times)
+    return smallest(rows, wanted)
 
 
 def _gone_wrong(tests: Sequence[Added]) -> Iterator[int]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.close.outcome import Closed
+from rvmon.coverage.nearest import Goal
 
 
 def closed_document(closed: Closed) -> dict[str, object]:
@@ -16,6 +16,7 @@ def closed_document(closed: Closed) -> dict[str, object]:
     return {
         "goals": closed.goals,
         "met": closed.met,
+        "share": closed.share,
         "ended": closed.ended,
         "tests": [
             {
@@ -29,9 +30,9 @@ def closed_document(closed: Closed) -> dict[str, object]:
             for one in closed.tests
         ],
         "suite": [one.job.test.name for one in closed.suite],
-        "needed": closed.needed,
+        "sizes": closed.sizes,
         "at_least": closed.fewest,
-        "open": closed.open,
+        "open": [{"goal": goal, "hole": hole} for goal, hole in closed.open.items()],
         "proved": _texts(closed.proved),
         "argued": _texts(closed.argued),
         "wrong": _texts(closed.wrong),

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 
-from rvmon.cdv.close.nearest import Goal
-from rvmon.cdv.closing import Unreachable
-from rvmon.cdv.code import Code
-from rvmon.coverage.hits import Hits
-from rvmon.coverage.model import Model, Subject
-from rvmon.errors import UnknownNameError
+from rvmon.coverage.hits import Hits, merged, share
+from rvmon.coverage.holes import Hole, hole_of
+from rvmon.coverage.model import Model, without
+from rvmon.coverage.nearest import Goal, nearest_tests
 from rvmon.spec.checked.goals import BinKind
-
-_CODE = (Subject.STATEMENTS, Subject.BRANCHES)
-_ARROW = " → "
 
 
 class Goals:
@@ -44,6 +38,7 @@ class Goals:
         self.argued = {goal: why for goal, why in argued.items() if goal in self.wanted}
         self.proved: dict[Goal, str] = {}
         self.wrong: dict[Goal, str] = {}
+        self._seen: list[tuple[str, Hits]] = []
         self._counts: dict[Goal, int] = {}
 
     @property
@@ -65,6 +60,18 @@ class Goals:
         """Whether an item was hit as often as it is to be."""
         return self._counts.get(goal, 0) >= self.wanted[goal]
 
+    @property
+    def share(self) -> float:
+        """The share of the model that is covered, from 0 to 1, without what cannot be."""
+        hits = merged(found for _, found in self._seen)
+        return share(hits, without(self.model, [*self.proved, *self.argued]))
+
+    def holes(self) -> dict[Goal, Hole]:
+        """What is open, in words."""
+        hits = merged(found for _, found in self._seen)
+        nearest = nearest_tests(self.open, self._seen, self.model)
+        return {goal: hole_of(goal, self.model, hits, nearest.get(goal, "")) for goal in self.open}
+
     def _is_out(self, goal: Goal) -> bool:
         """Whether an item cannot be hit, as it is proved or declared."""
         return goal in self.proved or goal in self.argued
@@ -72,6 +79,7 @@ class Goals:
     def add(self, test: str, hits: Hits) -> list[Goal]:
         """Count what a test hit, and return what was met with it for the first time."""
         added = []
+        self._seen.append((test, hits))
         for group, items in hits.items():
             for item, hit in items.items():
                 goal = group, item
@@ -84,63 +92,3 @@ class Goals:
                 elif self.is_met(goal) and not before:
                     added.append(goal)
         return added
-
-
-def argued_goals(
-    unreachable: Sequence[Unreachable], model: Model, code: Code | None
-) -> dict[Goal, str]:
-    """The items of a model that a campaign calls unreachable, each with the reason.
-
-    Args:
-        unreachable: what it says.
-        model: what there is to be covered.
-        code: that is measured.
-
-    Raises:
-        UnknownNameError: nothing in the model is called so.
-    """
-    texts = {} if code is None else _texts(code)
-    found: dict[Goal, str] = {}
-    for one in unreachable:
-        goals = [*_goals_of(one, model, texts)]
-        if not goals:
-            place = f"{one.group}: {one.item}" if one.group else f"code `{one.item}`"
-            raise UnknownNameError(
-                f"the campaign calls unreachable what there is not: {place}: nothing that is "
-                "measured is called so; take it out of `Closing.unreachable`"
-            )
-        found |= dict.fromkeys(goals, one.reason)
-    return found
-
-
-def _goals_of(
-    one: Unreachable, model: Model, texts: Mapping[str, Mapping[str, str]]
-) -> Iterable[Goal]:
-    if one.item in getattr(model.groups.get(one.group), "items", ()):
-        yield one.group, one.item
-        return
-    source, _, target = one.item.rpartition(_ARROW)
-    for group in model.groups.values():
-        if group.subject not in _CODE or one.group not in ("", group.name):
-            continue
-        lines = texts[group.name.partition(" of ")[2]]
-        for item in group.items:
-            first, _, last = item.rpartition(_ARROW)
-            if lines.get(last) == target and (not source or lines.get(first) == source):
-                yield group.name, item
-
-
-def _texts(code: Code) -> dict[str, dict[str, str]]:
-    """The text of each line of each block, by the name of the block and the line's number."""
-    files = {
-        path: Path(path).read_text(encoding="utf-8").splitlines()
-        for path in {block.path for block in code.blocks}
-    }
-    return {
-        block.name: {
-            str(number): files[block.path][number - 1].strip()
-            for number in block.lines
-            if number <= len(files[block.path])
-        }
-        for block in code.blocks
-    }

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.outcome import Played
+from rvmon.coverage.holes import Hole
 from rvmon.coverage.model import Group
+from rvmon.coverage.nearest import Goal
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +34,15 @@ class Closed:
 
     Attributes:
         tests: that were played, in order.
-        suite: of these the fewest known that meet as much, and one for all that went wrong.
-        needed: how many of them there are for what they meet.
-        fewest: no suite that meets as much has fewer; `needed` if it is known to be the smallest.
+        suite: of these the fewest known that meet as much with the margin that was asked for, and
+            one for all that went wrong.
+        sizes: how many meet as much, by the tests that show each goal, up to the margin.
+        fewest: no suite of that margin has fewer; its size if it is known to be the smallest.
         goals: how many there are, without those that cannot be met.
+        share: of the coverage model that is covered, from 0 to 1, without what cannot be.
         proved: goals that cannot be met, each with the query that the model answers so.
         argued: those of which the campaign says so, each with its reason.
-        open: what no test met.
+        open: what no test met, in words.
         wrong: goals that cannot be met, as it is declared, and that a test met, with its name.
         groups: what was measured beside what the campaign measures.
         seconds: that it took.
@@ -48,16 +51,22 @@ class Closed:
 
     tests: Sequence[Added]
     suite: Sequence[Played]
-    needed: int
+    sizes: Mapping[int, int]
     fewest: int
     goals: int
+    share: float
     proved: Mapping[Goal, str]
     argued: Mapping[Goal, str]
-    open: Sequence[Goal]
+    open: Mapping[Goal, Hole]
     wrong: Mapping[Goal, str]
     groups: Sequence[Group]
     seconds: float
     ended: str
+
+    @property
+    def needed(self) -> int:
+        """How many tests of the suite there are for what they meet."""
+        return self.sizes[max(self.sizes)]
 
     @property
     def met(self) -> int:
@@ -65,7 +74,6 @@ class Closed:
         return self.goals - len(self.open)
 
     @property
-    def reasons(self) -> dict[Goal, str]:
-        """Why goals cannot be met, in words."""
-        proofs = {goal: f"unreachable: proved: {query}" for goal, query in self.proved.items()}
-        return {**proofs, **self.argued}
+    def proofs(self) -> dict[Goal, str]:
+        """Why goals cannot be met of which the model says so, in words."""
+        return {goal: f"the model proves it: {query}" for goal, query in self.proved.items()}

@@ -17,12 +17,12 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.close.goals import Goals
 from rvmon.cdv.close.learned import Draw, Learned
 from rvmon.cdv.close.mutate import Mutator
-from rvmon.cdv.close.nearest import Goal, nearness
 from rvmon.cdv.close.witnesses import Proof, Witness, Witnesses
 from rvmon.cdv.files import TestError, from_json, to_json
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import plan
 from rvmon.coverage.model import Subject
+from rvmon.coverage.nearest import Goal, nearness
 from rvmon.errors import RvmonError
 
 _Option = TypeVar("_Option", bound=Hashable)
@@ -186,7 +186,7 @@ class Proposer:
         if made is None:
             return None
         origin = f"{nearest.name}, changed towards {goal[0]}: {goal[1]}"
-        made = structs.replace(made, expected={})
+        made = structs.replace(made, expected={}, reaches={})
         return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
 
     def _biased(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.close.outcome import Added, Closed
-from rvmon.report.coverage_summary import counted, name_of
+from rvmon.coverage.nearest import Goal
+from rvmon.report.coverage_summary import counted, name_of, share_text
 from rvmon.report.percent import percent_text
 from rvmon.report.terminal import wrapped
 
@@ -34,14 +34,14 @@ def print_closed(closed: Closed, console: Console) -> None:
             console.print(wrapped(f"{name_of(goal)}, by {test}", console.width))
     if closed.open:
         console.print(f"{counted(len(closed.open), 'open goal')}:", style="bold")
-        for goal in closed.open:
-            console.print(wrapped(f"{name_of(goal)}", console.width))
-    share = percent_text(closed.met, closed.goals)
+        for goal, hole in closed.open.items():
+            console.print(wrapped(name_of(goal), console.width))
+            console.print(wrapped(f"  {hole}", console.width), style="dim")
     style = "bold red" if closed.wrong else "yellow" if closed.open else "bold green"
     left = f"; {closed.ended}" if closed.ended else ""
     console.print(
-        f"{closed.met} of {closed.goals} goals met ({share}) by {len(closed.tests)} tests in "
-        f"{closed.seconds:.1f} s{left}.",
+        f"{share_text(closed.share)} covered: {closed.met} of {closed.goals} goals met by "
+        f"{len(closed.tests)} tests in {closed.seconds:.1f} s{left}.",
         style=style,
     )
     console.print(_suite_text(closed))
@@ -51,7 +51,13 @@ def _suite_text(closed: Closed) -> str:
     fewest = "no fewer would do"
     if closed.fewest < closed.needed:
         fewest = f"no smaller choice was found; at least {closed.fewest} are needed"
-    text = f"The suite: {closed.needed} of them cover the same, {fewest}"
+    *fewer, margin = closed.sizes
+    text = f"The suite: {closed.needed} of them cover the same"
+    if fewer:
+        text += f", each goal by {margin} tests where so many were found"
+    text += f", {fewest}"
+    for one in fewer:
+        text += f"; {closed.sizes[one]} would do with {counted(one, 'test')} for each"
     if kept := len(closed.suite) - closed.needed:
         text += f"; {kept} more are kept for what went wrong"
     return f"{text}."

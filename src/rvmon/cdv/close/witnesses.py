@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.close.nearest import Goal
 from rvmon.cdv.closing import ClosingModel
-from rvmon.cdv.measured import STATES
 from rvmon.cdv.template import Template
 from rvmon.cdv.witness_templates import project
 from rvmon.coverage.hits import Hit, Hits
-from rvmon.coverage.model import Group, Item, Subject, group_of
+from rvmon.coverage.model import STATES, Group, Item, Subject, group_of
+from rvmon.coverage.nearest import Goal
 
 if TYPE_CHECKING:
     from rvmon.cdv.abstract_test import Test

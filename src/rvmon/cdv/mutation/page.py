@@ -8,8 +8,15 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.cdv.mutation.mutant import HELD_OUT
 from rvmon.cdv.mutation.question import TITLES, question
-from rvmon.cdv.mutation.report import MutationReport, killer
-from rvmon.cdv.mutation.text import HEAD, SPEC_HEAD, SPEC_TITLE, score_rows, spec_score_rows
+from rvmon.cdv.mutation.report import MutationReport
+from rvmon.cdv.mutation.text import (
+    HEAD,
+    KILLS_HEAD,
+    SPEC_HEAD,
+    SPEC_TITLE,
+    score_rows,
+    spec_score_rows,
+)
 from rvmon.cdv.mutation.tried import How, Tried
 from rvmon.report.coverage_summary import counted
 from rvmon.report.markup import Child, e, page, scroll, with_code
@@ -69,9 +76,9 @@ def _suite(report: MutationReport, name: str) -> ET.Element:
     killed = [one for one in report.shown(name) if one.killed]
     if killed:
         parts += [e("h3", None, "What kills"), _killers(killed)]
-        rows = ((one.mutant.identity, one.mutant.brief, killer(one)) for one in killed)
-        table = _table(("mutant", "change", "killed by"), rows, texts=3)
-        summary = e("summary", None, f"{counted(len(killed), 'mutant')} killed")
+    if kills := report.kills(name):
+        table = _table(KILLS_HEAD, kills, texts=3)
+        summary = e("summary", None, f"{counted(len(kills), 'mutant')} killed")
         parts.append(e("details", None, summary, table))
     equivalent = [one for one in report.shown(name) if one.mutant.identity in report.equivalent]
     if equivalent:

@@ -84,6 +84,19 @@ class MutationReport:
         tried = self.suites[suite].tried
         return [one for one in tried if self.shows_held_out or one.mutant.third != HELD_OUT]
 
+    def kills(self, suite: str) -> list[tuple[str, str, str]]:
+        """Those of them that are killed, and the mutants of requirements: name, change, by what."""
+        code = [one for one in self.shown(suite) if one.killed]
+        spec = [
+            one
+            for one in self.suites[suite].spec_tried
+            if one.test and (self.shows_held_out or one.mutant.third != HELD_OUT)
+        ]
+        return [(one.mutant.identity, one.mutant.brief, killer(one)) for one in code] + [
+            (one.mutant.identity, one.mutant.brief, f"{one.test}: {one.was}, now {one.now}")
+            for one in spec
+        ]
+
     def survivors(self, suite: str) -> dict[Missing, list[Tried]]:
         """Those of them that survive and are not known to be equivalent, by what may be missing."""
         found: dict[Missing, list[Tried]] = {kind: [] for kind in Missing}

@@ -20,6 +20,8 @@ HEAD = (
 
 SPEC_HEAD = ("suite", "third", "mutants", "proved equivalent", "killed", "score")
 
+KILLS_HEAD = ("mutant", "change", "killed by")
+
 SPEC_TITLE = (
     "No recorded run gets another verdict: is a stimulus missing, or does the requirement ask more "
     "than matters?"
@@ -31,7 +33,7 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
 
     Args:
         report: what is shown.
-        most: survivors of each kind that are listed; `None`: all.
+        most: survivors of each kind that are listed; `None`: all, and each mutant that is killed.
     """
     lines = []
     if any(suite.tried for suite in report.suites.values()):
@@ -48,6 +50,9 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
                 lines += [*block, ""]
             if most is not None and len(blocks) > most:
                 lines += [f"  … and {len(blocks) - most} more", ""]
+    for name in report.suites:
+        if most is None and (kills := report.kills(name)):
+            lines += [f"{name}: killed", "", plain_table([KILLS_HEAD, *kills])]
     return "\n".join(lines).rstrip("\n") + "\n"
 
 

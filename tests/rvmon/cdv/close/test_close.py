@@ -100,10 +100,27 @@ def names(closed):
 
 def test_tests_are_changed_until_all_is_covered(dials):
     """From one test that does nothing to all nine combinations, and no fewer tests would do."""
-    closed = close(dials(), "machine", jobs=1)
-    assert (closed.open, closed.ended, closed.met) == ([], "", 15)
+    closed = close(dials(), "machine", jobs=1, margin=1)
+    assert (closed.open, closed.ended, closed.met) == ({}, "", 15)
     assert len(closed.suite) == closed.needed == closed.fewest == 9
     assert sum(len(one.goals) for one in closed.tests) == closed.met == closed.tests[-1].met
+
+
+def test_the_suite_keeps_a_margin(dials):
+    """Each goal is shown by two of its tests, where two were found; what fewer would do is told."""
+    closed = close(dials(), "machine", jobs=1, margin=2)
+    assert [*closed.sizes] == [1, 2]
+    assert closed.sizes[1] == 9 < closed.sizes[2] == closed.needed == len(closed.suite)
+
+    def shown(tests, goal):
+        hits = (one.outcome.hits.get(goal[0], {}) for one in tests)
+        return sum(goal[1] in items for items in hits)
+
+    played = [one.played for one in closed.tests]
+    goals = {goal for one in closed.tests for goal in one.goals}
+    assert {min(2, shown(played, goal)) for goal in goals} == {1, 2}
+    for goal in goals:
+        assert shown(closed.suite, goal) >= min(2, shown(played, goal))
 
 
 def test_the_seed_decides_whatever_the_number_of_processes(dials):
@@ -125,8 +142,8 @@ def test_a_budget_ends_it_and_the_rest_is_open(dials):
 
 def test_tests_that_end_their_process_do_not_end_the_search(dials):
     """A crash and a kill are found, kept once each, and all is covered nevertheless."""
-    closed = close(dials(fixed=()), "machine", jobs=1, budget=Budget(tests=400))
-    assert closed.open == []
+    closed = close(dials(fixed=()), "machine", jobs=1, margin=1, budget=Budget(tests=400))
+    assert closed.open == {}
     endings = [one.outcome.ending for one in closed.suite]
     assert {ending: endings.count(ending) for ending in endings} == {
         Ending.COMPLETED: 9,
@@ -231,7 +248,7 @@ def test_a_model_proves_nothing_of_robots_that_it_does_not_describe(dials):
     """Its runs are tests all the same."""
     impossible = model(lambda *_: "E<> left == 3", robots=("another",))
     closed = close(dials(model=impossible), "machine", jobs=1)
-    assert (closed.proved, closed.open, closed.groups) == ({}, [], [])
+    assert (closed.proved, closed.open, closed.groups) == ({}, {}, [])
 
 
 def test_choices_are_biased_towards_what_is_open(dials):
@@ -243,7 +260,7 @@ def test_choices_are_biased_towards_what_is_open(dials):
 
     campaign = dials(biased=biased, fixed=("left", "right", "does"))
     closed = close(campaign, "machine", jobs=1)
-    assert closed.open == []
+    assert closed.open == {}
     assert any(one.origin.startswith("choices biased towards") for one in closed.tests)
 
 

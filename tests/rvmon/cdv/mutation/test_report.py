@@ -88,6 +88,17 @@ def test_what_is_killed_by_a_requirement_counts_apart():
     assert (score.mutants, score.killed, score.by_requirement) == (3, 2, 1)
 
 
+def test_what_kills_stands_beside_each_mutant():
+    """The requirement and the test, in text and page; none that is held out."""
+    found = report(Tried(SHOWN[0], 1, 1, (KILLED,)), Tried(HIDDEN[0], 1, 1, (KILLED,)))
+    line = f"{SHOWN[0].identity}  a < b => a <= b  requirement (R1) in t"
+    text = report_text(found)
+    assert line.split() in [one.split() for one in text.splitlines()]
+    assert HIDDEN[0].identity not in text
+    assert SHOWN[0].identity not in report_text(found, most=3)
+    assert "requirement (R1) in t" in mutation_page(found)
+
+
 def test_an_equivalent_mutant_that_is_killed_is_a_contradiction():
     """And counts in the score; one that survives is no survivor, and leaves the score."""
     found = report(Tried(SHOWN[0], 1, 1), Tried(SHOWN[1], 1, 1, (KILLED,)), equivalent=SHOWN[:2])

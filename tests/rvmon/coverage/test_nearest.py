@@ -2,9 +2,9 @@
 
 import pytest
 
-from rvmon.cdv.close.nearest import nearness
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of, model_of
+from rvmon.coverage.nearest import nearness
 
 HIT = Hit(1)
 

@@ -2,16 +2,40 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from rvmon.cdv.measured import STATES, TRANSITIONS
 from rvmon.coverage.hits import Hits
-from rvmon.coverage.model import Group, Model, Subject
+from rvmon.coverage.model import STATES, TRANSITIONS, Group, Model, Subject
 
 Goal = tuple[str, str]
 """An item of the model, by its group and name."""
 
 _ARROW = " → "
+_PART = re.compile(r"(?:^| × )(?:`([^`]*)`|([^`×]*?))(?= × |$)")
+
+
+def nearest_tests(
+    goals: Iterable[Goal], tests: Sequence[tuple[str, Hits]], model: Model
+) -> dict[Goal, str]:
+    """The first of the tests that came nearest to each item; none where no test came near.
+
+    Args:
+        goals: items that were not hit.
+        tests: names, and what each has hit.
+        model: what there is to be covered.
+    """
+    found = {}
+    for goal in goals:
+        near, name = max(
+            ((nearness(goal, hits, model), name) for name, hits in tests),
+            key=lambda one: one[0],
+            default=(0.0, ""),
+        )
+        if near:
+            found[goal] = name
+    return found
 
 
 def nearness(goal: Goal, hits: Hits, model: Model) -> float:
@@ -40,10 +64,19 @@ def nearness(goal: Goal, hits: Hits, model: Model) -> float:
             return len(seen) / wanted
 
 
+def cross_parts(name: str) -> list[str]:
+    """The bins that the name of a combination is made of.
+
+    >>> cross_parts("yes × `a × b`")
+    ['yes', 'a × b']
+    """
+    return [quoted or plain for quoted, plain in _PART.findall(name)]
+
+
 def _of_cross(group: Group, wanted: str, seen: list[str]) -> float:
-    bins = wanted.split(" × ")
+    bins = cross_parts(wanted)
     met = [
-        sum(one == other for one, other in zip(bins, name.split(" × "), strict=False))
+        sum(one == other for one, other in zip(bins, cross_parts(name), strict=False))
         for name in seen
     ]
     return max(met, default=0) / max(1, len(group.axes))

@@ -1,0 +1,175 @@
+"""What a hole is, why it may be open, which test came nearest, and what would close it: words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from rvmon.coverage.hits import Hits, count_of
+from rvmon.coverage.model import PAIRS, STATES, TRANSITIONS, Group, Model, Subject
+from rvmon.coverage.nearest import Goal, cross_parts
+from rvmon.coverage.requirements import AT, JUST_BEFORE, PASSED, TRIGGERED, locations_of
+
+_ARROW = " → "
+_DECIDES = " decides"
+
+
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """Something that is to be shown and was not, in words.
+
+    Attributes:
+        what: it is.
+        why: nothing has shown it, as far as the hits of all tests tell.
+        needs: what would.
+        nearest: the test that came nearest; empty if none came near.
+    """
+
+    what: str
+    why: str
+    needs: str
+    nearest: str = ""
+
+    def __str__(self) -> str:
+        near = f" Nearest: {self.nearest}." if self.nearest else ""
+        why = f"{self.why[0].upper()}{self.why[1:]}"
+        return f"{self.what}. {why}; needs {self.needs}.{near}"
+
+
+def hole_of(goal: Goal, model: Model, hits: Hits, nearest: str = "") -> Hole:
+    """Put a hole into words.
+
+    Args:
+        goal: an item that was hit less often than its goal asks for.
+        model: what there is to be covered.
+        hits: of all tests together.
+        nearest: the test that came nearest to it.
+
+    >>> from rvmon.coverage.model import Item, group_of, model_of
+    >>> from rvmon.coverage.hits import Hit
+    >>> ways = group_of("transitions", Subject.TRANSITIONS, [Item("up → down")])
+    >>> states = group_of("states", Subject.STATES, [Item("up"), Item("down")])
+    >>> hits = {"states": {"up": Hit(3)}}
+    >>> print(hole_of(("transitions", "up → down"), model_of([states, ways]), hits, "lift-2"))
+    `up` is followed by `down`. `up` was entered 3 times and left otherwise; needs a run in which \
+`up` ends in `down`. Nearest: lift-2.
+    """
+    group = model.groups[goal[0]]
+    item = group.items[goal[1]]
+    count = count_of(hits, *goal)
+    if count:
+        what = item.text or f"`{item.name}` of `{group.name}`"
+        return Hole(what, f"hit {count} times of {item.goal}", "more tests like those", nearest)
+    words: tuple[str, str, str]
+    if group.name.startswith("`"):
+        words = _of_automaton(group, item.name, item.text, hits)
+    else:
+        match group.subject:
+            case Subject.CROSS:
+                words = _of_cross(group, item.name, model, hits)
+            case Subject.STATEMENTS | Subject.BRANCHES:
+                words = _of_code(group, item.name, item.text, hits)
+            case Subject.REQUIREMENT:
+                words = _of_requirement(group, item.name, hits)
+            case Subject.TRANSITIONS if group.name in (TRANSITIONS, PAIRS):
+                words = _of_transition(item.name.split(_ARROW), hits)
+            case Subject.STATES if group.name == STATES:
+                words = (f"state `{item.name}`", "it was never entered", "a run that enters it")
+            case _:
+                what = f"`{item.text}`" if item.text else f"`{item.name}`"
+                words = (what, "no run has shown it", "a run in which it is so")
+    return Hole(*words, nearest)
+
+
+def _of_cross(group: Group, name: str, model: Model, hits: Hits) -> tuple[str, str, str]:
+    bins = cross_parts(name)
+    named = [*zip(group.axes, bins, strict=True)]
+    never = [
+        f"{axis} {bin_}"
+        for axis, bin_ in named
+        if axis in model.groups and not count_of(hits, axis, bin_)
+    ]
+    most = max(
+        (
+            sum(one == other for one, other in zip(bins, cross_parts(seen), strict=True))
+            for seen in hits.get(group.name, {})
+        ),
+        default=0,
+    )
+    why = f"no run has shown {' or '.join(never)}"
+    if not never:
+        why = f"each of them was seen, {most} of {len(bins)} at one instant"
+    together = ", ".join(f"{axis} {bin_}" for axis, bin_ in named)
+    return f"at one instant {together}", why, "a run in which all of them meet"
+
+
+def _of_transition(states: Sequence[str], hits: Hits) -> tuple[str, str, str]:
+    what = ", then ".join(f"`{one}` is followed by `{other}`" for one, other in pairwise(states))
+    for source, target in pairwise(states):
+        if len(states) > 2 and count_of(hits, TRANSITIONS, _ARROW.join((source, target))):
+            continue
+        entered = count_of(hits, STATES, source)
+        why = f"`{source}` was entered {_times(entered)} and left otherwise"
+        if not entered:
+            why = f"`{source}` was never entered"
+        return what, why, f"a run in which `{source}` ends in `{target}`"
+    return what, "both were seen, never one upon the other", "a run that goes straight on"
+
+
+def _of_code(group: Group, name: str, text: str, hits: Hits) -> tuple[str, str, str]:
+    block = group.name.partition(" of ")[2]
+    first, _, last = name.partition(_ARROW)
+    ran = sorted(map(int, hits.get(f"statements of {block}", {})))
+    if last:
+        what = f"`{block}`, line {first}: `{text}`"
+        if int(first) in ran:
+            return what, f"line {first} ran, and went another way", "that it goes this way"
+        return what, f"line {first} never ran", "a run that comes to it"
+    what = f"`{block}`, line {first}: `{text}`"
+    before = [line for line in ran if line < int(first)]
+    if not before:
+        return what, "nothing of the block before it ran", f"a run that enters `{block}`"
+    why = f"line {before[-1]} before it ran, and did not lead there"
+    return what, why, f"a run that goes on from line {before[-1]} to it"
+
+
+def _of_requirement(group: Group, name: str, hits: Hits) -> tuple[str, str, str]:
+    what = f"{group.name}, “{group.title}”: " if group.title else f"{group.name}: "
+    triggered = count_of(hits, group.name, TRIGGERED)
+    if name == TRIGGERED:
+        return f"{what}it is triggered", "its trigger never came", "a run in which it comes"
+    if name == PASSED:
+        what += "it passes"
+        needs = "a run in which it comes and what is owed follows"
+    elif name in (JUST_BEFORE, AT):
+        what += f"what is owed comes {name}"
+        needs = "an answer that is as late as it may be"
+    else:
+        part = name.removesuffix(_DECIDES)
+        what += f"{part} makes the difference"
+        needs = f"a run that would be judged otherwise, or at another instant, without {part}"
+    if not triggered:
+        return what, "it was never triggered", needs
+    return what, f"it was triggered {_times(triggered)}, and never so", needs
+
+
+def _of_automaton(group: Group, name: str, text: str, hits: Hits) -> tuple[str, str, str]:
+    requirement = group.name.split("`")[1]
+    of = f"{requirement}, “{group.title}”" if group.title else requirement
+    if group.subject is Subject.STATES:
+        owed = f", where it owes: {text}" if text else ""
+        why, needs = "no attempt was there", "a run that leads an attempt there"
+        return f"{of}: place {name} of its automaton{owed}", why, needs
+    source = name.partition(_ARROW)[0]
+    was_there = count_of(hits, locations_of(requirement), source)
+    attempts = "1 attempt was" if was_there == 1 else f"{was_there:,} attempts were"
+    why = f"{attempts} in {source}, and took another way"
+    if not was_there:
+        why = f"no attempt was in {source}"
+    upon = f", upon: {text}" if text else ""
+    return f"{of}: step {name} of its automaton{upon}", why, "a run that takes it"
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count:,} times"

@@ -1,0 +1,127 @@
+"""Coverage as UCIS XML, which the coverage tools of verification read.
+
+Source: Unified Coverage Interoperability Standard (UCIS), version 1.0, Accellera, 2012, chapter 9.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from datetime import UTC, datetime
+
+from rvmon.coverage.model import Group, Item, Subject
+from rvmon.coverage.nearest import cross_parts
+from rvmon.coverage.record import TestRecord
+from rvmon.diagnostics.shown import shown
+from rvmon.report.coverage_summary import Summary, not_fine
+from rvmon.spec.checked.goals import BinKind
+
+_CODE = (Subject.STATEMENTS, Subject.BRANCHES)
+_TYPES = {BinKind.GOAL: "bins", BinKind.IGNORE: "ignore", BinKind.ILLEGAL: "illegal"}
+_OURS = {"ucisVersion": "1.0", "vendorId": "rvmon", "vendorTool": "rvmon"}
+
+
+def coverage_ucis(summary: Summary, version: str) -> str:
+    """All but the coverage of code, as one covergroup: a coverpoint or cross per group.
+
+    What cannot be hit is ignored there, with the reason. LCOV and Cobertura files have the code.
+
+    Args:
+        summary: what is written.
+        version: of what writes it.
+    """
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    root = ET.Element("UCIS", ucisVersion="1.0", writtenBy="rvmon", writtenTime=now)
+    ET.SubElement(root, "sourceFiles", fileName=shown(summary.name), id="1")
+    records = [entry.record for entry in summary.coverage.entries]
+    for number, record in enumerate(records or [TestRecord("no test")]):
+        ET.SubElement(root, "historyNodes", _history(number, record, version))
+    name = ", ".join(summary.campaigns) or summary.name
+    instance = ET.SubElement(root, "instanceCoverages", name=shown(name), key="0")
+    ET.SubElement(instance, "id", _PLACE)
+    covered = ET.SubElement(instance, "covergroupCoverage")
+    group = ET.SubElement(covered, "cgInstance", name=shown(name), key="0")
+    ET.SubElement(group, "options")
+    place = ET.SubElement(group, "cgId", cgName=shown(name), moduleName=shown(name))
+    ET.SubElement(place, "cginstSourceId", _PLACE)
+    ET.SubElement(place, "cgSourceId", _PLACE)
+    functional = [
+        one
+        for one in summary.coverage.model.groups.values()
+        if one.items and one.subject not in _CODE
+    ]
+    for one in sorted(functional, key=lambda one: bool(one.axes)):  # crosses stand last
+        _cross(group, summary, one) if one.axes else _coverpoint(group, summary, one)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+_PLACE = {"file": "1", "line": "1", "inlineCount": "1"}
+
+
+def _history(number: int, record: TestRecord, version: str) -> dict[str, str]:
+    when = datetime.fromtimestamp((record.when or 0) / 1e9, UTC)
+    return {
+        "historyNodeId": str(number),
+        "logicalName": shown(record.name),
+        **({"physicalName": shown(record.recording)} if record.recording else {}),
+        "kind": "HISTORYNODE_TEST",
+        "testStatus": "false" if not_fine(record) else "true",
+        "cpuTime": f"{record.seconds:.3f}",
+        **({} if record.seed is None else {"seed": str(record.seed)}),
+        "date": when.isoformat(timespec="seconds"),
+        "toolCategory": "rvmon",
+        **_OURS,
+        "vendorToolVersion": version,
+    }
+
+
+def _options(parent: ET.Element, group: Group) -> None:
+    goal = max(item.goal for item in group.items.values())
+    ET.SubElement(
+        parent,
+        "options",
+        weight=str(group.weight),
+        at_least=str(goal),
+        comment=shown(group.title),
+    )
+
+
+def _coverpoint(parent: ET.Element, summary: Summary, group: Group) -> None:
+    point = ET.SubElement(parent, "coverpoint", name=shown(group.name), key="0")
+    _options(point, group)
+    for number, (place, item) in enumerate(summary.places(group)):
+        one = ET.SubElement(point, "coverpointBin", _bin(summary, place, item))
+        values = ET.SubElement(one, "range", {"from": str(number), "to": str(number)})
+        _contents(values, summary, place)
+        _remarks(one, summary, group, item)
+
+
+def _cross(parent: ET.Element, summary: Summary, group: Group) -> None:
+    cross = ET.SubElement(parent, "cross", name=shown(group.name), key="0")
+    _options(cross, group)
+    for axis in group.axes:
+        ET.SubElement(cross, "crossExpr").text = shown(axis)
+    axes: Sequence[Sequence[str]] = [*group.axes.values()]
+    for place, item in summary.places(group):
+        one = ET.SubElement(cross, "crossBin", _bin(summary, place, item))
+        for bins, name in zip(axes, cross_parts(item.name), strict=True):
+            ET.SubElement(one, "index").text = str(bins.index(name))
+        _contents(one, summary, place)
+        _remarks(one, summary, group, item)
+
+
+def _bin(summary: Summary, place: int, item: Item) -> dict[str, str]:
+    return {"name": shown(item.name), "key": "0", "type": _TYPES[summary.kind(place, item)]}
+
+
+def _contents(parent: ET.Element, summary: Summary, place: int) -> None:
+    ET.SubElement(parent, "contents", coverageCount=str(int(summary.totals.counts[place])))
+
+
+def _remarks(parent: ET.Element, summary: Summary, group: Group, item: Item) -> None:
+    """What the item is, and why it cannot be hit."""
+    why = "; ".join(summary.coverage.unreachable.get((group.name, item.name), ()))
+    for key, text in (("text", item.text), ("unreachable", why)):
+        if text:
+            ET.SubElement(parent, "userAttr", key=key, type="str").text = shown(text)

@@ -1,0 +1,64 @@
+"""A hole says what it is, why it may be open, and what would close it."""
+
+import pytest
+
+from rvmon import loads
+from rvmon.coverage.hits import merged
+from rvmon.coverage.holes import hole_of
+from rvmon.coverage.nearest import nearest_tests
+
+SPEC = """
+signal level : real
+signal calm  : bool
+event  go, stop
+
+coverpoint height = level {low: [0, 5), high: [5, inf)}
+coverpoint mood {calm: calm, wild: not calm}
+cross both = height, mood
+requirement R1 "It stops in time"
+  upon go
+  then within 10 s stop
+"""
+IDLE = {"t": [0, 1, 20], "level": [1.0, 1.0, 1.0], "calm": [True, True, True]}
+SOON = {**IDLE, "go": [None, True, None], "stop": [None, None, True], "t": [0, 1, 2]}
+HIGH = {**IDLE, "level": [7.0, 1.0, 1.0]}
+
+
+@pytest.mark.parametrize(
+    ("runs", "goal", "words"),
+    [
+        ([IDLE], ("height", "high"), "`level >= 5`. No run has shown it; needs a run in which it "),
+        (
+            [IDLE, HIGH],
+            ("both", "high × wild"),
+            "at one instant height high, mood wild. No run has shown mood wild; needs a run in "
+            "which all of them meet. Nearest: 1.",
+        ),
+        (
+            [IDLE],
+            ("R1", "triggered"),
+            "R1, “It stops in time”: it is triggered. Its trigger never came; needs a run in which",
+        ),
+        (
+            [IDLE, SOON],
+            ("R1", "at the deadline"),
+            "R1, “It stops in time”: what is owed comes at the deadline. It was triggered once, "
+            "and never so; needs an answer that is as late as it may be. Nearest: 1.",
+        ),
+        (
+            [IDLE],
+            ("`R1` edges", "start → A"),
+            "R1, “It stops in time”: step start → A of its automaton, upon: not stop. No "
+            "attempt was in start; needs",
+        ),
+    ],
+)
+def test_a_hole_in_words(runs, goal, words):
+    """Its requirement or condition, what of it was seen, and the test that came nearest."""
+    spec = loads(SPEC)
+    model = spec.coverage_model.model
+    hits = [(str(number), spec.coverage(run)) for number, run in enumerate(runs)]
+    nearest = nearest_tests([goal], hits, model)
+    together = merged(found for _, found in hits)
+    told = str(hole_of(goal, model, together, nearest.get(goal, "")))
+    assert told.startswith(words)
