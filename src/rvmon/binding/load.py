@@ -15,9 +15,9 @@ from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
 from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
 from rvmon.trace.schema import Kind
+from rvmon.units.table import UnknownUnitError, parse_unit
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.specification import CheckedSpec, Type
-from rvmon.spec.syntax.units import base_unit, parse_unit
 from rvmon.trace.schema import Kind
+from rvmon.units.table import base_unit, parse_unit
 
 _LIKENESS = 0.45
 """Of the words of a name, at least this share has to be found in a topic and field."""
