@@ -83,13 +83,13 @@ def _term(expression: Expression) -> Term:
                 raise RvmonError(f"`{text}` is no field: write `pose.position.x`, `ranges[0]`")
             return field
         case Operation(op=op, args=args):
-            return Applied(op.entry.apply, tuple(map(_term, args)))
+            return Applied(op.entry.apply, tuple(map(_term, args)), op.value)
         case Comparison(op=op, left=left, right=right):
-            return Applied(op.holds, (_term(left), _term(right)))
+            return Applied(op.holds, (_term(left), _term(right)), op.value)
         case Infix(op=op, left=left, right=right) if op in CONNECTIVES:
-            return Applied(CONNECTIVES[op], (_term(left), _term(right)))
+            return Applied(CONNECTIVES[op], (_term(left), _term(right)), op.value)
         case Prefix(op=UnaryOp.NOT, operand=operand):
-            return Applied(operator.not_, (_term(operand),))
+            return Applied(operator.not_, (_term(operand),), "not")
         case Call(function=function, args=args):
             return _applied(function.text, args)
     raise RvmonError(
@@ -115,9 +115,9 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
         if len(terms) != 1 or not isinstance(terms[0], Field):
             raise RvmonError("`yaw` takes a field that is a quaternion: `yaw(pose.orientation)`")
         quaternion = terms[0].path
-        return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION))
+        return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION), "yaw")
     if name in _OF_ARRAYS and len(terms) == 1 and isinstance(terms[0], Field):
-        return Applied(_OF_ARRAYS[name], (Elements(terms[0]),))
+        return Applied(_OF_ARRAYS[name], (Elements(terms[0]),), name)
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:
         names = [*known, "yaw"]
@@ -126,4 +126,4 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
     wanted = len(FUNCTIONS[name].arguments)
     if len(terms) < wanted or (len(terms) > wanted and not FUNCTIONS[name].more):
         raise RvmonError(f"`{name}` takes {wanted} numbers, not {len(terms)}")
-    return Applied(known[name].entry.apply, terms)
+    return Applied(known[name].entry.apply, terms, name)

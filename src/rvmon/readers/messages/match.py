@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from rvmon.errors import TraceError
 from rvmon.readers.messages.fields import expect_kinds, field_of
+from rvmon.readers.messages.meaning import plain_type
+from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.binding import Bound, Field, Term
 from rvmon.trace.schema import Kind, Schema
@@ -120,8 +122,14 @@ def _place(
 def _expect_fit(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
     if topic.fault:
         raise TraceError(f"topic {topic.name} ({topic.type}), which feeds `{name}`: {topic.fault}")
+    if bound.type and plain_type(bound.type) != plain_type(topic.type):
+        raise TraceError(
+            f"topic {topic.name}, which feeds `{name}`, holds {topic.type}, and the binding says "
+            f"{bound.type}: is it the binding of another robot?"
+        )
     if bound.value is not None:
         kind = schema.signals.get(name, Kind.BOOL)
         expect_kinds(name, kind, bound.value, bound.labels, topic)
     for field, term in bound.fields.items():
         expect_kinds(f"{name}.{field}", schema.events[name][field], term, {}, topic)
+    expect_units(name, bound, schema, topic)

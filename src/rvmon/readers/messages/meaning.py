@@ -73,7 +73,7 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
     ('m/s', ('velocity', 'speed'))
     """
     steps = path.split(".")
-    type_name = _plain(topic.type)
+    type_name = plain_type(topic.type)
     found = UNKNOWN
     for place, step in enumerate(steps, 1):
         entry = _table(type_name).get(re.sub(r"\[\w*\]", "", step), "?")
@@ -83,20 +83,20 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
             found = inner if found.sort is Sort.OPEN else found
         way = re.sub(r"\[\w+\]", "[]", ".".join(steps[:place]))
         told = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
-        type_name = _plain(told)
+        type_name = plain_type(told)
     return found
 
 
 def is_listed(type_name: str) -> bool:
     """Whether the fields of a type of messages are in the tables."""
-    return bool(_table(_plain(type_name)))
+    return bool(_table(plain_type(type_name)))
 
 
-def _plain(type_name: str) -> str:
+def plain_type(type_name: str) -> str:
     """A type as the tables have it.
 
-    >>> _plain("sensor_msgs/msg/Imu"), _plain("sensor_msgs/Imu"), _plain("sensor_msgs.msg.Imu")
-    ('sensor_msgs/Imu', 'sensor_msgs/Imu', 'sensor_msgs/Imu')
+    >>> plain_type("sensor_msgs/msg/Imu"), plain_type("sensor_msgs/Imu")
+    ('sensor_msgs/Imu', 'sensor_msgs/Imu')
     """
     return re.sub(r"[/.]msg[/.]", "/", type_name)
 

@@ -8,10 +8,17 @@ from rvmon.trace.schema import Kind
 
 pytest.importorskip("rosbags")
 
-PACKAGES = (
-    "actionlib_msgs builtin_interfaces diagnostic_msgs geometry_msgs nav_msgs sensor_msgs "
-    "std_msgs tf2_msgs trajectory_msgs"
-).split()
+PACKAGES = [
+    "actionlib_msgs",
+    "builtin_interfaces",
+    "diagnostic_msgs",
+    "geometry_msgs",
+    "nav_msgs",
+    "sensor_msgs",
+    "std_msgs",
+    "tf2_msgs",
+    "trajectory_msgs",
+]
 
 
 def topics_of_ros():
