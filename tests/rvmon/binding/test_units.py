@@ -106,7 +106,7 @@ def test_a_binding_of_another_robot_is_told(tmp_path):
     path = tmp_path / "base.toml"
     path.write_text('[bind.speed]\ntopic = "/odom"\ntype = "a_msgs/Own"\nvalue = "x"\n')
     bag = write_ros1(tmp_path / "a.bag", [("/odom", START, {})])
-    with pytest.raises(rvmon.TraceError, match="holds nav_msgs/msg/Odometry, .* says a_msgs/Own"):
+    with pytest.raises(rvmon.TraceError, match=r"holds nav_msgs/msg/Odometry, .* says a_"):
         rvmon.loads(SPEC).evaluate(bag, binding=path, allow_missing=True)
     path.write_text('[bind.speed]\ntopic = "/odom"\ntype = 3\nvalue = "x"\n')
     with pytest.raises(RvmonError, match="which type have the messages"):
