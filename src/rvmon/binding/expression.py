@@ -33,7 +33,7 @@ from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
 
 _WORDS = frozenset({"and", "or", "xor", "not", "true", "false"})
 
-_PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[\d+\])*(?!\w*\()")
+_PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*(?!\w*\()")
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 

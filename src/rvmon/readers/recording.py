@@ -272,8 +272,8 @@ class FileRecording:
             raise TraceError(cannot_read(self.path, error)) from None
 
 
-def topics_of(path: str) -> Mapping[str, Topic]:
-    """The topics of a recording of messages, by name.
+def messages_of(path: str) -> MessageFile:
+    """A recording of messages, looked at.
 
     Raises:
         TraceError: it cannot be read, or holds no messages.
@@ -281,7 +281,12 @@ def topics_of(path: str) -> Mapping[str, Topic]:
     recording = FileRecording(path, Schema({}, {}))
     if recording._messages is None:
         raise TraceError(f"{path}: has columns and no topics: use --map")
-    return recording._messages.topics
+    return recording._messages
+
+
+def topics_of(path: str) -> Mapping[str, Topic]:
+    """The topics of a recording of messages, by name; see `messages_of`."""
+    return messages_of(path).topics
 
 
 def can_be_read_again(path: str) -> bool:

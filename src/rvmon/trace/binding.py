@@ -16,20 +16,33 @@ class Clock(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Named:
+    """The element of an array that has a name: beside the array, or in the element itself."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return self.name
+
+
+Step = str | int | Named
+
+
+@dataclass(frozen=True, slots=True)
 class Field:
     """A field of a message.
 
     Attributes:
-        path: names that lead to it, and the places of elements of arrays.
+        path: names that lead to it, and the places or names of elements of arrays.
 
-    >>> str(Field(("poses", 0, "position", "x")))
-    'poses[0].position.x'
+    >>> str(Field(("poses", 0, "position", "x"))), str(Field(("position", Named("elbow"))))
+    ('poses[0].position.x', 'position[elbow]')
     """
 
-    path: tuple[str | int, ...]
+    path: tuple[Step, ...]
 
     def __str__(self) -> str:
-        steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in self.path)
+        steps = (f".{step}" if isinstance(step, str) else f"[{step}]" for step in self.path)
         return "".join(steps).removeprefix(".")
 
 

@@ -1,6 +1,6 @@
 """Recordings as robots make them, with what should feed which name.
 
-The expected places were written down before anything was proposed for them: the topic and the value,
+The expected places were written down before anything was proposed for them: topic and value,
 several where any of them is right, none where nothing in the recording is what the name says.
 """
 
@@ -252,7 +252,8 @@ HELD_OUT = {
             "/cmd_vel": TWIST,
         },
         "signal speed : real [m/s]\nsignal front_left_knee : real [deg]\nsignal knee : real [rad]\n"
-        "signal locomotion_charge : real [%]\nsignal motors_on : bool\nsignal target_speed : real [m/s]",
+        "signal locomotion_charge : real [%]\nsignal motors_on : bool\n"
+        "signal target_speed : real [m/s]",
         {
             "speed": speeds("/odometry"),
             "front_left_knee": ("/joint_states position[front_left_knee]",),
@@ -331,7 +332,8 @@ HELD_OUT = {
         },
         {
             "mavros_msgs/msg/VfrHud": "std_msgs/Header header\nfloat32 airspeed\n"
-            "float32 groundspeed\nint16 heading\nfloat32 throttle\nfloat32 altitude\nfloat32 climb\n",
+            "float32 groundspeed\nint16 heading\nfloat32 throttle\nfloat32 altitude\n"
+            "float32 climb\n",
             "mavros_msgs/msg/State": "std_msgs/Header header\nbool connected\nbool armed\n"
             "bool guided\nbool manual_input\nstring mode\nuint8 system_status\n",
         },

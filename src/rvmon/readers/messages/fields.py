@@ -12,13 +12,14 @@ from typing import Any, assert_never
 
 from rvmon.diagnostics.nearest import nearest
 from rvmon.errors import TraceError
+from rvmon.readers.messages.by_names import Get, by_names
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
-from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
+from rvmon.trace.binding import Applied, Constant, Elements, Field, Named, Step, Term
 from rvmon.trace.sample import calculated
 from rvmon.trace.schema import Kind
 
-_STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]")
+_STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]|\[([^\[\]\s](?:[^\[\]]*[^\[\]\s])?)\]")
 
 _SHOWN = 6
 """Fields that a message lists."""
@@ -28,18 +29,18 @@ _PARTS = (("sec", "nanosec"), ("sec", "nsec"), ("secs", "nsecs"), ("seconds", "n
 
 
 def field_of(text: str) -> Field | None:
-    """Read a path such as `pose.position.x` or `ranges[0]`; `None` if it is none.
+    """Read a path such as `pose.position.x`, `ranges[0]`, `position[elbow]`; `None` if it is none.
 
-    >>> field_of("poses[0].x"), field_of("2x")
-    (Field(path=('poses', 0, 'x')), None)
+    >>> field_of("poses[0].x"), field_of("2x"), str(field_of("values[Battery level].value"))
+    (Field(path=('poses', 0, 'x')), None, 'values[Battery level].value')
     """
-    steps: list[str | int] = []
+    steps: list[Step] = []
     place = 0
     while place < len(text):
         found = _STEP.match(text, place)
         if found is None or (text[place] == ".") != (place > 0 and text[place] != "["):
             return None
-        steps.append(found[1] or int(found[2]))
+        steps.append(found[1] or (int(found[2]) if found[2] else Named(found[3])))
         place = found.end()
     return Field(tuple(steps)) if steps and isinstance(steps[0], str) else None
 
@@ -59,7 +60,7 @@ def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
     Raises:
         TraceError: the topic has no such field, or it is a message or an array itself.
     """
-    path = re.sub(r"\[\d+\]", "[]", str(field))
+    path = re.sub(r"\[[^\[\]]*\]", "[]", str(field))
     if not topic.leaves or path in topic.leaves:
         return topic.leaves.get(path)
     where = f"topic {topic.name} ({topic.type})"
@@ -107,9 +108,6 @@ def expect_kinds(
             )
 
 
-Get = Callable[[Any], Any]
-
-
 def getter(term: Term, *, mappings: bool) -> Get:
     """A function that gives the value of a term for the content of a message.
 
@@ -122,6 +120,8 @@ def getter(term: Term, *, mappings: bool) -> Get:
         case Field(path=path):
             if not mappings and all(isinstance(step, str) for step in path):
                 return attrgetter(".".join(map(str, path)))
+            if any(isinstance(step, Named) for step in path):
+                return by_names(path, mappings=mappings)
             return _stepping(path, mappings=mappings)
         case Elements(array=array):
             return getter(array, mappings=mappings)
@@ -149,8 +149,8 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
     return calculated(operation, *known)
 
 
-def _stepping(path: tuple[str | int, ...], *, mappings: bool) -> Get:
-    def step(content: Any, name: str | int) -> Any:
+def _stepping(path: tuple[Step, ...], *, mappings: bool) -> Get:
+    def step(content: Any, name: Any) -> Any:
         if mappings or isinstance(name, int):
             return content[name]
         return getattr(content, name)

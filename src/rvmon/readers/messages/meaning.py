@@ -72,16 +72,17 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
     >>> one.units[0].symbol, one.words
     ('m/s', ('velocity', 'speed'))
     """
-    steps = path.split(".")
+    # Names of elements may have dots.
+    steps = re.sub(r"\[[^\[\]]*\]", "[]", path).split(".")
     type_name = plain_type(topic.type)
     found = UNKNOWN
     for place, step in enumerate(steps, 1):
-        entry = _table(type_name).get(re.sub(r"\[\w*\]", "", step), "?")
+        entry = _table(type_name).get(step.removesuffix("[]"), "?")
         if not entry.startswith("@"):
             inner = _read(entry)
             # What is said of a vector is said of all that is inside it.
             found = inner if found.sort is Sort.OPEN else found
-        way = re.sub(r"\[\w+\]", "[]", ".".join(steps[:place]))
+        way = ".".join(steps[:place])
         told = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
         type_name = plain_type(told)
     return found

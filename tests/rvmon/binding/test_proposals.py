@@ -1,0 +1,59 @@
+"""What is proposed for recordings as robots make them is right, or left open."""
+
+import tomllib
+
+import pytest
+from tests.rvmon.binding.robots import HELD_OUT, REPORTED
+from tests.tools.bags import START, write_ros1
+
+import rvmon
+from rvmon.cli import main
+
+pytest.importorskip("rosbags")
+
+ROBOTS = {**REPORTED, **HELD_OUT}
+
+
+def write(robot, folder):
+    """The recording and the specification of a robot."""
+    types = {topic: kind for topic, (kind, _) in robot.topics.items()}
+    sent = [
+        (topic, START + turn * 10**8 + place, content)
+        for turn in range(3)
+        for place, (topic, (_, content)) in enumerate(robot.topics.items())
+    ]
+    bag = write_ros1(folder / "a.bag", sent, types, robot.definitions)
+    spec = folder / "a.rv"
+    spec.write_text(f"spec robot\n{robot.declared}\nrequirement R1\n  always true\n")
+    return str(spec), str(bag)
+
+
+def flat(tables, prefix=""):
+    """The place of each name."""
+    for key, table in tables.items():
+        if "topic" in table:
+            yield prefix + key, f"{table['topic']} {table.get('value', '')}".strip()
+        else:
+            yield from flat(table, f"{prefix}{key}.")
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
+    """Right for all that a recording says; open for the rest; it passes `check`, and runs."""
+    robot = ROBOTS[name]
+    spec, bag = write(robot, tmp_path)
+    open_ones = [one for one, places in robot.expected.items() if not places]
+    assert main(["bind", spec, bag]) == int(bool(open_ones))
+    told = capsys.readouterr()
+    found = dict(flat(tomllib.loads(told.out)["bind"]))
+    assert {one: found.get(one) for one in robot.expected} == {
+        one: found.get(one) if found.get(one) in places else (places or (None,))[0]
+        for one, places in robot.expected.items()
+    }
+    for one in open_ones:
+        assert f"`{one}`" in told.out
+        assert f"`{one}`" in told.err
+    binding = tmp_path / "a.toml"
+    binding.write_text(told.out)
+    assert main(["check", spec, "--binding", str(binding)]) == 0
+    rvmon.load(spec).evaluate(bag, binding=binding, allow_missing=True)
