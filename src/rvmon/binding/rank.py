@@ -31,6 +31,9 @@ _FITTING = {
 _REQUESTS = frozenset({"request", "requested", "event", "pressed", "command"})
 """Words that say of an event no more than that it is one."""
 
+_A_WORD = 0.05
+"""Scores differ by less where the same words are found."""
+
 _MOVING = "nav_msgs/msg/Odometry"
 
 
@@ -75,8 +78,18 @@ def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float
 
 
 def is_clear(found: Sequence[tuple[float, Candidate]]) -> bool:
-    """Whether one is better than all others."""
-    return bool(found) and (len(found) == 1 or found[1][0] < found[0][0] - 1e-9)
+    """Whether one is better than all others; of two topics that say the same, none is."""
+    if not found:
+        return False
+    best, first = found[0]
+    return all(
+        score < best - (_A_WORD if _is_twin(first, one) else 1e-9) for score, one in found[1:]
+    )
+
+
+def _is_twin(first: Candidate, second: Candidate) -> bool:
+    is_same = (first.value, first.topic.type) == (second.value, second.topic.type)
+    return is_same and first.topic.name != second.topic.name
 
 
 def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
@@ -129,9 +142,11 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
         if not weight:
             return 0.0
         total += weight
-    moving = 0.05 * (candidate.topic.type == _MOVING)
-    whole = 0.02 * candidate.value.startswith("hypot(")
-    return total / len(asked) + moving + whole - 0.01 * len(foreign)
+    better = 0.05 * (candidate.topic.type == _MOVING) + 0.02 * candidate.value.startswith("hypot(")
+    if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
+        better += 0.2  # a text says which label it is, a number does not
+    worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
+    return total / len(asked) + better - worse
 
 
 def _weight(word: str, candidate: Candidate) -> float:

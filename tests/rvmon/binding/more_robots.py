@@ -233,3 +233,82 @@ LATER = {
         },
     ),
 }
+
+LAST = {
+    "ridgeback": Robot(
+        {
+            "/odometry/filtered": ODOMETRY,
+            "/front/scan": SCAN,
+            "/rear/scan": SCAN,
+            "/mcu/status": ("ridgeback_msgs/msg/Status", {"measured_battery": 24.2}),
+            "/motors/feedback": ("puma_motor_msgs/msg/MultiFeedback", {}),
+            "/lift/position": FLOAT,
+            "/lift/target_position": FLOAT,
+            "/lift/max_speed": FLOAT,
+            "/ambient/temperature": TEMPERATURE,
+            "/joy": ("sensor_msgs/msg/Joy", {"axes": [0.0, 1.0], "buttons": [0, 1]}),
+        },
+        "signal front_obstacle, obstacle, lift_position, lift_target : real [m]\n"
+        "signal lift_speed : real [m/s]\nsignal speed_limit : real [m/s]\n"
+        "signal measured_battery : real [V]\nsignal battery_current : real [A]\n"
+        "signal left_motor_temperature : real [degC]\nsignal sideways_speed : real [m/s]\n"
+        "signal turn_rate : real [deg/s]\nsignal tilt : real [deg]\nsignal roll : real [rad]\n"
+        "signal uptime : real [s]\nsignal ambient_temperature : real [degC]\nsignal joystick_x : real",
+        {
+            "front_obstacle": ("/front/scan min(ranges)",),
+            "obstacle": OPEN,
+            "lift_position": ("/lift/position data",),
+            "lift_target": ("/lift/target_position data",),
+            "lift_speed": OPEN,  # there is its limit only
+            "speed_limit": OPEN,
+            "measured_battery": ("/mcu/status measured_battery",),
+            "battery_current": OPEN,
+            "left_motor_temperature": OPEN,
+            "sideways_speed": ("/odometry/filtered twist.twist.linear.y",),
+            "turn_rate": ("/odometry/filtered twist.twist.angular.z",),
+            "tilt": OPEN,
+            "roll": OPEN,
+            "uptime": ("/mcu/status uptime_s",),
+            "ambient_temperature": ("/ambient/temperature temperature",),
+            "joystick_x": OPEN,
+        },
+        {
+            "ridgeback_msgs/msg/Status": "std_msgs/Header header\nfloat32 uptime_s\n"
+            "float64 measured_battery\nfloat64 current_battery\nfloat64 pcb_temperature\n",
+            "puma_motor_msgs/msg/MultiFeedback": "std_msgs/Header header\nfloat64 temperature\n",
+        },
+    ),
+    "drone": Robot(
+        {
+            "/uav1/odometry/odom_main": ODOMETRY,
+            "/uav1/garmin/range": RANGE,
+            "/uav1/mavros/battery": BATTERY,
+            "/uav1/control_manager/position_cmd": POSE,
+            "/uav1/wind": STAMPED_TWIST,
+            "/uav1/mag": ("sensor_msgs/msg/MagneticField", {}),
+            "/uav1/baro": ("sensor_msgs/msg/FluidPressure", {"fluid_pressure": 1e5}),
+            "/uav1/baro/temperature": TEMPERATURE,
+        },
+        "signal height : real [m]\nsignal ground_distance : real [m]\nsignal wind_speed : real [m/s]\n"
+        "signal air_speed : real [m/s]\nsignal cmd_z : real [m]\nsignal z : real [m]\n"
+        "signal battery_level : real [%]\nsignal mag_x : real [uT]\nsignal pressure : real [hPa]\n"
+        "signal climb_rate : real [m/s]\nsignal motor_temperature : real [degC]\n"
+        "signal heading_error : real [rad]\nsignal payload_mass : real [kg]\nsignal uav2_x : real [m]",
+        {
+            "height": ("/uav1/odometry/odom_main pose.pose.position.z",),
+            "ground_distance": ("/uav1/garmin/range range",),
+            "wind_speed": speeds("/uav1/wind", "twist."),
+            "air_speed": OPEN,
+            "cmd_z": ("/uav1/control_manager/position_cmd pose.position.z",),
+            "z": ("/uav1/odometry/odom_main pose.pose.position.z",),
+            "battery_level": ("/uav1/mavros/battery percentage",),
+            "mag_x": ("/uav1/mag magnetic_field.x",),
+            "pressure": ("/uav1/baro fluid_pressure",),
+            "climb_rate": ("/uav1/odometry/odom_main twist.twist.linear.z",),
+            "motor_temperature": OPEN,
+            "heading_error": OPEN,
+            "payload_mass": OPEN,
+            "uav2_x": OPEN,
+        },
+    ),
+}
