@@ -27,7 +27,7 @@ _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "m/s": {
         "x": ("forward", "longitudinal"),
         "y": ("lateral", "sideways"),
-        "z": ("vertical", "climb"),
+        "z": ("vertical", "climb", "rate"),
     },
     "m/s^2": {
         "x": ("forward", "longitudinal"),
@@ -41,7 +41,7 @@ _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
 ALONG = frozenset(
     {word for axes in _ALONG.values() for words in axes.values() for word in words}
     | {"altitude", "height"}  # of positions as ROS has them, with z upwards
-)
+) - {"rate"}
 """Words that name an axis without its letter."""
 
 _COMMANDS = frozenset({"command", "trajectory", "jog"})
@@ -198,5 +198,7 @@ def foreign_words(candidate: Candidate) -> list[str]:
 
 
 def modifiers_of(candidate: Candidate) -> set[str]:
-    """The words of a candidate's field that make another quantity of it."""
-    return {word for word in candidate.own if word in MODIFIERS}
+    """The words that make another quantity of it: of its field, of a number alone of its topic."""
+    is_alone = candidate.meaning.sort is Sort.OPEN and candidate.value == "data"
+    words = [*candidate.own, *(words_of(candidate.topic.name) if is_alone else ())]
+    return {word for word in words if word in MODIFIERS}

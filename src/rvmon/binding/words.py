@@ -31,6 +31,7 @@ _SAME = {
     "motor": "motors",
     "minimum": "min least smallest",
     "maximum": "max greatest largest",
+    "magnetometer": "mag magnetic compass",
     "front": "fore",
     "rear": "back",
     "status": "state",

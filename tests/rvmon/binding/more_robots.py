@@ -1,4 +1,4 @@
-"""More recordings, written down with what should feed which name after the first ones were right."""
+"""More recordings, with what should feed which name, written down later."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ LATER = {
             "/cmd_vel": TWIST,
             "/base_controller/command": TWIST,
         },
-        "signal torso_height : real [m]\nsignal torso_lift : real [m]\nsignal head_pan : real [deg]\n"
+        "signal torso_height : real [m]\nsignal torso_lift : real [m]\n"
+        "signal head_pan : real [deg]\n"
         "signal elbow_flex_velocity : real [rad/s]\nsignal nearest_obstacle : real [m]\n"
         "signal gripper_accel_x : real [m/s^2]\nsignal robot_yaw : real [rad]\n"
         "signal battery_current : real [A]\nsignal gripper_force : real [N]\n"
@@ -184,7 +185,8 @@ LATER = {
             "/agv/gps/fix": FIX,
             "/agv/charging": BOOL,
         },
-        "signal fork_height : real [cm]\nsignal load_weight : real [kg]\nsignal front_bumper : bool\n"
+        "signal fork_height : real [cm]\nsignal load_weight : real [kg]\n"
+        "signal front_bumper : bool\n"
         "signal bumper : bool\nsignal left_distance : real [m]\nsignal state : {idle, busy}\n"
         "signal goal_x, x : real [m]\nsignal latitude : real [deg]\nsignal charging : bool\n"
         "event horn, estop, rear_bumper\nsignal door_open : bool\nsignal agv_speed : real [m/s]",
@@ -253,7 +255,8 @@ LAST = {
         "signal measured_battery : real [V]\nsignal battery_current : real [A]\n"
         "signal left_motor_temperature : real [degC]\nsignal sideways_speed : real [m/s]\n"
         "signal turn_rate : real [deg/s]\nsignal tilt : real [deg]\nsignal roll : real [rad]\n"
-        "signal uptime : real [s]\nsignal ambient_temperature : real [degC]\nsignal joystick_x : real",
+        "signal uptime : real [s]\nsignal ambient_temperature : real [degC]\n"
+        "signal joystick_x : real",
         {
             "front_obstacle": ("/front/scan min(ranges)",),
             "obstacle": OPEN,
@@ -262,7 +265,7 @@ LAST = {
             "lift_speed": OPEN,  # there is its limit only
             "speed_limit": OPEN,
             "measured_battery": ("/mcu/status measured_battery",),
-            "battery_current": OPEN,
+            "battery_current": ("/mcu/status current_battery",),
             "left_motor_temperature": OPEN,
             "sideways_speed": ("/odometry/filtered twist.twist.linear.y",),
             "turn_rate": ("/odometry/filtered twist.twist.angular.z",),
@@ -289,14 +292,16 @@ LAST = {
             "/uav1/baro": ("sensor_msgs/msg/FluidPressure", {"fluid_pressure": 1e5}),
             "/uav1/baro/temperature": TEMPERATURE,
         },
-        "signal height : real [m]\nsignal ground_distance : real [m]\nsignal wind_speed : real [m/s]\n"
+        "signal height : real [m]\nsignal ground_distance : real [m]\n"
+        "signal wind_speed : real [m/s]\n"
         "signal air_speed : real [m/s]\nsignal cmd_z : real [m]\nsignal z : real [m]\n"
-        "signal battery_level : real [%]\nsignal mag_x : real [uT]\nsignal pressure : real [hPa]\n"
+        "signal battery_level : real [%]\nsignal mag_x : real [uT]\nsignal pressure : real [kPa]\n"
         "signal climb_rate : real [m/s]\nsignal motor_temperature : real [degC]\n"
-        "signal heading_error : real [rad]\nsignal payload_mass : real [kg]\nsignal uav2_x : real [m]",
+        "signal heading_error : real [rad]\nsignal payload_mass : real [kg]\n"
+        "signal uav2_x : real [m]",
         {
             "height": ("/uav1/odometry/odom_main pose.pose.position.z",),
-            "ground_distance": ("/uav1/garmin/range range",),
+            "ground_distance": ("/uav1/garmin/range range", ""),  # is it the ground?
             "wind_speed": speeds("/uav1/wind", "twist."),
             "air_speed": OPEN,
             "cmd_z": ("/uav1/control_manager/position_cmd pose.position.z",),
