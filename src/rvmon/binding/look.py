@@ -66,7 +66,9 @@ class Range:
 def _shown(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
-    return f"{value:.6g}" if isinstance(value, int | float) else shorten(str(value))
+    if isinstance(value, int | float):
+        return f"{value + 0:.6g}"  # without the sign of -0
+    return shorten(str(value))
 
 
 def names_in(source: MessageFile) -> Mapping[str, Named]:

@@ -107,12 +107,23 @@ def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> N
     is_so = f"`{term}` of {where} is {_written(found)}"
     wanted = f"`{name}` is declared [{declared}]"
     if not alike:
-        raise TraceError(f"{wanted}, and {is_so}: bind a field, or an expression, in [{declared}]")
+        raise TraceError(
+            f"{wanted}, and {is_so}: bind what is in [{declared}]{_such(target, topic)}"
+        )
     if any(not one.is_exact or one.unit.factor == target.factor for one in alike):
         return
     says = f"and `unit` says [{given}]" if given else "in which it would be judged as it is"
     fix = f'write `unit = "{alike[0].unit.symbol or 1}"` in a binding, and it is converted'
     raise TraceError(f"{is_so}; {wanted}, {says}: {fix}")
+
+
+def _such(target: Unit, topic: Topic) -> str:
+    fields = [
+        f"`{leaf}`"
+        for leaf in topic.leaves
+        if any(unit.dimension == target.dimension for unit in meaning_of(leaf, topic).units)
+    ]
+    return f", such as {' or '.join(fields[:3])}" if fields and target.dimension else ""
 
 
 def _written(found: Iterable[Measure]) -> str:
