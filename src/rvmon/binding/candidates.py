@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from rvmon.binding.words import (
@@ -14,7 +14,8 @@ from rvmon.binding.words import (
     unit_in_name,
     words_of,
 )
-from rvmon.readers.messages.by_names import NAMES
+from rvmon.readers.messages.by_names import arrays_with_names
+from rvmon.readers.messages.look import Looked
 from rvmon.readers.messages.meaning import Meaning, Sort, is_listed, meaning_of
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
@@ -48,8 +49,6 @@ _COMMANDS = frozenset({"command", "trajectory", "jog"})
 
 _COMMANDING = re.compile(r"Ackermann|Trajectory|Setpoint|Command|Target|Goal|Jog")
 """In names of types: their messages say what should be."""
-
-_NAMES = re.compile(rf"(^|\.)({'|'.join(NAMES)})\[\]$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,29 +97,17 @@ class Candidate:
         return dimensions_of(self.own) or dimensions_of(words_of(self.topic.name))
 
 
-@dataclass(frozen=True, slots=True)
-class Named:
-    """What the first messages of a topic say of it.
-
-    Attributes:
-        frames: that their headers name.
-        joints: by the path of an array of names those in it.
-    """
-
-    frames: frozenset[str] = frozenset()
-    joints: Mapping[str, tuple[str, ...]] | None = None
-
-
-def candidates_of(topic: Topic, named: Named) -> Iterator[Candidate]:
+def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
     """All that the messages of a topic say or that can be calculated of them."""
     frames = [word for frame in sorted(named.frames) for word in words_of(frame)]
     type_words = words_of(topic.type.rpartition("/")[2]) if is_listed(topic.type) else []
     around = tuple(dict.fromkeys([*words_of(topic.name), *frames, *type_words]))
+    with_names = arrays_with_names(topic)
     for leaf, kind in topic.leaves.items():
         meaning = meaning_of(leaf, topic)
         if leaf.startswith("header.") or meaning.sort is Sort.ODD or "covariance" in leaf:
             continue
-        for value, own, axis in _places(leaf, meaning, named):
+        for value, own, axis in _places(leaf, meaning, named, with_names):
             words = (*own, *_along(meaning, axis))
             yield Candidate(topic, value, kind, words, around, meaning, axis)
         if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
@@ -133,7 +120,9 @@ def candidates_of(topic: Topic, named: Named) -> Iterator[Candidate]:
             yield Candidate(topic, value, kind, level, around, meaning)
 
 
-def _places(leaf: str, meaning: Meaning, named: Named) -> Iterator[tuple[str, list[str], str]]:
+def _places(
+    leaf: str, meaning: Meaning, named: Looked, with_names: Mapping[str, str]
+) -> Iterator[tuple[str, list[str], str]]:
     """The values that a field has, with words and axis; of an array some elements, or the least."""
     words = [*words_of(leaf), *(one for word in meaning.words for one in words_of(word))]
     if "[" not in leaf:
@@ -149,33 +138,12 @@ def _places(leaf: str, meaning: Meaning, named: Named) -> Iterator[tuple[str, li
             yield f"{array}[{place}]", [*plain, axis], axis
     elif "distance" in words and meaning.sort is Sort.MEASURED:
         yield f"min({array})", ["nearest", *words], ""
-    for name in _names_beside(array, named):
+    for name in (named.joints or {}).get(with_names.get(array, ""), ()):
         yield f"{array}[{name}]", [*words, *words_of(name)], ""
-
-
-def _names_beside(array: str, named: Named) -> Collection[str]:
-    """The names of the elements of an array, which stand beside it or beside what holds it."""
-    parent = array.rpartition(".")[0]
-    while True:
-        for path, names in (named.joints or {}).items():
-            if path.rpartition(".")[0] == parent and array != path.removesuffix("[]"):
-                return names
-        if not parent:
-            return ()
-        parent = parent.rpartition(".")[0]
 
 
 def _along(meaning: Meaning, axis: str) -> tuple[str, ...]:
     return _ALONG.get(meaning.units[0].symbol if meaning.units else "", {}).get(axis, ())
-
-
-def arrays_of_names(topic: Topic) -> list[str]:
-    """The arrays whose elements are the names of those of others."""
-    return [
-        leaf
-        for leaf, kind in topic.leaves.items()
-        if kind is Kind.LABEL and _NAMES.search(leaf) and leaf.count("[") == 1
-    ]
 
 
 def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:

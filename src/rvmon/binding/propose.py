@@ -8,10 +8,11 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rvmon.binding.candidates import Candidate, Named, candidates_of, events_of
-from rvmon.binding.look import Range, names_in, ranges_of
+from rvmon.binding.candidates import Candidate, candidates_of, events_of
+from rvmon.binding.ranges import Range, ranges_of
 from rvmon.binding.rank import fitting, is_clear, wanted_of
 from rvmon.readers.messages.file import MessageFile
+from rvmon.readers.messages.look import Looked, names_in
 from rvmon.readers.messages.meaning import Sort
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.schema import Kind
@@ -131,7 +132,7 @@ def _event_lines(fields: Mapping[str, Type], one: Candidate) -> Iterator[str]:
         yield 'on = "change"  # only the first of several in a row that are true'
     payload = {}
     for name, type_ in fields.items():
-        ranked = fitting(wanted_of(name, type_, ()), candidates_of(one.topic, Named()))
+        ranked = fitting(wanted_of(name, type_, ()), candidates_of(one.topic, Looked()))
         if is_clear(ranked):
             payload[name] = ranked[0][1].value
         else:

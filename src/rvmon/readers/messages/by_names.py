@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from rvmon.errors import TraceError
+from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import shorten
 from rvmon.trace.binding import Field, Named, Step
+from rvmon.trace.schema import Kind
 
 Get = Callable[[Any], Any]
 
@@ -17,7 +20,38 @@ NAMES = ("name", "names", "joint_names", "dof_names", "interface_names", "interf
 KEYS = ("name", "key", "child_frame_id", "joint_name", "hardware_id", "device_id", "id")
 """Fields that name the message that they are in."""
 
+_LISTS = re.compile(rf"(^|\.)({'|'.join(NAMES)})\[\]$")
+
 _ABSENT = object()
+
+
+def arrays_of_names(topic: Topic) -> list[str]:
+    """The arrays of a topic whose elements name those of others."""
+    return [
+        leaf
+        for leaf, kind in topic.leaves.items()
+        if kind is Kind.LABEL and leaf.count("[") == 1 and _LISTS.search(leaf)
+    ]
+
+
+def arrays_with_names(topic: Topic) -> dict[str, str]:
+    """The arrays of numbers whose elements have names, with the array of these.
+
+    >>> leaves = {"name[]": Kind.LABEL, "position[]": Kind.REAL}
+    >>> arrays_with_names(Topic("/joints", "sensor_msgs/msg/JointState", leaves))
+    {'position': 'name[]'}
+    """
+    holders = {names.rpartition(".")[0]: names for names in arrays_of_names(topic)}
+    found: dict[str, str] = {}
+    for leaf, kind in topic.leaves.items():
+        array = leaf.removesuffix("[]")
+        parent = array
+        while kind is not Kind.LABEL and leaf.endswith("[]") and "[" not in array and parent:
+            parent = parent.rpartition(".")[0]
+            if parent in holders:
+                found[array] = holders[parent]
+                break
+    return found
 
 
 def by_names(path: tuple[Step, ...], *, mappings: bool) -> Get:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rvmon.errors import TraceError
+from rvmon.readers.messages.by_names import arrays_with_names
 from rvmon.readers.messages.fields import expect_kinds, field_of
 from rvmon.readers.messages.meaning import plain_type
 from rvmon.readers.messages.measured import expect_units
@@ -31,8 +32,8 @@ def matched(schema: Schema, topics: Mapping[str, Topic]) -> Matched:
     """Find what feeds the declared names.
 
     A column that somebody named counts before the binding, and that before the name itself: `a.b.c`
-    is the field `c` of the topic `/a/b`, or `b.c` of `/a`; a topic with one field, which is no
-    array and not of the header, is that field.
+    is the field `c` of the topic `/a/b`, or `b.c` of `/a`, or the element named `c` of its array
+    `b`; a topic with one field, which is no array and not of the header, is that field.
 
     Raises:
         TraceError: a topic has not the field that is bound, or it is of another kind; or its
@@ -74,6 +75,7 @@ def _by_name(
     found = _place(schema.columns[name], columns, topics) if name in schema.columns else None
     if name not in schema.columns:
         found = next((place for one, place in columns.items() if dotted(one) == name), None)
+        found = found or _element(name, topics)
     if name in schema.signals:
         return None if found is None or found[1] is None else Bound(*found)
     payload = schema.events[name]
@@ -93,6 +95,16 @@ def _by_name(
     if value is not None and topics[topic].leaves.get(str(value)) is not Kind.BOOL:
         value = None  # each message is an occurrence
     return Bound(topic, value, fields)
+
+
+def _element(name: str, topics: Mapping[str, Topic]) -> tuple[str, Field | None] | None:
+    """The element `c` of the array `/a.b`, whose names stand beside it, of the name `a.b.c`."""
+    for topic in topics.values():
+        for array in arrays_with_names(topic):
+            prefix = f"{dotted(topic.name)}.{array}."
+            if name.startswith(prefix):
+                return topic.name, field_of(f"{array}[{name.removeprefix(prefix)}]")
+    return None
 
 
 def dotted(column: str) -> str:

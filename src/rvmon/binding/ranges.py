@@ -1,4 +1,4 @@
-"""A look at the messages of a recording: what they name, and the range of what they say."""
+"""The ranges of values in a recording, and the first of them."""
 
 from __future__ import annotations
 
@@ -8,21 +8,17 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from rvmon.binding.candidates import Candidate, Named, arrays_of_names
+from rvmon.binding.candidates import Candidate
 from rvmon.binding.expression import term_of
 from rvmon.errors import TraceError
 from rvmon.readers.messages.by_names import Get
 from rvmon.readers.messages.fields import getter
 from rvmon.readers.messages.file import MessageFile
+from rvmon.readers.messages.look import MOST
 from rvmon.readers.values import plain, shorten
 
-MOST = 50_000
-"""Messages that are looked at."""
-
 _FIRST = 3
-"""Messages of each topic whose names are read, and values that are shown."""
-
-_FRAMES = ("header.frame_id", "child_frame_id")
+"""Values that are shown."""
 
 
 @dataclass(slots=True)
@@ -69,45 +65,6 @@ def _shown(value: Any) -> str:
     if isinstance(value, int | float):
         return f"{value + 0:.6g}"  # without the sign of -0
     return shorten(str(value))
-
-
-def names_in(source: MessageFile) -> Mapping[str, Named]:
-    """What the first messages of each topic name: frames, and the elements of arrays."""
-    wanted = {
-        topic.name: [leaf for leaf in _FRAMES if leaf in topic.leaves] + arrays_of_names(topic)
-        for topic in source.topics.values()
-        if not topic.fault
-    }
-    reading = {topic for topic, leaves in wanted.items() if leaves}
-    found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
-    counts: dict[str, int] = defaultdict(int)
-    with suppress(TraceError):  # what cannot be read is told by who reads it all
-        for number, (topic, _, content) in enumerate(source.read(reading)):
-            if number == MOST or not reading:
-                break
-            counts[topic] += 1
-            if counts[topic] <= _FIRST:
-                for leaf in wanted[topic]:
-                    for name in _texts(leaf, content):
-                        if name not in found[topic][leaf]:
-                            found[topic][leaf].append(name)
-            if counts[topic] == _FIRST:
-                reading.discard(topic)
-    return {topic: _named(found[topic]) for topic in wanted}
-
-
-def _texts(leaf: str, content: Any) -> Iterable[str]:
-    get = getter(term_of(leaf.removesuffix("[]")), mappings=isinstance(content, Mapping))
-    with suppress(KeyError, TraceError):
-        value = get(content)
-        return [value] if isinstance(value, str) else [str(one) for one in value or ()]
-    return []
-
-
-def _named(found: Mapping[str, list[str]]) -> Named:
-    frames = frozenset(name for leaf in _FRAMES for name in found.get(leaf, ()) if name)
-    joints = {leaf: tuple(names) for leaf, names in found.items() if leaf not in _FRAMES}
-    return Named(frames, joints)
 
 
 def ranges_of(
