@@ -28,6 +28,7 @@ TYPES = {
     "/odom": "nav_msgs/msg/Odometry",
     "/range": "sensor_msgs/msg/Range",
     "/stop": "std_msgs/msg/Bool",
+    "/temp": "std_msgs/msg/Float64",
 }
 """Of topics, what they hold."""
 
