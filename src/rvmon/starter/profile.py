@@ -51,14 +51,11 @@ def profile_of(path: str, time: str | None = None) -> Profile:
         stamps=stamps,
     )
     followed = {name: _Followed(shape) for name, shape in shapes.declared.items()}
-    start = latest = end = samples = lateness = 0
-    for sample in FileRecording(path, schema, ordered=False):
-        if not samples:
-            start = latest = end = sample.t
+    start = end = samples = 0
+    recording = FileRecording(path, schema, ordered=False)
+    for sample in recording:
+        start, end = (start if samples else sample.t), sample.t
         samples += 1
-        start, end = min(start, sample.t), max(end, sample.t)
-        lateness = max(lateness, latest - sample.t)
-        latest = max(latest, sample.t)
         for name, one in followed.items():
             one.take(sample.t, sample.values.get(name, _NOTHING), first=samples == 1)
     columns = [one.column(name, start, end) for name, one in followed.items()]
@@ -67,7 +64,7 @@ def profile_of(path: str, time: str | None = None) -> Profile:
     left_out = {**shapes.left_out, **silent}
     if not kept:
         raise TraceError(f"{path}: no signal or event is found ({_reasons(left_out)})")
-    return Profile(path, kept, left_out, start, end, samples, lateness)
+    return Profile(path, kept, left_out, start, end, samples, recording.rows.lateness)
 
 
 def _reasons(left_out: Mapping[str, str]) -> str:
