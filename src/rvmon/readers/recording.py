@@ -8,6 +8,7 @@ from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from errno import ENOENT
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
@@ -305,6 +306,8 @@ def format_of(path: str) -> str:
     if is_bag_folder(path) or (is_address(path) and path.endswith("/")):
         return "ros2"
     suffix, packed = endings_of(path)
+    if suffix not in FORMATS and not (is_address(path) or Path(path).exists()):
+        raise TraceError(cannot_read(path, FileNotFoundError(ENOENT, os.strerror(ENOENT))))
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)
         ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"
