@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from rvmon.binding.functions import number
 from rvmon.binding.words import (
     EMPTY,
     MODIFIERS,
@@ -16,7 +17,7 @@ from rvmon.binding.words import (
 )
 from rvmon.readers.messages.by_names import arrays_with_names
 from rvmon.readers.messages.look import Looked
-from rvmon.readers.messages.meaning import Meaning, Sort, is_listed, meaning_of
+from rvmon.readers.messages.meaning import UNKNOWN, Meaning, Sort, is_listed, meaning_of
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
 from rvmon.units.table import parse_unit
@@ -118,6 +119,17 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
             value = f"hypot({leaf}, {leaf[:-1]}y)"
             level = ("speed", "ground", "horizontal")
             yield Candidate(topic, value, kind, level, around, meaning)
+    yield from _of_keys(topic, named, around)
+
+
+def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[Candidate]:
+    """The values that have a key, which are texts, and may be numbers."""
+    for path, value in (looked.entries or {}).items():
+        own = tuple(words_of(" ".join(re.findall(r"\[([^\[\]]+)\]", path))))
+        if number(value) is None:
+            yield Candidate(topic, path, Kind.LABEL, own, around, UNKNOWN)
+        else:
+            yield Candidate(topic, f"number({path})", Kind.REAL, own, around, UNKNOWN)
 
 
 def _places(

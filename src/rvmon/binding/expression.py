@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from rvmon.binding.functions import CONNECTIVES, greatest, least, yaw
+from rvmon.binding.functions import CONNECTIVES, greatest, least, number, yaw
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Source
 from rvmon.errors import RvmonError
@@ -37,6 +37,8 @@ _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 
+_OF_TEXTS: Mapping[str, Callable[..., Any]] = {"number": number}
+
 _ROTATION = ("x", "y", "z", "w")
 
 
@@ -46,7 +48,7 @@ def term_of(text: str) -> Term:
     Args:
         text: an expression without units and temporal operators; what is a name in it, also one
             like `ranges[0]`, is a field of the message, `yaw(q)` the heading of a quaternion, and
-            `min(ranges)` or `max(ranges)` of all elements of an array.
+            `min(ranges)` or `max(ranges)` of all elements of an array, `number(text)` of a text.
 
     Raises:
         RvmonError: it is none; with cause and fix.
@@ -116,11 +118,15 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
             raise RvmonError("`yaw` takes a field that is a quaternion: `yaw(pose.orientation)`")
         quaternion = terms[0].path
         return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION), "yaw")
+    if name in _OF_TEXTS:
+        if len(terms) != 1 or not isinstance(terms[0], Field):
+            raise RvmonError("`number` takes a field that is a text: `number(values[Load].value)`")
+        return Applied(_OF_TEXTS[name], terms, name)
     if name in _OF_ARRAYS and len(terms) == 1 and isinstance(terms[0], Field):
         return Applied(_OF_ARRAYS[name], (Elements(terms[0]),), name)
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:
-        names = [*known, "yaw"]
+        names = [*known, *_OF_TEXTS, "yaw"]
         meant = did_you_mean(name, names, f"there are {', '.join(names)}")
         raise RvmonError(f"no function `{name}` in a value: {meant}")
     wanted = len(FUNCTIONS[name].arguments)

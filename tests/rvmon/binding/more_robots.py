@@ -316,4 +316,36 @@ LAST = {
             "uav2_x": OPEN,
         },
     ),
+    "diagnosed": Robot(
+        {
+            "/diagnostics": (
+                "diagnostic_msgs/msg/DiagnosticArray",
+                {
+                    "status": [
+                        {
+                            "name": "left motor",
+                            "values": [
+                                {"key": "Temperature (C)", "value": "41.5"},
+                                {"key": "Mode", "value": "idle"},
+                            ],
+                        },
+                        {
+                            "name": "right motor",
+                            "values": [{"key": "Temperature (C)", "value": "40.5"}],
+                        },
+                    ]
+                },
+            )
+        },
+        "signal left_motor_temperature, motor_temperature : real [degC]\n"
+        "signal left_motor_mode : {idle, busy}\nsignal left_motor_current : real [A]",
+        {
+            "left_motor_temperature": (
+                "/diagnostics number(status[left motor].values[Temperature (C)].value)",
+            ),
+            "motor_temperature": OPEN,
+            "left_motor_mode": ("/diagnostics status[left motor].values[Mode].value",),
+            "left_motor_current": OPEN,
+        },
+    ),
 }

@@ -46,12 +46,21 @@ def field_of(text: str) -> Field | None:
 
 
 def fields_in(term: Term | None) -> Iterator[Field | Elements]:
-    """The fields that a term reads."""
+    """The fields of numbers and truth values that a term reads, or the one that it is."""
     if isinstance(term, Field | Elements):
         yield term
-    elif isinstance(term, Applied):
+    elif isinstance(term, Applied) and term.sign != "number":
         for arg in term.args:
             yield from fields_in(arg)
+
+
+def texts_in(term: Term) -> Iterator[Field]:
+    """The fields whose text is read as a number."""
+    if isinstance(term, Applied):
+        for arg in term.args:
+            if term.sign == "number" and isinstance(arg, Field):
+                yield arg
+            yield from texts_in(arg)
 
 
 def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
@@ -88,6 +97,12 @@ def expect_kinds(
     Raises:
         TraceError: a field is not there, or holds something else.
     """
+    for text in texts_in(term):
+        if kind_of(text, topic) not in (None, Kind.LABEL):
+            raise TraceError(
+                f"`{name}`: `{text}` of topic {topic.name} ({topic.type}) is no text, and `number` "
+                "reads one: leave it out"
+            )
     for field in fields_in(term):
         found = kind_of(field, topic)
         if found is None:
@@ -125,6 +140,9 @@ def getter(term: Term, *, mappings: bool) -> Get:
             return _stepping(path, mappings=mappings)
         case Elements(array=array):
             return getter(array, mappings=mappings)
+        case Applied(operation=operation, args=(Field() as field,), sign="number"):
+            text = getter(field, mappings=mappings)
+            return lambda content: None if (one := text(content)) is None else operation(one)
         case Applied(operation=operation, args=(Elements() as elements,)):
             values = getter(elements, mappings=mappings)
             return lambda content: None if (one := values(content)) is None else operation(one)

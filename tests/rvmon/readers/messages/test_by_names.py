@@ -26,6 +26,7 @@ OWN = {
     + "=" * 80
     + "\nMSG: control_msgs/InterfaceValue\nstring[] interface_names\nfloat64[] values\n",
 }
+VALUES = [{"key": "Mode", "value": "on"}, {"key": "Load (%)", "value": "41.5"}]
 SENT = [
     ("/joints", START, {"name": ["elbow", "wrist"], "position": [1.0, 2.0]}),
     ("/joints", START + 1, {"name": ["finger"], "position": [9.0]}),
@@ -35,11 +36,7 @@ SENT = [
     (
         "/diagnostics",
         START + 5,
-        {
-            "status": [
-                {"name": "left motor", "level": 1, "values": [{"key": "Mode", "value": "on"}]}
-            ]
-        },
+        {"status": [{"name": "left motor", "level": 1, "values": VALUES}]},
     ),
     (
         "/tf",
@@ -63,10 +60,17 @@ PLACES = {
     "b": ("/arm/state", "actual.positions[b]"),
     "level": ("/diagnostics", "status[left motor].level"),
     "mode": ("/diagnostics", "status[left motor].values[Mode].value"),
+    "load": ("/diagnostics", "number(status[left motor].values[Load (%)].value) + 1"),
+    "nothing": ("/diagnostics", "number(status[left motor].values[Mode].value)"),
     "hand": ("/tf", "transforms[hand].transform.translation.x"),
     "effort": ("/dynamic", "interface_values[b].values[effort] * 2"),
 }
-SPEC = "spec s\nsignal elbow, b, hand, effort : real\nsignal level : int\nsignal mode : {on, off}\n"
+SPEC = """
+spec s
+signal elbow, b, hand, effort, load, nothing : real
+signal level : int
+signal mode : {on, off}
+"""
 
 
 def values(path, binding=None, columns=None):
@@ -101,7 +105,7 @@ def test_names_lead_to_elements(tmp_path, bound, form):
         (2, {"elbow": 4.0}),
         (3, {"elbow": None}),
         (4, {"b": 7.0}),
-        (5, {"level": 1, "mode": "on"}),
+        (5, {"level": 1, "mode": "on", "load": 42.5, "nothing": None}),
         (6, {"hand": 8.0}),
         (7, {"effort": 5.0}),
     ]
@@ -111,6 +115,22 @@ def test_a_name_may_be_mapped(tmp_path):
     """As an element by its place."""
     path = write_ros1(tmp_path / "a.bag", SENT[:1], TYPES, OWN)
     assert values(path, columns={"elbow": "/joints.position[wrist]"}) == [(0, {"elbow": 2.0})]
+
+
+@pytest.mark.parametrize(
+    ("topic", "value", "message"),
+    [
+        ("/diagnostics", "number(status[left motor].level)", "is no text, and `number` reads one"),
+        ("/diagnostics", "number(status[left motor].lefel)", "did you mean `status"),
+        ("/diagnostics", "status[left motor].values[Mode].value", "holds text"),
+    ],
+)
+def test_texts_and_numbers_are_told_apart(tmp_path, bound, topic, value, message):
+    """Before a message is read."""
+    bound.write_text(f'[bind.load]\ntopic = "{topic}"\nvalue = "{value}"\n')
+    path = write_ros1(tmp_path / "a.bag", SENT, TYPES, OWN)
+    with pytest.raises(rvmon.TraceError, match=message):
+        values(path, bound)
 
 
 def test_what_has_no_names_is_told(tmp_path, bound):
