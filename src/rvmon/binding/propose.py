@@ -21,6 +21,9 @@ from rvmon.units.table import base_unit, parse_unit
 _MOST = 4
 """Places that are shown for a name."""
 
+_WHOLE = 1.5
+"""No ratio of a whole is as large."""
+
 Found = list[tuple[float, Candidate]]
 Ranges = Mapping[tuple[str, str], Range]
 
@@ -120,6 +123,9 @@ def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
                 "  # by the name of the field" if own else "  # a guess: the messages do not say"
             )
         yield f"unit = {_text(symbol)}{remark}"
+        high = ranges.get((one.topic.name, one.value), Range()).high
+        if told and not dimension and symbol == "1" and high is not None and high > _WHOLE:
+            yield f'# It looks like per cent: then value = "1 * {one.value}", unit = "%"'
     if _has_codes(type_, one):
         values = ranges.get((one.topic.name, one.value), Range()).first
         there = f": it holds {', '.join(map(str, values))}" if values else ""

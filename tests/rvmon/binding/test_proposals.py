@@ -4,7 +4,7 @@ import tomllib
 
 import pytest
 from tests.rvmon.binding.more_robots import LAST, LATER
-from tests.rvmon.binding.robots import HELD_OUT, REPORTED
+from tests.rvmon.binding.robots import HELD_OUT, REPORTED, Robot
 from tests.tools.bags import START, write_ros1
 
 import rvmon
@@ -61,3 +61,15 @@ def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
     binding.write_text(told.out)
     assert main(["check", spec, "--binding", str(binding)]) == 0
     rvmon.load(spec).evaluate(bag, binding=binding, allow_missing=True)
+
+
+def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
+    """What the messages hold is shown beside what they should mean."""
+    topics = {"/battery": ("sensor_msgs/msg/BatteryState", {"percentage": 75.0})}
+    spec, bag = write(Robot(topics, "signal battery_level : real [%]", {}), tmp_path)
+    assert main(["bind", spec, bag]) == 0
+    told = capsys.readouterr().out
+    assert 'value = "percentage"  # always 75\nunit = "1"\n# It looks like per cent' in told
+    binding = tmp_path / "a.toml"
+    binding.write_text(told.replace('"percentage"', '"1 * percentage"').replace('"1"', '"%"'))
+    assert main(["check", spec, "--binding", str(binding)]) == 0

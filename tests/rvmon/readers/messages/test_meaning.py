@@ -1,5 +1,7 @@
 """What the fields of messages mean, by the tables."""
 
+from importlib import resources
+
 import pytest
 
 from rvmon.readers.messages.meaning import Sort, is_listed, meaning_of
@@ -90,3 +92,24 @@ def test_what_nobody_can_know_is_open():
     assert meaning_of("pose.pose.orientation.x", Topic("/o", "nav_msgs/Odometry", {})).sort is (
         Sort.QUATERNION
     )
+
+
+def test_all_tables_can_be_read():
+    """Each entry is what it can be, and the messages that it names are listed."""
+    folder = resources.files("rvmon.readers.messages") / "meanings"
+    count = 0
+    for table in folder.iterdir():
+        package, name = table.name.removesuffix(".txt"), ""
+        for line in table.read_text("utf-8").splitlines():
+            if line.startswith("["):
+                name = f"{package}/msg/{line.strip('[]')}"
+                assert is_listed(name)
+                continue
+            field, entry, *_ = line.split()
+            count += 1
+            if entry.startswith("@"):
+                assert is_listed(entry[1:]), (name, line)
+            else:
+                meaning = meaning_of(field, Topic("/topic", name, {}))
+                assert (meaning.sort is Sort.MEASURED) == bool(meaning.units), (name, line)
+    assert count > 3000
