@@ -19,7 +19,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.forms import MESSAGE_FORMATS, is_bag_folder
+from rvmon.readers.messages.forms import MESSAGE_FORMATS, MESSAGE_FORMS, form_of_folder
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.readers.steps import LOOKED_AT
@@ -108,7 +108,7 @@ class FileRecording:
     @property
     def is_of_messages(self) -> bool:
         """Whether it holds messages of topics, and no columns."""
-        return self._format in MESSAGE_FORMATS.values()
+        return self._format in MESSAGE_FORMS
 
     @property
     def unread(self) -> Sequence[str]:
@@ -303,7 +303,9 @@ def format_of(path: str) -> str:
     """
     if path == "-":
         return "jsonl"
-    if is_bag_folder(path) or (is_address(path) and path.endswith("/")):
+    if not is_address(path) and (form := form_of_folder(path)):
+        return form
+    if is_address(path) and path.endswith("/"):
         return "ros2"
     suffix, packed = endings_of(path)
     if suffix not in FORMATS and not (is_address(path) or Path(path).exists()):

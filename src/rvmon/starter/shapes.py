@@ -13,7 +13,7 @@ from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.forms import MESSAGE_FORMATS
+from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.places import local_path, opened
 from rvmon.readers.recording import format_of, messages_of
@@ -37,7 +37,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
         TraceError: the file cannot be read, or has no time column.
     """
     form = format_of(path)
-    if form in MESSAGE_FORMATS.values():
+    if form in MESSAGE_FORMS:
         return message_shapes(messages_of(path))
     try:
         if form == "parquet":

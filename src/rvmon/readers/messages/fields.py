@@ -71,7 +71,7 @@ def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
     """
     path = re.sub(r"\[[^\[\]]*\]", "[]", str(field))
     if not topic.leaves or path in topic.leaves:
-        return topic.leaves.get(path)
+        return None if path in topic.doubtful else topic.leaves.get(path)
     where = f"topic {topic.name} ({topic.type})"
     if f"{path}[]" in topic.leaves:
         raise TraceError(f"{where}: `{field}` is an array: name an element, such as `{field}[0]`")

@@ -31,6 +31,10 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
             from rvmon.readers.messages.mcap import mcap_messages
 
             return mcap_messages(path, schema.binding.definitions)
+        if form == "tables":
+            from rvmon.readers.messages.tables import TableMessages
+
+            return TableMessages(path)
         from rvmon.readers.messages.ros import BagMessages
 
         return BagMessages(path, form, schema.binding.definitions)
@@ -51,7 +55,7 @@ class MessageFile:
 
     Args:
         path: of it.
-        form: a value of `MESSAGE_FORMATS`.
+        form: one of `MESSAGE_FORMS`.
         schema: the declared names, and how the recording gives them.
 
     Attributes:

@@ -21,6 +21,7 @@ class Topic:
         fault: why its messages cannot be read; empty if they can.
         messages: the types of the fields that are messages themselves, by their path, as far as
             the definition names them.
+        doubtful: the fields whose kind is not known: nothing was seen of them.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Topic:
     leaves: Mapping[str, Kind]
     fault: str = ""
     messages: Mapping[str, str] = field(default_factory=dict)
+    doubtful: frozenset[str] = frozenset()
 
 
 Message = tuple[str, int, Any]
