@@ -166,11 +166,11 @@ def _looked_over(table: _Table) -> _Table:
             for name, cell in zip(header, row, strict=False):
                 if cell:
                     cells[name].append(cell)
-    kinds = {
-        name: _kind(own)
-        for name, own in cells.items()
-        if name != stamps.column and _PATH.fullmatch(name)
-    }
+        kinds = {
+            name: _kind(own)
+            for name, own in cells.items()
+            if name != stamps.column and _PATH.fullmatch(name)
+        }
     return _Table(table.path, table.type, table.stamps, kinds)
 
 
