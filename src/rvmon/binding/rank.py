@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ from rvmon.binding.words import (
     EMPTY,
     MODIFIERS,
     ORDINALS,
+    SUBJECTS,
     WEAK,
     dimensions_of,
     is_found,
@@ -69,7 +71,12 @@ def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
 
 def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float, Candidate]]:
     """Those that fit, the best first, each with how well it does."""
-    fit = [one for one in candidates if wanted.type is None or _fits(wanted, wanted.type, one)]
+    type_ = wanted.type
+    fit = [
+        one
+        for one in candidates
+        if (_says_so(wanted, one) if type_ is None else _fits(wanted, type_, one))
+    ]
     scored = [(_score(wanted, one), one) for one in fit]
     return sorted(
         ((score, one) for score, one in scored if score),
@@ -101,11 +108,30 @@ def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
     if ("command" in wanted.words) != candidate.is_command:
         return False
     asked = {word for word in wanted.words if word in MODIFIERS}
-    if not (modifiers_of(candidate) - {"command"} <= asked):
+    if not (modifiers_of(candidate) - {"command"} <= asked) or _is_of_another(wanted, candidate):
         return False
     if type_.kind in (Kind.BOOL, Kind.LABEL):
         return candidate.meaning.sort is not Sort.MEASURED
     return _is_along(wanted, candidate) and _is_in_unit(wanted, type_, candidate)
+
+
+def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
+    """Whether it speaks of a part or of something else that the name does not speak of."""
+    element = re.search(r"\[([^\[\]]*\D[^\[\]]*)\]$", candidate.value)
+    if element is not None:
+        return not any(is_found(word, wanted.words) for word in words_of(element[1]))
+    subjects = {word for word in foreign_words(candidate) if word in SUBJECTS}
+    if "temperature" in wanted.words:  # each part has one of its own
+        subjects |= {"battery"} & {*candidate.around}
+    return not all(is_found(word, wanted.words) for word in subjects)
+
+
+def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
+    """Whether the last words of a topic, or a field, are those of an event and no others."""
+    if candidate.value not in ("", "data"):
+        return True
+    last = words_of(candidate.topic.name.rpartition("/")[2])
+    return all(word in EMPTY or is_found(word, wanted.words) for word in last)
 
 
 def _is_along(wanted: Wanted, candidate: Candidate) -> bool:

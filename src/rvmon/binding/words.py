@@ -77,6 +77,13 @@ MODIFIERS = _set(
 )
 """Words that make another quantity of what they stand beside."""
 
+SUBJECTS = _set(
+    "wind water air person pedestrian human people obstacle object ball door target lead other",
+    "engine motor fan pump thruster propeller gimbal load fuel cpu gpu ambient external internal",
+    "gripper hand finger trailer fork lift",
+)
+"""Words for what is not the robot as a whole: what is said of them is not said of it."""
+
 ORDINALS = {
     **dict.fromkeys(("leader", "lead", "first", "master", "primary"), "1"),
     **dict.fromkeys(("follower", "second", "slave", "secondary"), "2"),

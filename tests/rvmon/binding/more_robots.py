@@ -349,3 +349,58 @@ LAST = {
         },
     ),
 }
+
+TRAPS = {
+    "weather": Robot(
+        {"/wind/speed": FLOAT, "/fan/rpm": FLOAT, "/launch_time": FLOAT, "/go_home": BOOL},
+        "signal speed : real [m/s]\nsignal wind_speed : real [m/s]\nsignal motor_rpm : real [rpm]\n"
+        "event launch, go\nsignal go_home : bool",
+        {
+            "speed": OPEN,
+            "wind_speed": ("/wind/speed data",),
+            "motor_rpm": OPEN,
+            "launch": OPEN,
+            "go": OPEN,
+            "go_home": ("/go_home data",),
+        },
+    ),
+    "gripper": Robot(
+        {"/joint_states": joints("gripper_joint"), "/target/pose": POSE, "/person/pose": POSE},
+        "signal speed : real [m/s]\nsignal position : real [m]\nsignal x : real [m]\n"
+        "signal gripper : real [m]\nsignal gripper_speed : real [m/s]\nsignal effort : real [N]",
+        {
+            "speed": OPEN,
+            "position": OPEN,
+            "x": OPEN,
+            "gripper": ("/joint_states position[gripper_joint]",),
+            "gripper_speed": ("/joint_states velocity[gripper_joint]",),
+            "effort": OPEN,
+        },
+    ),
+    "parts": Robot(
+        {
+            "/battery": BATTERY,
+            "/engine/temperature": TEMPERATURE,
+            "/camera/imu": IMU,
+            "/wheel_odom": ODOMETRY,
+            "/obstacle/velocity": STAMPED_TWIST,
+        },
+        "signal temperature, cpu_temperature : real [degC]\nsignal current_limit : real [A]\n"
+        "signal speed : real [m/s]\nsignal speed_error : real [m/s]\n"
+        "signal yaw_rate_limit : real [rad/s]\n"
+        "signal capacity : real [mAh]\nsignal engine_temperature : real [degC]\n"
+        "signal obstacle_speed : real [m/s]",
+        {
+            "temperature": OPEN,
+            "cpu_temperature": OPEN,
+            "current_limit": OPEN,
+            "speed": speeds("/wheel_odom"),
+            "speed_error": OPEN,
+            "yaw_rate_limit": OPEN,
+            "capacity": ("/battery capacity",),
+            "engine_temperature": ("/engine/temperature temperature",),
+            "obstacle_speed": speeds("/obstacle/velocity", "twist."),
+        },
+    ),
+}
+"""What looks like what is asked for, and is not."""

@@ -3,7 +3,7 @@
 import tomllib
 
 import pytest
-from tests.rvmon.binding.more_robots import LAST, LATER
+from tests.rvmon.binding.more_robots import LAST, LATER, TRAPS
 from tests.rvmon.binding.robots import HELD_OUT, REPORTED, Robot
 from tests.tools.bags import START, write_ros1
 
@@ -12,7 +12,7 @@ from rvmon.cli import main
 
 pytest.importorskip("rosbags")
 
-ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST}
+ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST, **TRAPS}
 
 
 def write(robot, folder):
@@ -45,7 +45,7 @@ def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
     spec, bag = write(robot, tmp_path)
     status = main(["bind", spec, bag])
     told = capsys.readouterr()
-    found = dict(flat(tomllib.loads(told.out)["bind"]))
+    found = dict(flat(tomllib.loads(told.out).get("bind", {})))
     wrong = {
         one: found.get(one, "")
         for one, places in robot.expected.items()
