@@ -3,8 +3,9 @@
 import tomllib
 
 import pytest
-from tests.rvmon.binding.more_robots import LAST, LATER, TRAPS
+from tests.rvmon.binding.more_robots import LAST, LATER
 from tests.rvmon.binding.robots import HELD_OUT, REPORTED, Robot
+from tests.rvmon.binding.traps import FRESH, TRAPS
 from tests.tools.bags import START, write_ros1
 
 import rvmon
@@ -12,7 +13,7 @@ from rvmon.cli import main
 
 pytest.importorskip("rosbags")
 
-ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST, **TRAPS}
+ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST, **TRAPS, **FRESH}
 
 
 def write(robot, folder):
