@@ -60,10 +60,10 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     ]
     types = {name: signal.type for name, signal in spec.signals.items()}
     found: dict[str, Found] = {}
-    for name, type_ in types.items():
-        found[name] = fitting(wanted_of(name, type_, topics.values()), everything)
-    for name in spec.events:
-        found[name] = fitting(wanted_of(name, None, topics.values()), events_of(topics))
+    wanted = {name: wanted_of(name, type_, topics.values()) for name, type_ in types.items()}
+    wanted |= {name: wanted_of(name, None, topics.values()) for name in spec.events}
+    for name, asked in wanted.items():
+        found[name] = fitting(asked, everything if name in types else events_of(topics))
     shown = [one for own in found.values() for _, one in own[: 2 * _MOST]]
     ranges = ranges_of(source, shown)
     found = {name: _with_values(own, ranges) for name, own in found.items()}
@@ -71,6 +71,8 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
     lines = ['clock = "log"  # or "header": the stamps of the headers count']
     for name, one in chosen.items():
         lines += ["", f"[bind.{_key(name)}]  # {_described(types.get(name))}"]
+        if guess := wanted[name].guess:
+            lines.append(f"# A guess: {guess}.")
         lines += _place_lines(one, ranges)
         if name in types:
             lines += _signal_lines(types[name], one, ranges)

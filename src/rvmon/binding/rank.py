@@ -46,10 +46,12 @@ class Wanted:
     Attributes:
         words: of it.
         type: declared; `None` of an event.
+        guess: what a word of it was taken for; empty if all are taken as they are.
     """
 
     words: tuple[str, ...]
     type: Type | None
+    guess: str = ""
 
     @property
     def axis(self) -> str:
@@ -61,12 +63,15 @@ def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
     """What a name asks for; a leader is the first of topics that are numbered."""
     words = words_of(name)
     there = {word for topic in topics for word in words_of(topic.name)}
-    if {"1", "2"} <= there:
-        words = [word if word in there else ORDINALS.get(word, word) for word in words]
+    guess = ""
+    for place, word in enumerate(words):
+        if word in ORDINALS and word not in there and {"1", "2"} <= there:
+            words[place] = ORDINALS[word]
+            guess = f"`{word}` is taken for number {ORDINALS[word]}"
     if type_ is not None and type_.unit and "A" not in type_.unit:
         # The current speed is the speed.
         words = [word for word in words if word != "current" or len(words) == 1]
-    return Wanted(tuple(words), type_)
+    return Wanted(tuple(words), type_, guess)
 
 
 def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float, Candidate]]:

@@ -74,3 +74,10 @@ def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
     binding = tmp_path / "a.toml"
     binding.write_text(told.replace('"percentage"', '"1 * percentage"').replace('"1"', '"%"'))
     assert main(["check", spec, "--binding", str(binding)]) == 0
+
+
+def test_a_leader_is_a_guess(tmp_path, capsys):
+    """That it is the first of several is told where it is proposed."""
+    main(["bind", *write(REPORTED["turtle"], tmp_path)])
+    told = capsys.readouterr().out
+    assert "[bind.leader_x]  # real [m]\n# A guess: `leader` is taken for number 1.\n" in told
