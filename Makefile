@@ -9,7 +9,7 @@ TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist workst
 CORE := $(wildcard src/rvmon/core/*.[ch] src/rvmon/timed/native/*.[ch]) src/rvmon/core/amalgamate.py hatch_build.py
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -pedantic -Werror
 
-.PHONY: help demo core test quick check sanitize docs format bench claims fuzz release clean
+.PHONY: help demo core test quick check sanitize docs format bench claims fuzz extension release clean
 
 help:  ## show this list
 	@awk -F':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -54,6 +54,10 @@ bench: $(VENV)/.dev  ## time monitors against peers, 20 minutes; writes benchmar
 
 claims: $(VENV)/.dev  ## run what docs/claims.md claims, 3 minutes; LONG=1: all of it
 	@$(BIN)/python -m benchmarks.claims $(if $(LONG),--long)
+
+extension:  ## package the extension of VS Code, from locked dependencies: dist/rvmon.vsix
+	@mkdir -p dist
+	@cd editors/vscode && npm ci --silent --no-audit --no-fund && npm run --silent package -- -o ../../dist/rvmon.vsix
 
 release: $(VENV)/.dev  ## build wheel and sdist into dist, check them, install each extra alone; uploads nothing
 	@$(BIN)/python -m benchmarks.release

@@ -25,7 +25,7 @@ BUDGETS = {
     "tests/rvmon/adapters": 32,
     "tests/rvmon/analysis": 12,
     "tests/rvmon/automaton": 12,
-    "tests/rvmon/binding": 5,
+    "tests/rvmon/binding": 15,
     "tests/rvmon/cdv": 62,
     "tests/rvmon/cli": 40,
     "tests/rvmon/clipping": 50,

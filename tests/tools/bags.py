@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 Content = Mapping[str, Any]
+Types = Mapping[str, str]
 Sent = tuple[str, int, Content]
 """Topic, nanoseconds, fields by name."""
 
@@ -27,8 +28,11 @@ TYPES = {
     "/odom": "nav_msgs/msg/Odometry",
     "/range": "sensor_msgs/msg/Range",
     "/stop": "std_msgs/msg/Bool",
+    "/temp": "std_msgs/msg/Float64",
 }
 """Of topics, what they hold."""
+
+NONE: Types = {}
 
 DEFINITIONS = {
     "shop_msgs/msg/Pick": "int32 id\nfloat64 x\n",
@@ -110,13 +114,20 @@ def write_csv(path: Path, sent: Sequence[Sent], header: Sequence[str]) -> Path:
     return path
 
 
-def write_ros1(path: Path, sent: Sequence[Sent]) -> Path:
-    """A bag of ROS 1."""
+def write_ros1(path: Path, sent: Sequence[Sent], types: Types = TYPES, own: Types = NONE) -> Path:
+    """A bag of ROS 1.
+
+    Args:
+        path: of it.
+        sent: its messages.
+        types: by topic.
+        own: definitions of messages that ROS does not bring along.
+    """
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores
 
-    store = _store(Stores.ROS1_NOETIC)
-    return _write_ros(path, sent, Writer(path), store, store.serialize_ros1)
+    store = _store(Stores.ROS1_NOETIC, own)
+    return _write_ros(path, sent, Writer(path), store, store.serialize_ros1, types)
 
 
 def write_ros2(path: Path, sent: Sequence[Sent], plugin: str, version: Any = 9) -> Path:
@@ -129,32 +140,36 @@ def write_ros2(path: Path, sent: Sequence[Sent], plugin: str, version: Any = 9) 
     return _write_ros(path, sent, writer, store, store.serialize_cdr)
 
 
-def _store(which: Any) -> Any:
+def _store(which: Any, own: Types = NONE) -> Any:
     from rosbags.typesys import get_types_from_msg, get_typestore
 
     store = get_typestore(which)
-    for name, text in DEFINITIONS.items():
+    for name, text in {**DEFINITIONS, **own}.items():
         store.register(get_types_from_msg(text, name))
     return store
 
 
 def _write_ros(
-    path: Path, sent: Sequence[Sent], writer: Any, store: Any, pack: Callable[[Any, str], bytes]
+    path: Path,
+    sent: Sequence[Sent],
+    writer: Any,
+    store: Any,
+    pack: Callable[[Any, str], bytes],
+    types: Types = TYPES,
 ) -> Path:
     with writer:
         connections = {
-            topic: writer.add_connection(topic, TYPES[topic], typestore=store)
+            topic: writer.add_connection(topic, types[topic], typestore=store)
             for topic in dict.fromkeys(topic for topic, _, _ in sent)
         }
         for topic, t, content in sent:
-            message = _message(store, TYPES[topic], content)
-            writer.write(connections[topic], t, pack(message, TYPES[topic]))
+            message = _message(store, types[topic], content)
+            writer.write(connections[topic], t, pack(message, types[topic]))
     return path
 
 
 def _message(store: Any, name: str, content: Content) -> Any:
     """A message of which fields that are not given are zero."""
-    import numpy as np
     from rosbags.interfaces import Nodetype
 
     values: dict[str, Any] = {}
@@ -166,11 +181,22 @@ def _message(store: Any, name: str, content: Content) -> Any:
             zero = {"string": "", "bool": False}.get(inner[0], 0)
             values[field] = zero if given is None else given
         else:
-            kind = inner[0][1][0]
-            values[field] = np.array(given or [0] * inner[1], kind)
+            values[field] = _array(store, inner[0], inner[1], given or [])
     if name == "std_msgs/msg/Empty":
         values = dict.fromkeys(store.types[name].__dataclass_fields__.keys() - {"__msgtype__"}, 0)
     return store.types[name](**values)
+
+
+def _array(store: Any, element: Any, size: int, given: Sequence[Any]) -> Any:
+    import numpy as np
+    from rosbags.interfaces import Nodetype
+
+    node, inner = element
+    if node is Nodetype.NAME:
+        return [_message(store, inner, one) for one in given]
+    if inner[0] == "string":
+        return [*given]
+    return np.array(given or [0] * size, inner[0])
 
 
 def write_json_mcap(

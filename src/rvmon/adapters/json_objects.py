@@ -49,6 +49,7 @@ class JsonObjects:
         self._schema = schema
         self._clock = clock
         self._last: dict[str, int | None] = {}
+        self._told: set[str] = set()
 
     def take(self, fields: Any, robot: str = "", *, wait: bool = False) -> None:
         """Offer what an object says.
@@ -62,12 +63,25 @@ class JsonObjects:
             TraceError: it cannot be read; nothing was offered.
         """
         t_ns, values = _read(fields, self._schema, self.ignored)
+        self._tell_of_ignored()
         if self._clock is not None and t_ns is not None:
             now = self._clock.now_ns()
             if t_ns > now or t_ns < now - _JUMP_NS:
                 self._clock.set_ns(t_ns)
         self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
         self._last[robot] = t_ns
+
+    def _tell_of_ignored(self) -> None:
+        """Say of a name that comes first, and feeds nothing, what it was probably meant for."""
+        for name in [name for name in self.ignored if name not in self._told]:
+            self._told.add(name)
+            ends = [one for one in self._schema.signals if name.endswith(f".{one}")]
+            ends += [one for one in self._schema.signals if one.endswith(f".{name}")]
+            if ends:
+                _log.warning(
+                    "`%s` feeds nothing, and `%s` is declared: is `--map %s=%s` meant?",
+                    *(name, ends[0], ends[0], name),
+                )
 
     def lose(self, where: str, why: Exception, robot: str | None) -> None:
         """Have everything lost that an unreadable object may have reported.

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from rvmon.binding.functions import CONNECTIVES, greatest, least, yaw
+from rvmon.binding.functions import CONNECTIVES, greatest, least, number, yaw
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Source
 from rvmon.errors import RvmonError
@@ -33,9 +33,11 @@ from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
 
 _WORDS = frozenset({"and", "or", "xor", "not", "true", "false"})
 
-_PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[\d+\])*(?!\w*\()")
+_PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*(?!\w*\()")
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
+
+_OF_TEXTS: Mapping[str, Callable[..., Any]] = {"number": number}
 
 _ROTATION = ("x", "y", "z", "w")
 
@@ -46,7 +48,7 @@ def term_of(text: str) -> Term:
     Args:
         text: an expression without units and temporal operators; what is a name in it, also one
             like `ranges[0]`, is a field of the message, `yaw(q)` the heading of a quaternion, and
-            `min(ranges)` or `max(ranges)` of all elements of an array.
+            `min(ranges)` or `max(ranges)` of all elements of an array, `number(text)` of a text.
 
     Raises:
         RvmonError: it is none; with cause and fix.
@@ -83,13 +85,13 @@ def _term(expression: Expression) -> Term:
                 raise RvmonError(f"`{text}` is no field: write `pose.position.x`, `ranges[0]`")
             return field
         case Operation(op=op, args=args):
-            return Applied(op.entry.apply, tuple(map(_term, args)))
+            return Applied(op.entry.apply, tuple(map(_term, args)), op.value)
         case Comparison(op=op, left=left, right=right):
-            return Applied(op.holds, (_term(left), _term(right)))
+            return Applied(op.holds, (_term(left), _term(right)), op.value)
         case Infix(op=op, left=left, right=right) if op in CONNECTIVES:
-            return Applied(CONNECTIVES[op], (_term(left), _term(right)))
+            return Applied(CONNECTIVES[op], (_term(left), _term(right)), op.value)
         case Prefix(op=UnaryOp.NOT, operand=operand):
-            return Applied(operator.not_, (_term(operand),))
+            return Applied(operator.not_, (_term(operand),), "not")
         case Call(function=function, args=args):
             return _applied(function.text, args)
     raise RvmonError(
@@ -115,15 +117,19 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
         if len(terms) != 1 or not isinstance(terms[0], Field):
             raise RvmonError("`yaw` takes a field that is a quaternion: `yaw(pose.orientation)`")
         quaternion = terms[0].path
-        return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION))
+        return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION), "yaw")
+    if name in _OF_TEXTS:
+        if len(terms) != 1 or not isinstance(terms[0], Field):
+            raise RvmonError("`number` takes a field that is a text: `number(values[Load].value)`")
+        return Applied(_OF_TEXTS[name], terms, name)
     if name in _OF_ARRAYS and len(terms) == 1 and isinstance(terms[0], Field):
-        return Applied(_OF_ARRAYS[name], (Elements(terms[0]),))
+        return Applied(_OF_ARRAYS[name], (Elements(terms[0]),), name)
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:
-        names = [*known, "yaw"]
+        names = [*known, *_OF_TEXTS, "yaw"]
         meant = did_you_mean(name, names, f"there are {', '.join(names)}")
         raise RvmonError(f"no function `{name}` in a value: {meant}")
     wanted = len(FUNCTIONS[name].arguments)
     if len(terms) < wanted or (len(terms) > wanted and not FUNCTIONS[name].more):
         raise RvmonError(f"`{name}` takes {wanted} numbers, not {len(terms)}")
-    return Applied(known[name].entry.apply, terms)
+    return Applied(known[name].entry.apply, terms, name)

@@ -20,6 +20,18 @@ def yaw(x: float, y: float, z: float, w: float) -> float:
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
+def number(text: str | float) -> float | None:
+    """The number that a text says; `None`, which is unknown, if it says none.
+
+    >>> number("41.5"), number("n/a")
+    (41.5, None)
+    """
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
 def least(values: Iterable[float]) -> float | None:
     """The least of numbers but those that are NaN; `None` if there is none.
 

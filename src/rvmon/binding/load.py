@@ -13,11 +13,13 @@ from rvmon.binding.expression import term_of
 from rvmon.diagnostics.nearest import cannot_read, did_you_mean
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
+from rvmon.readers.messages.measured import expect_units
+from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
 from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
 from rvmon.trace.schema import Kind
+from rvmon.units.table import UnknownUnitError, parse_unit
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 
@@ -30,8 +32,8 @@ class On(StrEnum):
 
 
 _TOP = ("clock", "definitions", "bind")
-_SIGNAL = ("topic", "value", "unit", "labels", "on", "clock")
-_EVENT = ("topic", "value", "fields", "on", "clock")
+_SIGNAL = ("topic", "type", "value", "unit", "labels", "on", "clock")
+_EVENT = ("topic", "type", "value", "fields", "on", "clock")
 
 
 def load_binding(path: str | Path, spec: CheckedSpec) -> Binding:
@@ -63,7 +65,8 @@ def _binding(content: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Bin
     bounds: dict[str, Bound] = {}
     for name, table in _tables(_table(content, "bind", ""), ""):
         try:
-            bounds[name] = _bound(name, table, spec)
+            bound = bounds[name] = _bound(name, table, spec)
+            expect_units(name, bound, spec.schema, Topic(bound.topic, bound.type, {}))
         except RvmonError as error:
             raise RvmonError(f"[bind.{name}]: {error}") from None
     listed = content.get("definitions", [])
@@ -100,6 +103,9 @@ def _bound(name: str, table: Mapping[str, Any], spec: CheckedSpec) -> Bound:
     topic = table.get("topic")
     if not isinstance(topic, str) or not topic:
         raise RvmonError('which topic feeds it? topic = "/…"')
+    type_name = table.get("type", "")
+    if not isinstance(type_name, str):
+        raise RvmonError('which type have the messages? type = "nav_msgs/msg/Odometry"')
     value = None if "value" not in table else _value(table["value"], "value")
     on_change = _choice(table, "on", On) is On.CHANGE
     clock = _choice(table, "clock", Clock)
@@ -110,7 +116,7 @@ def _bound(name: str, table: Mapping[str, Any], spec: CheckedSpec) -> Bound:
         if on_change and value is None and not fields:
             raise RvmonError('`on = "change"` needs a `value` or `fields` that can change')
         terms = {field: _value(text, f"fields.{field}") for field, text in fields.items()}
-        return Bound(topic, value, terms, clock=clock, on_change=on_change)
+        return Bound(topic, value, terms, {}, clock, on_change, type_name)
     if value is None:
         raise RvmonError('a signal has a value: value = "data"')
     declared = spec.signals[name].type
@@ -121,9 +127,10 @@ def _bound(name: str, table: Mapping[str, Any], spec: CheckedSpec) -> Bound:
         if label not in declared.labels:
             meant = did_you_mean(str(label), declared.labels, ", ".join(declared.labels))
             raise RvmonError(f"no label `{label}` is declared: {meant}")
-    if "unit" in table:
-        value = _converted(value, str(table["unit"]), declared.kind, declared.unit)
-    return Bound(topic, value, {}, labels, clock, on_change)
+    unit = str(table.get("unit", ""))
+    if unit:
+        value = _converted(value, unit, declared.kind, declared.unit)
+    return Bound(topic, value, {}, labels, clock, on_change, type_name, unit)
 
 
 def _value(text: Any, key: str) -> Term:
@@ -156,8 +163,8 @@ def _scaled(value: Term, factor: Fraction) -> Term:
         return value
     if factor.numerator == 1:
         divide = NumericOp.DIV.entry.apply
-        return Applied(divide, (value, Constant(float(factor.denominator))))
-    return Applied(NumericOp.MUL.entry.apply, (value, Constant(float(factor))))
+        return Applied(divide, (value, Constant(float(factor.denominator))), "")
+    return Applied(NumericOp.MUL.entry.apply, (value, Constant(float(factor))), "")
 
 
 def _definition(path: Path) -> tuple[str, str]:

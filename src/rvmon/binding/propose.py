@@ -1,65 +1,31 @@
-"""A binding that is proposed by names and types."""
+"""A binding that is proposed by what messages mean, by words, and by what a recording holds."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from rvmon.readers.messages.topic import Topic
+from rvmon.binding.candidates import Candidate, candidates_of, events_of
+from rvmon.binding.ranges import Range, ranges_of
+from rvmon.binding.rank import fitting, is_clear, wanted_of
+from rvmon.readers.messages.file import MessageFile
+from rvmon.readers.messages.look import Looked, names_in
+from rvmon.readers.messages.meaning import Sort
 from rvmon.spec.checked.specification import CheckedSpec, Type
-from rvmon.spec.syntax.units import base_unit, parse_unit
 from rvmon.trace.schema import Kind
+from rvmon.units.table import base_unit, parse_unit
 
-_LIKENESS = 0.45
-"""Of the words of a name, at least this share has to be found in a topic and field."""
+_MOST = 4
+"""Places that are shown for a name."""
 
-_KIN = {
-    "speed": {"velocity", "vel", "twist"},
-    "velocity": {"speed", "vel", "twist"},
-    "distance": {"range", "dist"},
-    "obstacle": {"range", "distance", "scan"},
-    "heading": {"yaw", "orientation"},
-    "yaw": {"heading", "orientation"},
-    "position": {"pose", "point"},
-    "state": {"status", "mode"},
-    "mode": {"state", "status"},
-    "stop": {"estop", "halt"},
-}
-"""Words that people use for the same."""
+_WHOLE = 1.5
+"""No ratio of a whole is as large."""
 
-_EMPTY = frozenset({"data", "value"})
-"""Words that say nothing of what a field is."""
-
-_FITTING = {
-    Kind.BOOL: {Kind.BOOL},
-    Kind.INT: {Kind.INT},
-    Kind.REAL: {Kind.REAL, Kind.INT},
-    Kind.LABEL: {Kind.LABEL, Kind.INT},
-}
-
-_IGNORED = re.compile(r"^header\.|covariance")
-"""Fields that are proposed for nothing."""
-
-_MOST_OTHERS = 3
-
-
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """What may feed a name.
-
-    Attributes:
-        topic: of the messages.
-        value: an expression; empty: each message is an occurrence.
-        kind: of the value; `None` of each message.
-        score: how well it fits, 0 to 1.
-    """
-
-    topic: str
-    value: str
-    kind: Kind | None
-    score: float
+Found = list[tuple[float, Candidate]]
+Ranges = Mapping[tuple[str, str], Range]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,153 +34,153 @@ class Proposal:
 
     Attributes:
         text: of the binding, TOML.
-        unmatched: the names for which nothing was found.
+        unmatched: the names that are left open.
+        shared: the names that are fed by one and the same field, in groups.
+        unlabelled: the names whose numbers stand for labels that nobody named.
     """
 
     text: str
     unmatched: tuple[str, ...]
+    shared: tuple[tuple[str, ...], ...]
+    unlabelled: tuple[str, ...]
 
 
-def propose(spec: CheckedSpec, topics: Mapping[str, Topic]) -> Proposal:
-    """Find for each declared name the topic and field whose words and type are most like it."""
-    lines = ['clock = "log"  # or "header": the stamps of the headers count']
-    missed: list[str] = []
-    for name, signal in spec.signals.items():
-        found = _ranked(name, _of_signal(signal.type, topics))
-        if found:
-            lines += ["", *_signal_lines(name, signal.type, found, topics)]
-        else:
-            missed.append(name)
-    for name, event in spec.events.items():
-        found = _ranked(name, _of_event(topics))
-        if found:
-            lines += ["", *_event_lines(name, event.fields, found, topics)]
-        else:
-            missed.append(name)
-    for name in missed:
-        what = f"signal, {_written(spec.signals[name].type)}" if name in spec.signals else "event"
-        lines += ["", f"# Nothing was found for `{name}` ({what}):", f"# [bind.{_key(name)}]"]
-        lines += ['# topic = "…"', '# value = "…"']
-    return Proposal("\n".join(lines) + "\n", tuple(missed))
+def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
+    """Find for each declared name what says the same, in its unit and of its kind.
 
-
-def _of_signal(type_: Type, topics: Mapping[str, Topic]) -> Iterator[Candidate]:
-    for topic in topics.values():
-        for leaf, kind in topic.leaves.items():
-            if kind in _FITTING[type_.kind] and not _IGNORED.search(leaf):
-                yield Candidate(topic.name, leaf.replace("[]", "[0]"), kind, 0.0)
-            if type_.kind is Kind.REAL and leaf.endswith("orientation.w"):
-                yield Candidate(topic.name, f"yaw({leaf[:-2]})", kind, 0.0)
-            if type_.kind is Kind.REAL and leaf.endswith("linear.x"):
-                yield Candidate(topic.name, f"hypot({leaf}, {leaf[:-1]}y)", kind, 0.0)
-
-
-def _of_event(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
-    for topic in topics.values():
-        flags = [leaf for leaf, kind in topic.leaves.items() if kind is Kind.BOOL]
-        if len(flags) == 1 and "[" not in flags[0]:
-            yield Candidate(topic.name, flags[0], Kind.BOOL, 0.0)
-        elif not topic.fault:
-            yield Candidate(topic.name, "", None, 0.0)
-
-
-def _ranked(name: str, candidates: Iterator[Candidate]) -> list[Candidate]:
-    """Those that are like the name, the best first."""
-    scored = [Candidate(one.topic, one.value, one.kind, _likeness(name, one)) for one in candidates]
-    return sorted(
-        (one for one in scored if one.score >= _LIKENESS),
-        key=lambda one: (-one.score, len(_words(one.value)), one.topic, one.value),
-    )
-
-
-def _likeness(name: str, candidate: Candidate) -> float:
-    """How many of the words of a name stand in topic and field; a little less for many others."""
-    wanted = _words(name)
-    there = [*_words(candidate.topic), *_words(candidate.value)]
-    share = sum(_found(word, there) for word in wanted) / max(1, len(wanted))
-    others = sum(not _found(word, wanted) for word in dict.fromkeys(there) if word not in _EMPTY)
-    # The last step of a path says most of what it is.
-    last = _words(candidate.value)[-1:] if "(" not in candidate.value else ["yaw", "speed"]
-    bonus = 0.1 * any(_found(word, wanted) for word in last)
-    return share and share + bonus - 0.02 * others
-
-
-def _found(word: str, there: Collection[str]) -> float:
-    if word in there:
-        return 1.0
-    if not _KIN.get(word, set()).isdisjoint(there):
-        return 0.9
-    long = [one for one in there if min(len(one), len(word)) > 3]
-    return 0.7 * any(one.startswith(word) or word.startswith(one) for one in long)
-
-
-def _words(name: str) -> list[str]:
-    """The words of a name, in lower case.
-
-    >>> _words("/base/handDistance.twist_x")
-    ['base', 'hand', 'distance', 'twist', 'x']
+    A name that nothing fits, or several things equally well, is left open.
     """
-    return [word.casefold() for word in re.findall(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+", name)]
-
-
-def _signal_lines(
-    name: str, type_: Type, found: list[Candidate], topics: Mapping[str, Topic]
-) -> Iterator[str]:
-    best = found[0]
-    yield f"[bind.{_key(name)}]  # {_written(type_)}"
-    yield f"topic = {_text(best.topic)}  # {topics[best.topic].type}"
-    yield f"value = {_text(best.value)}"
-    if type_.unit and (unit := _base(type_.unit)):
-        yield f"unit = {_text(unit)}  # a guess, as ROS has it: write the unit of the field"
-    if type_.kind is Kind.LABEL and best.kind is Kind.INT:
-        listed = ", ".join(f"{number} = {_text(one)}" for number, one in enumerate(type_.labels))
-        yield f"labels = {{ {listed} }}  # a guess: which number stands for which?"
-    yield from _others(found)
-
-
-def _event_lines(
-    name: str, fields: Mapping[str, Type], found: list[Candidate], topics: Mapping[str, Topic]
-) -> Iterator[str]:
-    best = found[0]
-    topic = topics[best.topic]
-    yield f"[bind.{_key(name)}]  # event"
-    yield f"topic = {_text(best.topic)}  # {topic.type}"
-    if best.value:
-        yield f"value = {_text(best.value)}  # occurs with each message of which this is true"
-        yield 'on = "change"  # only with the first of several'
-    payload = {}
-    for field, type_ in fields.items():
-        own = [
-            Candidate(topic.name, leaf, kind, 0.0)
-            for leaf, kind in topic.leaves.items()
-            if kind in _FITTING[type_.kind] and "[" not in leaf
-        ]
-        ranked = _ranked(field, iter(own))
-        if ranked:
-            payload[field] = ranked[0].value
+    topics = source.topics
+    seen = names_in(source)
+    everything = [
+        one
+        for topic in topics.values()
+        if not topic.fault
+        for one in candidates_of(topic, seen[topic.name])
+    ]
+    types = {name: signal.type for name, signal in spec.signals.items()}
+    found: dict[str, Found] = {}
+    wanted = {name: wanted_of(name, type_, topics.values()) for name, type_ in types.items()}
+    wanted |= {name: wanted_of(name, None, topics.values()) for name in spec.events}
+    for name, asked in wanted.items():
+        found[name] = fitting(asked, everything if name in types else events_of(topics))
+    shown = [one for own in found.values() for _, one in own[: 2 * _MOST]]
+    ranges = ranges_of(source, shown)
+    found = {name: _with_values(own, ranges) for name, own in found.items()}
+    chosen = {name: own[0][1] for name, own in found.items() if is_clear(own)}
+    lines = ['clock = "log"  # or "header": the stamps of the headers count']
+    for name, one in chosen.items():
+        lines += ["", f"[bind.{_key(name)}]  # {_described(types.get(name))}"]
+        if guess := wanted[name].guess:
+            lines.append(f"# A guess: {guess}.")
+        lines += _place_lines(one, ranges)
+        if name in types:
+            lines += _signal_lines(types[name], one, ranges)
         else:
-            yield f"# Nothing was found for its field `{field}`."
+            lines += _event_lines(spec.events[name].fields, one)
+        lines += _other_lines(found[name][1:], ranges)
+    missed = [name for name in found if name not in chosen]
+    for name in missed:
+        lines += ["", *_open_lines(name, types.get(name), found[name], ranges)]
+    unlabelled = [name for name, one in chosen.items() if _has_codes(types.get(name), one)]
+    return Proposal("\n".join(lines) + "\n", tuple(missed), _shared(chosen), tuple(unlabelled))
+
+
+def _has_codes(type_: Type | None, one: Candidate) -> bool:
+    return type_ is not None and type_.kind is Kind.LABEL and one.kind is not Kind.LABEL
+
+
+def _with_values(found: Found, ranges: Ranges) -> Found:
+    """Without what never has a value, unless that is all."""
+    kept = [
+        (score, one)
+        for score, one in found
+        if (own := ranges.get((one.topic.name, one.value))) is None or own.count
+    ]
+    return kept or found
+
+
+def _place_lines(one: Candidate, ranges: Ranges) -> Iterator[str]:
+    yield f"topic = {_text(one.topic.name)}"
+    yield f"type = {_text(one.topic.type)}"
+    if one.value:
+        yield f"value = {_text(one.value)}{_range(one, ranges)}"
+
+
+def _range(one: Candidate, ranges: Ranges) -> str:
+    own = ranges.get((one.topic.name, one.value))
+    return f"  # {own}" if own is not None else ""
+
+
+def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
+    if type_.unit:
+        told = one.meaning.sort is Sort.MEASURED
+        dimension = parse_unit(type_.unit).dimension
+        units = [unit for unit in one.meaning.units if unit.dimension == dimension]
+        own = units[0].symbol if units else one.unit.symbol if one.unit is not None else ""
+        symbol = own or base_unit(dict(dimension)).symbol or "1"
+        remark = ""
+        if not told:
+            remark = (
+                "  # by the name of the field" if own else "  # a guess: the messages do not say"
+            )
+        yield f"unit = {_text(symbol)}{remark}"
+        high = ranges.get((one.topic.name, one.value), Range()).high
+        if told and not dimension and symbol == "1" and high is not None and high > _WHOLE:
+            yield f'# It looks like per cent: then value = "1 * {one.value}", unit = "%"'
+    if _has_codes(type_, one):
+        values = ranges.get((one.topic.name, one.value), Range()).first
+        there = f": it holds {', '.join(map(str, values))}" if values else ""
+        listed = ", ".join(f"0 = {_text(label)}" for label in type_.labels[:1])
+        yield f"# labels = {{ {listed} }}  # which number stands for which{there}"
+
+
+def _event_lines(fields: Mapping[str, Type], one: Candidate) -> Iterator[str]:
+    if one.value:
+        yield 'on = "change"  # only the first of several in a row that are true'
+    payload = {}
+    for name, type_ in fields.items():
+        ranked = fitting(wanted_of(name, type_, ()), candidates_of(one.topic, Looked()))
+        if is_clear(ranked):
+            payload[name] = ranked[0][1].value
+        else:
+            yield f"# Nothing was found for its field `{name}`."
     if payload:
         listed = ", ".join(f"{_key(field)} = {_text(value)}" for field, value in payload.items())
         yield f"fields = {{ {listed} }}"
-    yield from _others(found)
 
 
-def _base(unit: str) -> str:
-    """The unit without factor of the same kind, in which messages of ROS are by convention.
-
-    Source: ROS Enhancement Proposal 103, Standard Units of Measure.
-    """
-    return base_unit(dict(parse_unit(unit).dimension)).symbol
-
-
-def _others(found: list[Candidate]) -> Iterator[str]:
-    for one in found[1 : 1 + _MOST_OTHERS]:
+def _other_lines(others: Found, ranges: Ranges) -> Iterator[str]:
+    for _, one in others[: _MOST - 1]:
         value = f", value = {_text(one.value)}" if one.value else ""
-        yield f"# or topic = {_text(one.topic)}{value}"
+        yield f"# or topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
 
 
-def _written(type_: Type) -> str:
+def _open_lines(name: str, type_: Type | None, found: Found, ranges: Ranges) -> Iterator[str]:
+    what = _described(type_)
+    if not found:
+        yield f"# Nothing was found for `{name}` ({what}):"
+        yield f"# [bind.{_key(name)}]"
+        yield '# topic = "…"'
+        yield '# value = "…"'
+        return
+    yield f"# Several fit `{name}` ({what}) as well as each other: choose one."
+    yield f"# [bind.{_key(name)}]"
+    for _, one in found[:_MOST]:
+        value = f", value = {_text(one.value)}" if one.value else ""
+        yield f"# topic = {_text(one.topic.name)}{value}{_range(one, ranges)}"
+
+
+def _shared(chosen: Mapping[str, Candidate]) -> tuple[tuple[str, ...], ...]:
+    names: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for name, one in chosen.items():
+        names[one.topic.name, one.value].append(name)
+    return tuple(tuple(own) for own in names.values() if len(own) > 1)
+
+
+def _described(type_: Type | None) -> str:
+    if type_ is None:
+        return "event"
     if type_.kind is Kind.LABEL:
         return f"{{{', '.join(type_.labels)}}}"
     return f"{type_.kind} [{type_.unit}]" if type_.unit else str(type_.kind)

@@ -1,4 +1,4 @@
-"""`rvmon bind`: a binding proposed by names and types."""
+"""`rvmon bind`: a binding proposed by what a recording holds."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "bind",
         help="which topics and fields of a recording feed a specification: a proposal",
-        description="Print a binding (TOML): by names and types, which topics and fields of a bag "
-        "or MCAP file feed the signals and events of a specification. Look it over, above all the "
-        "units. The exit code is 1 if nothing was found for a name.",
+        description="Print a binding (TOML): which topics and fields of a bag or MCAP file feed "
+        "the signals and events of a specification, by what messages mean, by units, types and "
+        "words, with the values that they have there. What nothing fits clearly is left open, and "
+        "the exit code is then 1. Look it over.",
         epilog="example: rvmon bind base.rv monday.bag > base.toml && "
         "rvmon run base.rv monday.bag --binding base.toml",
     )
@@ -30,15 +31,22 @@ def run(arguments: argparse.Namespace) -> int:
     """Look at the topics, print the binding, and return the exit code."""
     from rvmon.binding.propose import propose
     from rvmon.loading import load
-    from rvmon.readers.recording import topics_of
+    from rvmon.readers.recording import messages_of
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     with busy(f"reading {arguments.data}"):
-        proposal = propose(spec.checked, topics_of(arguments.data))
+        proposal = propose(spec.checked, messages_of(arguments.data))
     words = shlex.join(["rvmon", "run", arguments.spec, arguments.data, "--binding"])
-    say(f"# Proposed by names and types. {words} THIS_FILE")
+    say(f"# Proposed: look it over. {words} THIS_FILE")
     say(proposal.text, end="")
     if proposal.unmatched:
         names = ", ".join(f"`{name}`" for name in proposal.unmatched)
-        warn(f"warning: {arguments.data} has nothing like {names}: fill it in by hand")
-    return int(bool(proposal.unmatched))
+        warn(f"warning: what feeds {names} is left open: nothing in {arguments.data} is clearly it")
+    for name in proposal.unlabelled:
+        warn(
+            f"warning: `{name}` is a number in {arguments.data}: say which `labels` stand for which"
+        )
+    for group in proposal.shared:
+        names = " and ".join(f"`{name}`" for name in group)
+        warn(f"warning: {names} are fed by one and the same field: is that meant?")
+    return int(bool(proposal.unmatched or proposal.unlabelled))

@@ -118,7 +118,7 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
 
 def _bound(path: str, checked: CheckedSpec) -> list[str]:
-    """What a binding leaves to the names of topics.
+    """What a binding leaves to the names of topics, and which names it feeds with one field.
 
     Raises:
         RvmonError: it does not fit the specification.
@@ -127,7 +127,16 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
 
     bounds = load_binding(path, checked).bounds
     free = [name for name in (*checked.signals, *checked.events) if name not in bounds]
-    return [f"{path} does not bind {', '.join(free)}"] if free else []
+    remarks = [f"{path} does not bind {', '.join(free)}"] if free else []
+    fed: dict[tuple[str, str], list[str]] = {}
+    for name in checked.signals:
+        if (bound := bounds.get(name)) is not None:
+            fed.setdefault((bound.topic, str(bound.value)), []).append(name)
+    return remarks + [
+        f"{path} feeds {' and '.join(names)} with one and the same: {value} of {topic}"
+        for (topic, value), names in fed.items()
+        if len(names) > 1
+    ]
 
 
 def _show(form: str, findings: list[Diagnostic]) -> None:

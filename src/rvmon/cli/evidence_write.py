@@ -23,15 +23,15 @@ from rvmon.evidence.keep import (
     texts_of,
     write_evidence,
 )
-from rvmon.readers.messages.forms import is_bag_folder
+from rvmon.readers.messages.forms import form_of_folder
 from rvmon.session import Spec
 from rvmon.verdict.rows import VerdictRow
 
 
 def is_recording(path: str) -> bool:
-    """Whether there is a file, or a bag in a folder; of other things no hash is asked for."""
+    """Whether there is a file, or a folder that is a recording; other things have no hash."""
     try:
-        return Path(path).is_file() or is_bag_folder(path)
+        return Path(path).is_file() or bool(form_of_folder(path))
     except (OSError, ValueError):
         return False
 

@@ -24,7 +24,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "init",
         help="a starter specification from a recording",
         description="Write a starter specification from a recording: signals with guessed types, "
-        "ranges and rates, events, and two requirements that run at once.",
+        "ranges and rates, events, and requirements that run at once.",
         epilog="examples: rvmon init examples/base.csv -o mine.rv; rvmon run mine.rv "
         "examples/base.csv",
     )
@@ -56,16 +56,20 @@ def run(arguments: argparse.Namespace) -> int:
         write_whole(output, text)
     except OSError as error:
         raise RvmonError(f"error: {output}: {error.strerror or error}") from None
-    say(f"wrote {output}: {_contents(profile)}")
+    say(f"wrote {output}: {_contents(profile, text)}")
     words = ["rvmon", "run", output, arguments.data, *time_words(arguments)]
     say(f"try:   {shlex.join(words)}")
     return 0
 
 
-def _contents(profile: Profile) -> str:
+def _contents(profile: Profile, text: str) -> str:
     events = sum(column.is_event for column in profile.columns)
     signals = len(profile.columns) - events
-    parts = [_counted(signals, "signal"), _counted(events, "event"), "2 requirements to start from"]
+    parts = [
+        _counted(signals, "signal"),
+        _counted(events, "event"),
+        _counted(text.count("\nrequirement "), "requirement"),
+    ]
     if profile.left_out:
         parts.append(f"{len(profile.left_out)} left out")
     return ", ".join(parts)

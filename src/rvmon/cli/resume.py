@@ -20,7 +20,7 @@ from rvmon.cli.judging import Judged
 from rvmon.coverage.hits import Hit
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
-from rvmon.readers.messages.forms import is_bag_folder
+from rvmon.readers.messages.forms import form_of_folder
 from rvmon.session import Spec
 from rvmon.spec.checked.plain_data import to_plain
 from rvmon.verdict.report import Report
@@ -168,7 +168,7 @@ def _judged(one: _Entry) -> Judged:
 def _stamp(trace: str) -> tuple[int, int] | None:
     """What distinguishes the files of a recording from others; `None` if there are none."""
     try:
-        files = list(os.scandir(trace)) if is_bag_folder(trace) else [Path(trace)]
+        files = list(os.scandir(trace)) if form_of_folder(trace) else [Path(trace)]
         found = [file.stat() for file in files]
     except (OSError, ValueError):
         return None

@@ -30,6 +30,8 @@ def refuse_place(path: str, out: str) -> None:
     form = format_of(path)
     if path == "-":
         raise RvmonError("standard input can be read once only: save the recording first")
+    if form == "tables":
+        raise RvmonError(f"{path}: of a folder of tables no piece is written: clip its files")
     if form == "ros2" and local_path(path).is_dir():
         if os.path.lexists(out):
             raise RvmonError(f"cannot write {out}: it is there, and a bag is a new folder")

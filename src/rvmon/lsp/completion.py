@@ -17,8 +17,8 @@ from rvmon.spec.syntax.fixes import word_pattern
 from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem, RequirementItem
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.split import split_items
-from rvmon.spec.syntax.units import unit_table
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS
+from rvmon.units.table import unit_table
 
 _NO_CODE = re.compile(r'`[^`\n]*`|"(?:[^"\\\n]|\\.)*"')
 _BEGUN = re.compile(r"(?:`[^`\n]*|[^\W\d][\w.]*|%)\Z")

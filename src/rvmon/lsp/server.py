@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.uris import to_fs_path
@@ -21,6 +22,9 @@ from rvmon.lsp.completion import hover, proposals
 from rvmon.lsp.document import Document, Text
 from rvmon.lsp.names import meanings
 from rvmon.spec.print.formatter import format_text
+from rvmon.spec.syntax.expressions import Name
+from rvmon.spec.syntax.parse import parse_expression
+from rvmon.starter.skeletons import name_text
 
 QUIET = 0.2
 """Seconds without an edit after which findings are looked for."""
@@ -149,7 +153,8 @@ def _definition(server: Server, params: lsp.DefinitionParams) -> list[lsp.Locati
     return server.document(params.text_document.uri).definitions(params.position)
 
 
-def _references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Location]:
+def _places(server: Server, params: lsp.ReferenceParams | lsp.RenameParams) -> list[lsp.Location]:
+    """Where the name at a position stands, in documents that are open and what these import."""
     key = server.document(params.text_document.uri).key(params.position)
     if key is None:
         return []
@@ -160,6 +165,31 @@ def _references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Locatio
         for span in document.uses(key)
     }
     return list(places.values())
+
+
+def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    """The edits that give a name another one, wherever it stands.
+
+    Raises:
+        JsonRpcInvalidParams: it cannot have that name.
+    """
+    document = server.document(params.text_document.uri)
+    touched = document.names.at(document.place(params.position))
+    if touched is None:
+        return None
+    name = params.new_name.strip("`")
+    written = name_text(name)
+    read, _ = parse_expression(Source(params.new_name, written))
+    if not isinstance(read, Name) or read.text != name:
+        raise JsonRpcInvalidParams(f"`{params.new_name}` cannot be written as a name")
+    if name in document.names.declared or name in document.names.goals:
+        raise JsonRpcInvalidParams(f"there is a `{name}` already")
+    if not os.path.isabs(touched[1].span.source.name):
+        raise JsonRpcInvalidParams(f"`{touched[1].text}` is a name of a library")
+    edits: dict[str, list[lsp.TextEdit]] = {}
+    for place in _places(server, params):
+        edits.setdefault(place.uri, []).append(lsp.TextEdit(place.range, written))
+    return lsp.WorkspaceEdit(edits)
 
 
 def _symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
@@ -206,7 +236,8 @@ _FEATURES: dict[str, tuple[Callable[..., Any], Any]] = {
     lsp.TEXT_DOCUMENT_DID_CLOSE: (_closed, None),
     lsp.TEXT_DOCUMENT_HOVER: (_hover, None),
     lsp.TEXT_DOCUMENT_DEFINITION: (_definition, None),
-    lsp.TEXT_DOCUMENT_REFERENCES: (_references, None),
+    lsp.TEXT_DOCUMENT_REFERENCES: (_places, None),
+    lsp.TEXT_DOCUMENT_RENAME: (_rename, None),
     lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: (_symbols, None),
     lsp.TEXT_DOCUMENT_CODE_ACTION: (_fixes, lsp.CodeActionOptions([lsp.CodeActionKind.QuickFix])),
     lsp.TEXT_DOCUMENT_COMPLETION: (_completion, lsp.CompletionOptions(["."])),

@@ -11,7 +11,7 @@ from rvmon.readers.csv_rows import Layout, layout_of, row_values
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.naming import stamps_among
 from rvmon.readers.rows import Row, Rows
-from rvmon.readers.tables import cells_of
+from rvmon.readers.tables import cells_of, is_of_dates
 from rvmon.readers.values import plain
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Sample, Value
@@ -57,7 +57,10 @@ class TableRecording:
         self._schema = schema
         self.columns = columns
         header = list(columns)
-        self.layout: Layout = layout_of(header, stamps_among(header, schema), schema)
+        stamps = stamps_among(header, schema)
+        if not stamps.is_stated and is_of_dates(columns[stamps.column]):
+            stamps = Stamps(stamps.column, "iso", is_stated=True)
+        self.layout: Layout = layout_of(header, stamps, schema)
         self.names: frozenset[str] | None = self.layout.names
         self.ignored = self.layout.ignored
         self.rows = Rows(schema, "row", ordered=ordered)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from rvmon.errors import TraceError
-from rvmon.readers.messages.forms import is_bag_folder
+from rvmon.readers.messages.forms import form_of_folder
 from rvmon.readers.places import endings_of, is_address, matching_addresses
 from rvmon.readers.recording import FORMATS
 
@@ -18,9 +18,9 @@ def found_recordings(paths: Iterable[str]) -> Iterator[str]:
     """The recordings at paths, in their order.
 
     Args:
-        paths: a file, a bag of ROS 2, `-` or an address stands for itself; another folder for the
-            recordings in it and in its folders, a pattern (`*`, `?`, `[…]`, `**`) for what is
-            called so, both sorted.
+        paths: a file, a folder that is one recording, `-` or an address stands for itself; another
+            folder for the recordings in it and in its folders, a pattern (`*`, `?`, `[…]`, `**`)
+            for what is called so, both sorted.
 
     Raises:
         TraceError: a folder or pattern stands for none.
@@ -30,7 +30,7 @@ def found_recordings(paths: Iterable[str]) -> Iterator[str]:
         if is_address(path):
             # Signed addresses have question marks.
             yield from _some(matching_addresses(path), path) if "*" in path else [path]
-        elif os.path.isdir(path) and not is_bag_folder(path):
+        elif os.path.isdir(path) and not form_of_folder(path):
             yield from _some(sorted(_recordings_at(path)), path)
         elif _MAGIC.isdisjoint(path) or os.path.lexists(path):
             yield path
@@ -50,7 +50,7 @@ def _some(found: list[str], path: str) -> list[str]:
 
 def _recordings_at(path: str) -> Iterator[str]:
     """A recording, or those in a folder."""
-    if is_bag_folder(path):
+    if form_of_folder(path):
         yield path
     elif os.path.isdir(path):
         for name in os.listdir(path):

@@ -16,10 +16,10 @@ from rvmon.readers.columns import values_of_cells
 from rvmon.readers.csv_rows import Layout, read_layout
 from rvmon.readers.line_chunks import is_short_of_memory
 from rvmon.readers.rows import Row
-from rvmon.readers.tables import arrow_cells
+from rvmon.readers.tables import arrow_cells, is_of_dates
 from rvmon.readers.values import first_line
 from rvmon.trace.sample import Value
-from rvmon.trace.schema import Schema
+from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
 
 if TYPE_CHECKING:
@@ -107,7 +107,12 @@ def parquet_layout(path: str | Path, schema: Schema) -> Layout:
         RvmonError: there is no pyarrow.
         TraceError: it is no Parquet file, or has no time column or two.
     """
-    return read_layout(list(parquet_file(path).schema_arrow.names), schema)
+    fields = parquet_file(path).schema_arrow
+    layout = read_layout(list(fields.names), schema)
+    stamps = layout.stamps
+    if not stamps.is_stated and is_of_dates(fields.field(stamps.column)):
+        return replace(layout, stamps=Stamps(stamps.column, "iso", is_stated=True))
+    return layout
 
 
 def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Iterator[Row]]:

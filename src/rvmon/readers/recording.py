@@ -8,6 +8,7 @@ from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from errno import ENOENT
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
@@ -18,7 +19,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.forms import MESSAGE_FORMATS, is_bag_folder
+from rvmon.readers.messages.forms import MESSAGE_FORMATS, MESSAGE_FORMS, form_of_folder
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.binding import BY_NAME
@@ -106,7 +107,7 @@ class FileRecording:
     @property
     def is_of_messages(self) -> bool:
         """Whether it holds messages of topics, and no columns."""
-        return self._format in MESSAGE_FORMATS.values()
+        return self._format in MESSAGE_FORMS
 
     @property
     def unread(self) -> Sequence[str]:
@@ -271,8 +272,8 @@ class FileRecording:
             raise TraceError(cannot_read(self.path, error)) from None
 
 
-def topics_of(path: str) -> Mapping[str, Topic]:
-    """The topics of a recording of messages, by name.
+def messages_of(path: str) -> MessageFile:
+    """A recording of messages, looked at.
 
     Raises:
         TraceError: it cannot be read, or holds no messages.
@@ -280,7 +281,12 @@ def topics_of(path: str) -> Mapping[str, Topic]:
     recording = FileRecording(path, Schema({}, {}))
     if recording._messages is None:
         raise TraceError(f"{path}: has columns and no topics: use --map")
-    return recording._messages.topics
+    return recording._messages
+
+
+def topics_of(path: str) -> Mapping[str, Topic]:
+    """The topics of a recording of messages, by name; see `messages_of`."""
+    return messages_of(path).topics
 
 
 def can_be_read_again(path: str) -> bool:
@@ -296,9 +302,13 @@ def format_of(path: str) -> str:
     """
     if path == "-":
         return "jsonl"
-    if is_bag_folder(path) or (is_address(path) and path.endswith("/")):
+    if not is_address(path) and (form := form_of_folder(path)):
+        return form
+    if is_address(path) and path.endswith("/"):
         return "ros2"
     suffix, packed = endings_of(path)
+    if suffix not in FORMATS and not (is_address(path) or Path(path).exists()):
+        raise TraceError(cannot_read(path, FileNotFoundError(ENOENT, os.strerror(ENOENT))))
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)
         ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"

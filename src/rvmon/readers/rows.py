@@ -38,6 +38,7 @@ class Rows:
         ordered: as given.
         count: of the rows that were read.
         first: the instants of the first rows, ticks.
+        lateness: how far time goes backwards at most, ticks; not looked at where that is an error.
         alternations: how known and unknown values follow each other.
     """
 
@@ -47,6 +48,7 @@ class Rows:
         self.ordered = ordered
         self._conflicts = Conflicts()
         self.count = 0
+        self.lateness = 0
         self.first: list[int] = []
         self.alternations = Alternations()
         self._last: int | None = None
@@ -109,6 +111,7 @@ class Rows:
     def _begin(self) -> None:
         self._conflicts, self.alternations = Conflicts(), Alternations()
         self.count, self.first = 0, []
+        self.lateness = 0
         self._last = None
 
     def _noted(self, sample: Sample) -> Sample:
@@ -154,11 +157,14 @@ class Rows:
 
     def _sorted(self, rows: Iterable[Row]) -> Iterator[Row]:
         """Rows by time, those of one instant as they come."""
+        latest = None
         waiting: list[tuple[int, int, Row]] = []
         fault = None
         try:
             for place, row in enumerate(rows):
                 number, t, _ = row
+                latest = t if latest is None else max(latest, t)
+                self.lateness = max(self.lateness, latest - t)
                 if self._last is not None and t < self._last:
                     raise TimeOrderError(
                         f"{self._unit} {number}: {format_ticks(t)} comes more than {ROOM:,} "

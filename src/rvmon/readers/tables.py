@@ -43,6 +43,8 @@ def _frame_columns(frame: Any) -> dict[str, Any]:
     index: Any = getattr(frame, "index", None)  # of pandas
     if getattr(index, "name", None) is not None:
         found.setdefault(str(index.name), index)
+    elif is_of_dates(index) and "t_ns" not in found:
+        found.setdefault("t", index)
     return found
 
 
@@ -99,6 +101,8 @@ def cells_of(name: str, column: Any) -> list[Any]:
     if getattr(column, "ndim", 1) > 0 and not isinstance(column, str | bytes):
         if getattr(dtype, "kind", None) in ("m", "M"):
             return [str(cell) for cell in column]
+        if is_of_dates(column):  # of polars, whose lists have no nanoseconds
+            return [str(cell) for cell in column.to_numpy()]
         try:
             listed = getattr(column, "tolist", None) or getattr(column, "to_list", None)
             cells = list(listed() if listed else column)
@@ -108,6 +112,17 @@ def cells_of(name: str, column: Any) -> list[Any]:
             return _without_missing(column, cells) if hasattr(column, "isna") else cells
     found = reprlib.repr(column)
     raise TraceError(f"column `{name}`: expected an array or a list of values, found {found}")
+
+
+def is_of_dates(column: Any) -> bool:
+    """Whether the cells of a column are dates with a time, by its type.
+
+    >>> import numpy
+    >>> is_of_dates(numpy.array(["2024-05-01"], "datetime64[ns]")), is_of_dates([0.5])
+    (True, False)
+    """
+    dtype = getattr(column, "dtype", getattr(column, "type", None))
+    return getattr(dtype, "kind", None) == "M" or str(dtype).startswith(("Datetime", "timestamp["))
 
 
 def _without_missing(series: Any, cells: list[Any]) -> list[Any]:

@@ -16,11 +16,15 @@ class Shape:
         kind: of a signal; `None` for an event.
         labels: the values of a label signal, in order of appearance.
         fields: of an event with payload.
+        unit: of a number, as the messages say it; empty if they do not.
+        source: the topic; empty of columns.
     """
 
     kind: Kind | None
     labels: tuple[str, ...] = ()
     fields: Mapping[str, Kind] = field(default_factory=dict)
+    unit: str = ""
+    source: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +71,11 @@ class Column:
     first: int | None = None
     gaps_in_value: bool = False
     instants: tuple[int, ...] = ()
+
+    @property
+    def changes(self) -> bool:
+        """Whether it is a number that is not always the same."""
+        return self.low is not None and self.low != self.high
 
     @property
     def is_event(self) -> bool:

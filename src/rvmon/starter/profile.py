@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from rvmon.errors import TraceError
 from rvmon.readers.recording import FileRecording
-from rvmon.starter.column import Column, Profile, Shape, Shapes
+from rvmon.starter.column import Column, Profile, Shape
 from rvmon.starter.shapes import shapes_of
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind, Schema
@@ -17,6 +17,12 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 MOST_NAMED = 3
 """Names that a message lists; the rest is counted."""
+
+FEW = 5
+"""Of fewer occurrences nobody knows whether they are regular."""
+
+STEADY = 3
+"""What keeps coming has no gap of more than so many times the mean one."""
 
 MOST_INSTANTS = 10_000
 """Occurrences that are kept of one name."""
@@ -38,33 +44,35 @@ def profile_of(path: str, time: str | None = None) -> Profile:
     stamps = None if time is None else stamps_of(time)
     shapes = shapes_of(path, stamps)
     if not shapes.declared:
-        raise TraceError(f"{path}: no signal or event is found ({_reasons(shapes)})")
+        raise TraceError(f"{path}: no signal or event is found ({_reasons(shapes.left_out)})")
     schema = Schema(
         {name: shape.kind for name, shape in shapes.declared.items() if shape.kind is not None},
         {name: shape.fields for name, shape in shapes.declared.items() if shape.kind is None},
         stamps=stamps,
     )
     followed = {name: _Followed(shape) for name, shape in shapes.declared.items()}
-    start = latest = end = samples = lateness = 0
-    for sample in FileRecording(path, schema, ordered=False):
-        if not samples:
-            start = latest = end = sample.t
+    start = end = samples = 0
+    recording = FileRecording(path, schema, ordered=False)
+    for sample in recording:
+        start, end = (start if samples else sample.t), sample.t
         samples += 1
-        start, end = min(start, sample.t), max(end, sample.t)
-        lateness = max(lateness, latest - sample.t)
-        latest = max(latest, sample.t)
         for name, one in followed.items():
             one.take(sample.t, sample.values.get(name, _NOTHING), first=samples == 1)
-    columns = tuple(one.column(name, end) for name, one in followed.items())
-    return Profile(path, columns, shapes.left_out, start, end, samples, lateness)
+    columns = [one.column(name, start, end) for name, one in followed.items()]
+    silent = {one.name: "no value in the recording" for one in columns if not one.updates}
+    kept = tuple(one for one in columns if one.updates)
+    left_out = {**shapes.left_out, **silent}
+    if not kept:
+        raise TraceError(f"{path}: no signal or event is found ({_reasons(left_out)})")
+    return Profile(path, kept, left_out, start, end, samples, recording.rows.lateness)
 
 
-def _reasons(shapes: Shapes) -> str:
+def _reasons(left_out: Mapping[str, str]) -> str:
     """Why nothing can be declared, each reason with the first of its names."""
-    if not shapes.left_out:
+    if not left_out:
         return "there is only time"
     by_reason: dict[str, list[str]] = {}
-    for name, why in shapes.left_out.items():
+    for name, why in left_out.items():
         by_reason.setdefault(why, []).append(f"`{name}`")
     listed = []
     for why, names in by_reason.items():
@@ -132,17 +140,25 @@ class _Followed:
         if len(self.instants) < MOST_INSTANTS:
             self.instants.append(t)
 
-    def _looks_like_event(self) -> bool:
+    def _looks_like_event(self, start: int, end: int) -> bool:
         if self.shape.kind is not Kind.BOOL or not self.trues:
             return False
         if not self.falses:  # only ever reported when true
-            return self.silent > self.trues
+            return self.silent > self.trues and not self._keeps_coming(start, end)
         return self.runs_are_single and self.trues <= EVENT_SHARE * (self.trues + self.falses)
 
-    def column(self, name: str, end: int) -> Column:
-        """What is to be reported of it, of a recording that ends at `end`."""
+    def _keeps_coming(self, start: int, end: int) -> bool:
+        """Whether it is reported all the time: what is always true is no event."""
+        if self.trues < FEW or self.first is None:
+            return False
+        return max(self.longest, self.first - start, end - (self.last or end)) <= (
+            STEADY * (end - start) / self.trues
+        )
+
+    def column(self, name: str, start: int, end: int) -> Column:
+        """What is to be reported of it, of a recording between these instants."""
         span = 0 if self.first is None or self.last is None else self.last - self.first
-        event = self._looks_like_event()
+        event = self._looks_like_event(start, end)
         return Column(
             name,
             replace(self.shape, kind=None) if event else self.shape,

@@ -13,14 +13,14 @@ from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.forms import MESSAGE_FORMATS
-from rvmon.readers.messages.match import dotted
+from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.places import local_path, opened
-from rvmon.readers.recording import FileRecording, format_of, topics_of
+from rvmon.readers.recording import format_of, messages_of
 from rvmon.starter.column import Shapes
+from rvmon.starter.messages import message_shapes
 from rvmon.starter.seen import Seen, shapes_seen
-from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.schema import Stamps
 
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
@@ -37,8 +37,8 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
         TraceError: the file cannot be read, or has no time column.
     """
     form = format_of(path)
-    if form in MESSAGE_FORMATS.values():
-        return message_shapes(path)
+    if form in MESSAGE_FORMS:
+        return message_shapes(messages_of(path))
     try:
         if form == "parquet":
             return _of_parquet(path, stamps)
@@ -155,40 +155,3 @@ def _without_rare_objects(seen: Mapping[str, Seen], lines: int) -> dict[str, See
             continue
         kept[name] = entry
     return kept
-
-
-def message_shapes(path: str) -> Shapes:
-    """Look at the topics of a bag or MCAP file, and at the texts in it.
-
-    Raises:
-        TraceError: it cannot be read.
-    """
-    kinds: dict[str, Kind] = {}
-    events: list[str] = []
-    left_out: dict[str, str] = {}
-    for topic in topics_of(path).values():
-        name = dotted(topic.name)
-        leaves = {leaf: kind for leaf, kind in topic.leaves.items() if leaf[:7] != "header."}
-        if topic.fault:
-            left_out[name] = topic.fault
-        elif not leaves:
-            events.append(name)
-        plain = [leaf for leaf in leaves if "[" not in leaf]
-        for leaf, kind in leaves.items():
-            if "[" in leaf:
-                left_out[f"{name}.{leaf}"] = "an array: bind an element"
-            else:
-                kinds[name if len(plain) == 1 else f"{name}.{leaf}"] = kind
-    seen = {name: Seen() for name in (*kinds, *events)}
-    for name, kind in kinds.items():
-        if kind is not Kind.LABEL:
-            seen[name].kinds.add(kind)
-    for name in events:
-        seen[name].add_payload({})
-    texts = {name: kind for name, kind in kinds.items() if kind is Kind.LABEL}
-    if texts:
-        for sample in FileRecording(path, Schema(texts, {}), ordered=False):
-            for name, value in sample.values.items():
-                seen[name].add(value)
-    shapes = shapes_seen(seen)
-    return Shapes(shapes.declared, {**shapes.left_out, **left_out})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from rvmon.spec.print.formatter import format_text
@@ -13,16 +13,37 @@ from rvmon.starter.skeletons import Skeleton, name_text, round_up, skeletons_of
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
+_LISTED = 6
+"""Names that are listed with the reason why they are not declared."""
+
 
 def starter_text(profile: Profile) -> str:
     """A starter specification in the canonical layout; it runs on the recording as it is."""
-    lines = [*_header(profile), "", *map(_declaration, profile.columns)]
-    if profile.left_out:
-        lines += ["", "# Not declared:"]
-        lines += [f"#   {_plain(name)}: {why}" for name, why in profile.left_out.items()]
-    for number, skeleton in enumerate(skeletons_of(profile), 1):
+    skeletons = skeletons_of(profile)
+    read = {name for skeleton in skeletons for name in skeleton.names}
+    lines = [*_header(profile), ""]
+    lines += [_declaration(column) for column in profile.columns if column.name in read]
+    for number, skeleton in enumerate(skeletons, 1):
         lines += ["", *_requirement(f"R{number}", skeleton)]
+    others = [column for column in profile.columns if column.name not in read]
+    if others:
+        # What is declared and not read would be warned of.
+        lines += ["", "# What else there is: take away the `#` before what a requirement reads."]
+        lines += [f"# {_declaration(column)}" for column in others]
+    if profile.left_out:
+        lines += ["", "# What cannot be declared as it is:"]
+        lines += [f"#   {name}: {why}" for why, name in _by_reason(profile.left_out)]
     return format_text("\n".join(lines) + "\n")
+
+
+def _by_reason(left_out: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Each reason with the names that it is of."""
+    names: dict[str, list[str]] = {}
+    for name, why in left_out.items():
+        names.setdefault(why, []).append(_plain(name))
+    for why, own in names.items():
+        more = f" and {len(own) - _LISTED} more" if len(own) > _LISTED else ""
+        yield why, f"{', '.join(own[:_LISTED])}{more}"
 
 
 def _header(profile: Profile) -> Iterator[str]:
@@ -31,7 +52,10 @@ def _header(profile: Profile) -> Iterator[str]:
     span = (profile.end - profile.start) / TICKS_PER_SECOND
     name = stem if stem[0].isalpha() else f"recording_{stem}"
     yield f"# From {_plain(file)}: {profile.samples} samples in {span:.6g} s."
-    yield "# The types are guessed; add units (`real [m/s]`) and roles (`input`, `output`)."
+    units = (
+        "" if any(column.shape.unit for column in profile.columns) else "units (`real [m/s]`) and "
+    )
+    yield f"# The types are guessed; add {units}roles (`input`, `output`)."
     yield f'spec {name_text(name)} "{_plain(stem)}"'
     yield "time held"
     if profile.lateness:
@@ -52,7 +76,8 @@ def _declared(column: Column) -> str:
         return f"event  {name}({fields})" if fields else f"event  {name}"
     if shape.kind is Kind.LABEL:
         return f"signal {name} : {{{', '.join(map(name_text, shape.labels))}}}"
-    return f"signal {name} : {shape.kind}"
+    unit = f" [{shape.unit}]" if shape.unit else ""
+    return f"signal {name} : {shape.kind}{unit}"
 
 
 def _remarks(column: Column) -> Iterator[str]:
@@ -62,7 +87,8 @@ def _remarks(column: Column) -> Iterator[str]:
             yield "a guess: true in single samples"
         return
     if column.low is not None and column.high is not None:
-        yield f"{column.low:.6g} … {column.high:.6g}"
+        low, high = f"{column.low + 0:.6g}", f"{column.high + 0:.6g}"
+        yield f"always {low}" if column.low == column.high else f"{low} … {high}"
     if column.rate:
         gap = format_duration(column.longest_gap)
         if len(gap) > 8:

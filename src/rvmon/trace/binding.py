@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -15,20 +16,33 @@ class Clock(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Named:
+    """The element of an array that has a name: beside the array, or in the element itself."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return self.name
+
+
+Step = str | int | Named
+
+
+@dataclass(frozen=True, slots=True)
 class Field:
     """A field of a message.
 
     Attributes:
-        path: names that lead to it, and the places of elements of arrays.
+        path: names that lead to it, and the places or names of elements of arrays.
 
-    >>> str(Field(("poses", 0, "position", "x")))
-    'poses[0].position.x'
+    >>> str(Field(("poses", 0, "position", "x"))), str(Field(("position", Named("elbow"))))
+    ('poses[0].position.x', 'position[elbow]')
     """
 
-    path: tuple[str | int, ...]
+    path: tuple[Step, ...]
 
     def __str__(self) -> str:
-        steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in self.path)
+        steps = (f".{step}" if isinstance(step, str) else f"[{step}]" for step in self.path)
         return "".join(steps).removeprefix(".")
 
 
@@ -55,13 +69,33 @@ class Constant:
 
     value: float | int | bool
 
+    def __str__(self) -> str:
+        return str(self.value).lower()
+
 
 @dataclass(frozen=True, slots=True)
 class Applied:
-    """An operation on terms, of which `Elements` is alone; what is no number is unknown."""
+    """An operation on terms, of which `Elements` is alone; what is no number is unknown.
+
+    Attributes:
+        operation: yields the result.
+        args: on what.
+        sign: as it is written; empty of a conversion of units.
+    """
 
     operation: Callable[..., float]
     args: tuple[Term, ...]
+    sign: str
+
+    def __str__(self) -> str:
+        args = [str(arg).removesuffix("[]") for arg in self.args]
+        if not self.sign:
+            return args[0]
+        if self.sign == "yaw":
+            return f"yaw({args[0].rpartition('.')[0]})"
+        if re.fullmatch(r"\w+", self.sign) and self.sign not in ("and", "or", "xor"):
+            return f"{self.sign}({', '.join(args)})"
+        return f"({f' {self.sign} '.join(args)})" if len(args) > 1 else f"{self.sign}{args[0]}"
 
 
 Term = Field | Elements | Constant | Applied
@@ -79,6 +113,8 @@ class Bound:
         labels: of a signal of labels, by the number or text that stands for it; empty: the text.
         clock: which stamp counts; `None`: that of the whole recording.
         on_change: whether a message whose value is that of the one before says nothing.
+        type: of the messages; empty: any.
+        unit: of the value, before it is converted; empty: the declared one.
     """
 
     topic: str
@@ -87,6 +123,8 @@ class Bound:
     labels: Mapping[str, str] = field(default_factory=dict)
     clock: Clock | None = None
     on_change: bool = False
+    type: str = ""
+    unit: str = ""
 
 
 @dataclass(frozen=True, slots=True)

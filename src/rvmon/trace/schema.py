@@ -47,6 +47,8 @@ class Schema:
             it, where that has another name.
         gaps: values that stand for no update, of whatever name.
         binding: which topics and fields of messages stand for what.
+        units: in which the declared names are, of an event's field by `event.field`; those
+            without one are not in it.
     """
 
     signals: Mapping[str, Kind]
@@ -56,6 +58,7 @@ class Schema:
     columns: Mapping[str, str] = field(default_factory=dict)
     gaps: Gaps = NO_GAPS
     binding: Binding = BY_NAME
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def named(self) -> Mapping[str, str]:

@@ -61,6 +61,14 @@ def test_names_that_are_not_declared_are_counted(live):
     assert source.ignored == {"y": 1}
 
 
+def test_a_name_that_a_declared_one_may_be_meant_by_is_told_at_once(live, caplog):
+    """With how to map it; once."""
+    driver, _, source = live
+    _verdicts(driver, [b'{"t": 0, "state": {"x": 0}, "y": 1}', b'{"t": 1, "state.x": 0}'], source)
+    [told] = [one.getMessage() for one in caplog.records if "feeds nothing" in one.getMessage()]
+    assert told == "`state.x` feeds nothing, and `x` is declared: is `--map x=state.x` meant?"
+
+
 def test_lines_without_a_time_are_stamped_as_they_arrive():
     """By the clock of the driver."""
     spec, clock = loads(SPEC), SimulatedClock(7)

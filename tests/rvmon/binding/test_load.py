@@ -28,7 +28,7 @@ requirement R1
 BINDING = """
 [bind.speed]
 topic = "/base/odom"
-value = "hypot(twist.twist.linear.x, twist.twist.linear.y)"
+value = "1 * hypot(twist.twist.linear.x, twist.twist.linear.y)"  # a scale of its own
 unit = "mm/s"
 
 [bind.nearest]

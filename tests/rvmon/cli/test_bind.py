@@ -49,16 +49,24 @@ def words(tmp_path):
     return [str(tmp_path / "base.rv"), str(write_ros1(tmp_path / "a.bag", SENT))]
 
 
+def bound(words, capsys):
+    """What is proposed, with the labels that only a person knows."""
+    assert main(["bind", *words]) == 1
+    told = capsys.readouterr()
+    assert "`scan_state` is a number" in told.err
+    open_ = '# labels = { 0 = "idle" }  # which number stands for which: it holds 1'
+    assert open_ in told.out
+    return told.out.replace(open_, 'labels = { 0 = "idle", 1 = "busy" }')
+
+
 def test_what_is_proposed_runs(words, tmp_path, capsys):
     """By names, types, and what ROS calls things; with what else may be meant."""
-    assert main(["bind", *words]) == 0
-    proposed = capsys.readouterr().out
+    proposed = bound(words, capsys)
     for line in (
-        'value = "hypot(twist.twist.linear.x, twist.twist.linear.y)"',
-        'value = "yaw(pose.pose.orientation)"',
-        'labels = { 0 = "idle", 1 = "busy" }',
+        'value = "hypot(twist.twist.linear.x, twist.twist.linear.y)"  # always 1',
+        'value = "yaw(pose.pose.orientation)"  # always 1.5',
         'fields = { id = "id" }',
-        '[bind.ready]  # event\ntopic = "/ready"  # std_msgs/msg/Bool',
+        '[bind.ready]  # event\ntopic = "/ready"\ntype = "std_msgs/msg/Bool"\nvalue = "data"',
     ):
         assert line in proposed
     (tmp_path / "base.toml").write_text(proposed)
@@ -79,7 +87,7 @@ def test_what_finds_nothing_is_told(words, tmp_path, capsys):
     assert main(["bind", *words]) == 1
     told = capsys.readouterr()
     assert "# Nothing was found for `zapped` (event):" in told.out
-    assert "has nothing like `zapped`" in told.err
+    assert "what feeds `zapped` is left open" in told.err
 
 
 def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys):
@@ -136,8 +144,7 @@ def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, 
     for number in range(6):
         write_ros1(runs / f"{number}.bag", SENT)
     (runs / "3.bag").write_bytes((runs / "3.bag").read_bytes()[:900])
-    main(["bind", *words])
-    (tmp_path / "base.toml").write_text(capsys.readouterr().out)
+    (tmp_path / "base.toml").write_text(bound(words, capsys))
     for jobs in ("1", "2"):
         binding = ["--binding", str(tmp_path / "base.toml"), "--jobs", jobs]
         assert main(["run", words[0], str(runs), *binding]) == 2
@@ -153,9 +160,8 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
     runs.mkdir()
     for number in range(3):
         write_ros2(runs / str(number), SENT, "mcap")
-    main(["bind", *words])
     binding = tmp_path / "base.toml"
-    binding.write_text(capsys.readouterr().out)
+    binding.write_text(bound(words, capsys))
     command = ["run", words[0], str(runs), "--binding", str(binding)]
     command += ["--out", str(tmp_path / "out.csv"), "--resume"]
 
@@ -168,6 +174,19 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
         (runs / "1" / "1.mcap").touch()
         assert main(command) == 130
     assert "2 of 3 recordings were evaluated before" in capsys.readouterr().err
-    binding.write_text(binding.read_text().replace('unit = "m/s"', 'unit = "km/h"'))
+    binding.write_text(binding.read_text().replace('unit = "rad"', 'unit = "rad" '))
     assert main(command) == 2
     assert "begun with another specification" in capsys.readouterr().err
+
+
+def test_two_names_on_one_field_are_told(words, tmp_path, capsys):
+    """Beside the proposal, and by `check`."""
+    two = SPEC.replace("signal heading ", "signal robot_speed : real [m/s]\nsignal heading ")
+    (tmp_path / "base.rv").write_text(two)
+    main(["bind", *words])
+    assert "`speed` and `robot_speed` are fed by one and the same field" in capsys.readouterr().err
+    field = 'topic = "/base/odom"\nvalue = "twist.twist.linear.x"\nunit = "m/s"\n'
+    path = tmp_path / "two.toml"
+    path.write_text(f"[bind.speed]\n{field}[bind.robot_speed]\n{field}")
+    assert main(["check", words[0], "--binding", str(path)]) == 0
+    assert "feeds speed and robot_speed with one and the same" in capsys.readouterr().out

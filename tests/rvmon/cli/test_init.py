@@ -33,15 +33,17 @@ RECORDINGS = {
 
 @pytest.mark.parametrize("name", RECORDINGS)
 def test_what_is_written_runs_at_once(name, tmp_path, monkeypatch, capsys):
-    """Whatever a recording holds, the starter runs on it, with two requirements, none failed."""
+    """Whatever a recording holds, the starter runs on it without a warning, none failed."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / name).write_text(RECORDINGS[name], encoding="utf-8")
     assert main(["init", name, "-o", "made.rv"]) == 0
     capsys.readouterr()
     assert main(["run", "made.rv", name, "--format", "json"]) == 0
-    shown = json.loads(capsys.readouterr().out)
+    told = capsys.readouterr()
+    assert "warning" not in told.err
+    shown = json.loads(told.out)
     verdicts = [one["verdict"] for one in shown["requirements"].values()]
-    assert len(verdicts) == 2
+    assert 1 <= len(verdicts) <= 6
     assert set(verdicts) <= {"P", "I"}
 
 
@@ -88,8 +90,8 @@ def test_what_was_seen_stands_beside_the_names(tmp_path, capsys):
         for line in lines
     )
     assert any("longest gap 1500 ms" in line for line in lines)
-    assert any(line.startswith("event  go ") and "once" in line for line in lines)
-    assert "signal mode  : {idle, busy}" in "\n".join(lines)
+    assert "# event  go  # once; a guess: true in single samples" in lines
+    assert any(line.startswith("signal mode  : {idle, busy}") for line in lines)
     (tmp_path / "a.rv").write_text("\n".join(lines) + "\n")
     assert main(["format", "--check", str(tmp_path / "a.rv")]) == 0
 

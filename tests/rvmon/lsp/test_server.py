@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager
 import pytest
 import pytest_lsp
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
 
 from rvmon.cli import main
 
@@ -115,6 +116,17 @@ def test_a_session(tmp_path):
                 lsp.ReferenceParams(lsp.ReferenceContext(True), document, at)
             )
             assert sorted(str(use.range) for use in uses) == ["0:11-0:17", "2:44-2:50"]
+            made = await of.client.text_document_rename_async(lsp.RenameParams(document, at, "for"))
+            assert {
+                uri: [(str(edit.range), edit.new_text) for edit in edits]
+                for uri, edits in made.changes.items()
+            } == {
+                of.document("signals.rv").uri: [("0:11-0:17", "`for`")],
+                document.uri: [("2:44-2:50", "`for`")],
+            }
+            for name, why in (("ask", "there is a `ask` already"), ("a\nb", "cannot be written")):
+                with pytest.raises(JsonRpcException, match=why):
+                    await of.client.text_document_rename_async(lsp.RenameParams(document, at, name))
             offered = await of.client.text_document_completion_async(
                 lsp.CompletionParams(document, lsp.Position(2, 24))
             )

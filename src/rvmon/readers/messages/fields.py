@@ -12,13 +12,14 @@ from typing import Any, assert_never
 
 from rvmon.diagnostics.nearest import nearest
 from rvmon.errors import TraceError
+from rvmon.readers.messages.by_names import Get, by_names
 from rvmon.readers.messages.topic import Topic
 from rvmon.readers.values import plain, shorten
-from rvmon.trace.binding import Applied, Constant, Elements, Field, Term
+from rvmon.trace.binding import Applied, Constant, Elements, Field, Named, Step, Term
 from rvmon.trace.sample import calculated
 from rvmon.trace.schema import Kind
 
-_STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]")
+_STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]|\[([^\[\]\s](?:[^\[\]]*[^\[\]\s])?)\]")
 
 _SHOWN = 6
 """Fields that a message lists."""
@@ -28,29 +29,38 @@ _PARTS = (("sec", "nanosec"), ("sec", "nsec"), ("secs", "nsecs"), ("seconds", "n
 
 
 def field_of(text: str) -> Field | None:
-    """Read a path such as `pose.position.x` or `ranges[0]`; `None` if it is none.
+    """Read a path such as `pose.position.x`, `ranges[0]`, `position[elbow]`; `None` if it is none.
 
-    >>> field_of("poses[0].x"), field_of("2x")
-    (Field(path=('poses', 0, 'x')), None)
+    >>> field_of("poses[0].x"), field_of("2x"), str(field_of("values[Battery level].value"))
+    (Field(path=('poses', 0, 'x')), None, 'values[Battery level].value')
     """
-    steps: list[str | int] = []
+    steps: list[Step] = []
     place = 0
     while place < len(text):
         found = _STEP.match(text, place)
         if found is None or (text[place] == ".") != (place > 0 and text[place] != "["):
             return None
-        steps.append(found[1] or int(found[2]))
+        steps.append(found[1] or (int(found[2]) if found[2] else Named(found[3])))
         place = found.end()
     return Field(tuple(steps)) if steps and isinstance(steps[0], str) else None
 
 
 def fields_in(term: Term | None) -> Iterator[Field | Elements]:
-    """The fields that a term reads."""
+    """The fields of numbers and truth values that a term reads, or the one that it is."""
     if isinstance(term, Field | Elements):
         yield term
-    elif isinstance(term, Applied):
+    elif isinstance(term, Applied) and term.sign != "number":
         for arg in term.args:
             yield from fields_in(arg)
+
+
+def texts_in(term: Term) -> Iterator[Field]:
+    """The fields whose text is read as a number."""
+    if isinstance(term, Applied):
+        for arg in term.args:
+            if term.sign == "number" and isinstance(arg, Field):
+                yield arg
+            yield from texts_in(arg)
 
 
 def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
@@ -59,9 +69,9 @@ def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
     Raises:
         TraceError: the topic has no such field, or it is a message or an array itself.
     """
-    path = re.sub(r"\[\d+\]", "[]", str(field))
+    path = re.sub(r"\[[^\[\]]*\]", "[]", str(field))
     if not topic.leaves or path in topic.leaves:
-        return topic.leaves.get(path)
+        return None if path in topic.doubtful else topic.leaves.get(path)
     where = f"topic {topic.name} ({topic.type})"
     if f"{path}[]" in topic.leaves:
         raise TraceError(f"{where}: `{field}` is an array: name an element, such as `{field}[0]`")
@@ -87,6 +97,12 @@ def expect_kinds(
     Raises:
         TraceError: a field is not there, or holds something else.
     """
+    for text in texts_in(term):
+        if kind_of(text, topic) not in (None, Kind.LABEL):
+            raise TraceError(
+                f"`{name}`: `{text}` of topic {topic.name} ({topic.type}) is no text, and `number` "
+                "reads one: leave it out"
+            )
     for field in fields_in(term):
         found = kind_of(field, topic)
         if found is None:
@@ -107,9 +123,6 @@ def expect_kinds(
             )
 
 
-Get = Callable[[Any], Any]
-
-
 def getter(term: Term, *, mappings: bool) -> Get:
     """A function that gives the value of a term for the content of a message.
 
@@ -122,9 +135,14 @@ def getter(term: Term, *, mappings: bool) -> Get:
         case Field(path=path):
             if not mappings and all(isinstance(step, str) for step in path):
                 return attrgetter(".".join(map(str, path)))
+            if any(isinstance(step, Named) for step in path):
+                return by_names(path, mappings=mappings)
             return _stepping(path, mappings=mappings)
         case Elements(array=array):
             return getter(array, mappings=mappings)
+        case Applied(operation=operation, args=(Field() as field,), sign="number"):
+            text = getter(field, mappings=mappings)
+            return lambda content: None if (one := text(content)) is None else operation(one)
         case Applied(operation=operation, args=(Elements() as elements,)):
             values = getter(elements, mappings=mappings)
             return lambda content: None if (one := values(content)) is None else operation(one)
@@ -149,8 +167,8 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
     return calculated(operation, *known)
 
 
-def _stepping(path: tuple[str | int, ...], *, mappings: bool) -> Get:
-    def step(content: Any, name: str | int) -> Any:
+def _stepping(path: tuple[Step, ...], *, mappings: bool) -> Get:
+    def step(content: Any, name: Any) -> Any:
         if mappings or isinstance(name, int):
             return content[name]
         return getattr(content, name)

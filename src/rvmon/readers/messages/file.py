@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import closing
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.messages.match import matched
 from rvmon.readers.messages.rows import message_rows
 from rvmon.readers.messages.skew import Skew
-from rvmon.readers.messages.topic import Messages
+from rvmon.readers.messages.topic import Message, Messages
 from rvmon.readers.places import local_path
 from rvmon.readers.rows import Row
 from rvmon.trace.binding import Clock
@@ -31,6 +31,10 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
             from rvmon.readers.messages.mcap import mcap_messages
 
             return mcap_messages(path, schema.binding.definitions)
+        if form == "tables":
+            from rvmon.readers.messages.tables import TableMessages
+
+            return TableMessages(path)
         from rvmon.readers.messages.ros import BagMessages
 
         return BagMessages(path, form, schema.binding.definitions)
@@ -51,7 +55,7 @@ class MessageFile:
 
     Args:
         path: of it.
-        form: a value of `MESSAGE_FORMATS`.
+        form: one of `MESSAGE_FORMS`.
         schema: the declared names, and how the recording gives them.
 
     Attributes:
@@ -90,6 +94,15 @@ class MessageFile:
     def _opened(self) -> Messages:
         path, form = self._place
         return open_messages(local_path(path), form, self._schema)
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The messages of these topics, as they were recorded.
+
+        Raises:
+            TraceError: one cannot be read.
+        """
+        with closing(self._opened()) as source:
+            yield from source.read(topics)
 
     def rows(self, *, ordered: bool) -> Iterator[Row]:
         """The rows of its messages; see `message_rows`."""

@@ -8,6 +8,15 @@ MESSAGE_FORMATS = {".bag": "ros1", ".db3": "ros2", ".mcap": "mcap"}
 """File name endings and the formats of messages they stand for; a bag of ROS 2 is a folder."""
 
 
-def is_bag_folder(path: str) -> bool:
-    """Whether a path is a folder that ROS 2 has recorded."""
-    return Path(path, "metadata.yaml").is_file()
+TOPICS = "topics.toml"
+"""In a folder of tables that are one recording: says which file is which topic."""
+
+_FOLDERS = {"metadata.yaml": "ros2", TOPICS: "tables"}
+
+MESSAGE_FORMS = frozenset({*MESSAGE_FORMATS.values(), *_FOLDERS.values()})
+"""The formats of messages."""
+
+
+def form_of_folder(path: str) -> str:
+    """The format of a folder that is one recording; empty of other folders, and of files."""
+    return next((form for name, form in _FOLDERS.items() if Path(path, name).is_file()), "")

@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rvmon.errors import TraceError
+from rvmon.readers.messages.by_names import arrays_with_names
 from rvmon.readers.messages.fields import expect_kinds, field_of
+from rvmon.readers.messages.meaning import plain_type
+from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.binding import Bound, Field, Term
 from rvmon.trace.schema import Kind, Schema
@@ -29,8 +32,8 @@ def matched(schema: Schema, topics: Mapping[str, Topic]) -> Matched:
     """Find what feeds the declared names.
 
     A column that somebody named counts before the binding, and that before the name itself: `a.b.c`
-    is the field `c` of the topic `/a/b`, or `b.c` of `/a`; a topic with one field, which is no
-    array and not of the header, is that field.
+    is the field `c` of the topic `/a/b`, or `b.c` of `/a`, or the element named `c` of its array
+    `b`; a topic with one field, which is no array and not of the header, is that field.
 
     Raises:
         TraceError: a topic has not the field that is bound, or it is of another kind; or its
@@ -72,6 +75,7 @@ def _by_name(
     found = _place(schema.columns[name], columns, topics) if name in schema.columns else None
     if name not in schema.columns:
         found = next((place for one, place in columns.items() if dotted(one) == name), None)
+        found = found or _element(name, topics)
     if name in schema.signals:
         return None if found is None or found[1] is None else Bound(*found)
     payload = schema.events[name]
@@ -91,6 +95,16 @@ def _by_name(
     if value is not None and topics[topic].leaves.get(str(value)) is not Kind.BOOL:
         value = None  # each message is an occurrence
     return Bound(topic, value, fields)
+
+
+def _element(name: str, topics: Mapping[str, Topic]) -> tuple[str, Field | None] | None:
+    """The element `c` of the array `/a.b`, whose names stand beside it, of the name `a.b.c`."""
+    for topic in topics.values():
+        for array in arrays_with_names(topic):
+            prefix = f"{dotted(topic.name)}.{array}."
+            if name.startswith(prefix):
+                return topic.name, field_of(f"{array}[{name.removeprefix(prefix)}]")
+    return None
 
 
 def dotted(column: str) -> str:
@@ -120,8 +134,14 @@ def _place(
 def _expect_fit(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
     if topic.fault:
         raise TraceError(f"topic {topic.name} ({topic.type}), which feeds `{name}`: {topic.fault}")
+    if bound.type and plain_type(bound.type) != plain_type(topic.type):
+        raise TraceError(
+            f"topic {topic.name}, which feeds `{name}`, holds {topic.type}, and the binding says "
+            f"{bound.type}: is it the binding of another robot?"
+        )
     if bound.value is not None:
         kind = schema.signals.get(name, Kind.BOOL)
         expect_kinds(name, kind, bound.value, bound.labels, topic)
     for field, term in bound.fields.items():
         expect_kinds(f"{name}.{field}", schema.events[name][field], term, {}, topic)
+    expect_units(name, bound, schema, topic)

@@ -159,9 +159,11 @@ def ros_topic(
             fault = _UNDEFINED
     if fault:
         return Topic(name, type_name, {}, fault), bytes
-    leaves = dict(_leaves(store, type_name))
+    messages: dict[str, str] = {}
+    leaves = dict(_leaves(store, type_name, messages))
     unpack = store.deserialize_ros1 if is_ros1 else store.deserialize_cdr
-    return Topic(name, type_name, leaves), lambda raw: unpack(raw, type_name)
+    topic = Topic(name, type_name, leaves, messages=messages)
+    return topic, lambda raw: unpack(raw, type_name)
 
 
 @lru_cache(maxsize=512)
@@ -230,8 +232,13 @@ _KINDS = {"bool": Kind.BOOL, "string": Kind.LABEL, "wstring": Kind.LABEL, "wchar
 
 
 def _leaves(
-    store: Any, type_name: str, prefix: str = "", above: frozenset[str] = frozenset()
+    store: Any,
+    type_name: str,
+    messages: dict[str, str],
+    prefix: str = "",
+    above: frozenset[str] = frozenset(),
 ) -> Iterator[tuple[str, Kind]]:
+    """The fields that are no messages; the types of those that are go into `messages`."""
     from rosbags.interfaces import Nodetype
 
     for name, (node, inner) in store.fielddefs[type_name][1]:
@@ -243,7 +250,8 @@ def _leaves(
             node, inner = inner[0]
         if node is Nodetype.NAME:
             if inner in store.fielddefs and inner not in above:
-                yield from _leaves(store, inner, f"{path}.", above | {type_name})
+                messages[path] = inner
+                yield from _leaves(store, inner, messages, f"{path}.", above | {type_name})
         else:
             base = inner[0]
             number = Kind.REAL if base.startswith("float") else Kind.INT

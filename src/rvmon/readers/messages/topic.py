@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from rvmon.trace.schema import Kind
@@ -19,12 +19,17 @@ class Topic:
         leaves: the kinds of the fields that are no messages themselves, by their path, where an
             array is `name[]`; empty if nobody knows.
         fault: why its messages cannot be read; empty if they can.
+        messages: the types of the fields that are messages themselves, by their path, as far as
+            the definition names them.
+        doubtful: the fields whose kind is not known: nothing was seen of them.
     """
 
     name: str
     type: str
     leaves: Mapping[str, Kind]
     fault: str = ""
+    messages: Mapping[str, str] = field(default_factory=dict)
+    doubtful: frozenset[str] = frozenset()
 
 
 Message = tuple[str, int, Any]

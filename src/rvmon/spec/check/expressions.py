@@ -54,9 +54,9 @@ from rvmon.spec.syntax.expressions import (
 )
 from rvmon.spec.syntax.expressions import Window as WindowSyntax
 from rvmon.spec.syntax.items import ConstItem, DefineItem
-from rvmon.spec.syntax.unit import PLAIN
-from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
 from rvmon.trace.schema import Kind
+from rvmon.units.table import UnknownUnitError, parse_unit
+from rvmon.units.unit import PLAIN
 
 
 def formula_of(value: Value, span: Span) -> Formula:

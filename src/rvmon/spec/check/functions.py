@@ -24,9 +24,9 @@ from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import Call, Name
 from rvmon.spec.syntax.fixes import NEVER
-from rvmon.spec.syntax.unit import PLAIN
-from rvmon.spec.syntax.units import parse_unit, quotient
 from rvmon.trace.schema import Kind
+from rvmon.units.table import parse_unit, quotient
+from rvmon.units.unit import PLAIN
 
 _COUNTS = ("no argument", "one argument", "two arguments")
 

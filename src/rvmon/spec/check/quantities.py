@@ -11,8 +11,8 @@ from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
 from rvmon.spec.checked.formula import Arithmetic, Compare, CompareOp, Constant, Literal, Numeric
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
-from rvmon.spec.syntax.unit import PLAIN, Unit
-from rvmon.spec.syntax.units import base_unit, product, quotient, root
+from rvmon.units.table import base_unit, product, quotient, root
+from rvmon.units.unit import PLAIN, Unit
 
 Placed = tuple[Quantity, Span]
 """A quantity with the place of its expression."""

@@ -60,8 +60,8 @@ from rvmon.spec.syntax.items import (
     Triggered,
     WrittenMonitor,
 )
-from rvmon.spec.syntax.unit import PLAIN
 from rvmon.trace.schema import Kind
+from rvmon.units.unit import PLAIN
 
 _C = TypeVar("_C", bound=Clause)
 

@@ -27,10 +27,10 @@ from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.expressions import Expression, Name
 from rvmon.spec.syntax.items import ConstItem, DefineItem, TypeSyntax
-from rvmon.spec.syntax.unit import Unit
-from rvmon.spec.syntax.units import UnknownUnitError, parse_unit
 from rvmon.spec.syntax.walk import expressions_in
 from rvmon.trace.schema import Kind
+from rvmon.units.table import UnknownUnitError, parse_unit
+from rvmon.units.unit import Unit
 
 
 def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:

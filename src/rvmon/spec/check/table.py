@@ -10,8 +10,8 @@ from rvmon.spec.check.values import FieldOf
 from rvmon.spec.checked.specification import Event, Signal, TimeModel
 from rvmon.spec.names.resolved import Declared, DeclaredEvent, DeclaredSignal
 from rvmon.spec.syntax.items import ConstItem, DefineItem
-from rvmon.spec.syntax.unit import Unit
-from rvmon.spec.syntax.units import unit_table
+from rvmon.units.table import unit_table
+from rvmon.units.unit import Unit
 
 _LONG_NAMES = {
     "metre": "m",

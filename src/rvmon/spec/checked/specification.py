@@ -5,7 +5,7 @@ Bare formulas are split into trigger and consequent (SEMANTICS 3).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -210,4 +210,12 @@ class CheckedSpec:
                 for name, event in self.events.items()
             },
             self.ignoring,
+            units={name: type_.unit for name, type_ in self._types() if type_.unit},
         )
+
+    def _types(self) -> Iterator[tuple[str, Type]]:
+        """The type of each signal, and of each event's field as `event.field`."""
+        for name, signal in self.signals.items():
+            yield name, signal.type
+        for name, event in self.events.items():
+            yield from ((f"{name}.{field}", type_) for field, type_ in event.fields.items())

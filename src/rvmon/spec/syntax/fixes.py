@@ -8,8 +8,8 @@ import lark
 
 from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Span
-from rvmon.spec.syntax.units import unit_table
 from rvmon.spec.syntax.words import ITEM_WORDS, RESERVED
+from rvmon.units.table import unit_table
 
 _FIX = {
     "≤": "write `<=`",

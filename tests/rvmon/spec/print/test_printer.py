@@ -9,8 +9,8 @@ from rvmon.spec.checked.formula import Arithmetic, Compare, Literal, SignalValue
 from rvmon.spec.checked.tense import subformulas
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
-from rvmon.spec.syntax.units import unit_table
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.units.table import unit_table
 
 
 @pytest.mark.law

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import cache
 
-from rvmon.spec.syntax.unit import Unit
+from rvmon.units.unit import Unit
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494")
 

@@ -1,0 +1,184 @@
+"""What in a recording may feed a signal: its fields, and what is calculated of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from rvmon.binding.functions import number
+from rvmon.binding.words import (
+    EMPTY,
+    MODIFIERS,
+    Dimension,
+    dimensions_of,
+    unit_in_name,
+    words_of,
+)
+from rvmon.readers.messages.by_names import arrays_with_names
+from rvmon.readers.messages.look import Looked
+from rvmon.readers.messages.meaning import UNKNOWN, Meaning, Sort, is_listed, meaning_of
+from rvmon.readers.messages.topic import Topic
+from rvmon.trace.schema import Kind
+from rvmon.units.table import parse_unit
+from rvmon.units.unit import Unit
+
+_AXES = ("x", "y", "z")
+
+_ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    "m/s": {
+        "x": ("forward", "longitudinal"),
+        "y": ("lateral", "sideways"),
+        "z": ("vertical", "climb", "rate"),
+    },
+    "m/s^2": {
+        "x": ("forward", "longitudinal"),
+        "y": ("lateral", "sideways"),
+        "z": ("vertical",),
+    },
+    "rad/s": {"x": ("roll",), "y": ("pitch",), "z": ("yaw", "turn")},
+}
+"""What people call a quantity along, or about, an axis of a robot."""
+
+ALONG = frozenset(
+    {word for axes in _ALONG.values() for words in axes.values() for word in words}
+    | {"altitude", "height"}  # of positions as ROS has them, with z upwards
+) - {"rate"}
+"""Words that name an axis without its letter."""
+
+_COMMANDS = frozenset({"command", "trajectory", "jog"})
+
+_COMMANDING = re.compile(r"Ackermann|Trajectory|Setpoint|Command|Target|Goal|Jog")
+"""In names of types: their messages say what should be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """What may feed a name.
+
+    Attributes:
+        topic: of the messages.
+        value: an expression; empty: each message is an occurrence.
+        kind: of the value; `None` of each message.
+        own: words of the value, and those of its meaning.
+        around: words of the topic, of its frames and of the type.
+        meaning: of the field; of what is calculated that of the result.
+        axis: along which it is measured; empty if along none.
+    """
+
+    topic: Topic
+    value: str
+    kind: Kind | None
+    own: tuple[str, ...]
+    around: tuple[str, ...]
+    meaning: Meaning
+    axis: str = ""
+
+    @property
+    def is_command(self) -> bool:
+        """Whether it says what should be, and not what is."""
+        words = {*words_of(self.topic.name), *self.own}
+        return not _COMMANDS.isdisjoint(words) or bool(_COMMANDING.search(self.topic.type))
+
+    @property
+    def unit(self) -> Unit | None:
+        """What the messages say, or the name of the field; `None` if neither says one."""
+        if self.meaning.sort is Sort.MEASURED and len(self.meaning.units) == 1:
+            return self.meaning.units[0]
+        named = unit_in_name(self.value) if self.meaning.sort is Sort.OPEN else ""
+        return parse_unit(named) if named else None
+
+    @property
+    def dimensions(self) -> frozenset[Dimension]:
+        """Of its units; by its words where the messages do not say it; none if nobody knows."""
+        if self.meaning.sort is Sort.MEASURED:
+            return frozenset(unit.dimension for unit in self.meaning.units)
+        if self.unit is not None:
+            return frozenset({self.unit.dimension})
+        return dimensions_of(self.own) or dimensions_of(words_of(self.topic.name))
+
+
+def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
+    """All that the messages of a topic say or that can be calculated of them."""
+    frames = [word for frame in sorted(named.frames) for word in words_of(frame)]
+    type_words = words_of(topic.type.rpartition("/")[2]) if is_listed(topic.type) else []
+    around = tuple(dict.fromkeys([*words_of(topic.name), *frames, *type_words]))
+    with_names = arrays_with_names(topic)
+    for leaf, kind in topic.leaves.items():
+        meaning = meaning_of(leaf, topic)
+        if leaf.startswith("header.") or meaning.sort is Sort.ODD or "covariance" in leaf:
+            continue
+        for value, own, axis in _places(leaf, meaning, named, with_names):
+            words = (*own, *_along(meaning, axis))
+            yield Candidate(topic, value, kind, words, around, meaning, axis)
+        if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
+            turned = Meaning(Sort.MEASURED, (parse_unit("rad"),))
+            whole = leaf.rpartition(".")[0]
+            yield Candidate(topic, f"yaw({whole})", kind, ("yaw", "angle"), around, turned)
+        if leaf.endswith("linear.x") and "[" not in leaf:
+            value = f"hypot({leaf}, {leaf[:-1]}y)"
+            level = ("speed", "ground", "horizontal")
+            yield Candidate(topic, value, kind, level, around, meaning)
+    yield from _of_keys(topic, named, around)
+
+
+def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[Candidate]:
+    """The values that have a key, which are texts, and may be numbers."""
+    for path, value in (looked.entries or {}).items():
+        own = tuple(words_of(" ".join(re.findall(r"\[([^\[\]]+)\]", path))))
+        if number(value) is None:
+            yield Candidate(topic, path, Kind.LABEL, own, around, UNKNOWN)
+        else:
+            yield Candidate(topic, f"number({path})", Kind.REAL, own, around, UNKNOWN)
+
+
+def _places(
+    leaf: str, meaning: Meaning, named: Looked, with_names: Mapping[str, str]
+) -> Iterator[tuple[str, list[str], str]]:
+    """The values that a field has, with words and axis; of an array some elements, or the least."""
+    words = [*words_of(leaf), *(one for word in meaning.words for one in words_of(word))]
+    if "[" not in leaf:
+        last = words_of(leaf.rpartition(".")[2])[-1:]
+        yield leaf, words, last[0] if last and last[0] in _AXES else ""
+        return
+    array = leaf.removesuffix("[]")
+    if "[" in array:
+        return
+    if "xyz" in meaning.words and meaning.sort is not Sort.QUATERNION:
+        plain = [word for word in words if word != "xyz"]
+        for place, axis in enumerate(_AXES):
+            yield f"{array}[{place}]", [*plain, axis], axis
+    elif "distance" in words and meaning.sort is Sort.MEASURED:
+        yield f"min({array})", ["nearest", *words], ""
+    for name in (named.joints or {}).get(with_names.get(array, ""), ()):
+        yield f"{array}[{name}]", [*words, *words_of(name)], ""
+
+
+def _along(meaning: Meaning, axis: str) -> tuple[str, ...]:
+    return _ALONG.get(meaning.units[0].symbol if meaning.units else "", {}).get(axis, ())
+
+
+def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
+    """What may be an event: a topic whose only truth value is true, or each of its messages."""
+    for topic in topics.values():
+        flags = [leaf for leaf, kind in topic.leaves.items() if kind is Kind.BOOL]
+        around, meaning = tuple(words_of(topic.name)), Meaning(Sort.CODE)
+        if len(flags) == 1 and "[" not in flags[0]:
+            own = tuple(words_of(flags[0]))
+            yield Candidate(topic, flags[0], Kind.BOOL, own, around, meaning)
+        elif not topic.fault:
+            yield Candidate(topic, "", None, (), around, meaning)
+
+
+def foreign_words(candidate: Candidate) -> list[str]:
+    """The words of a candidate that say something, without those of the meaning alone."""
+    written = [*words_of(candidate.topic.name), *words_of(candidate.value)]
+    plain = {*EMPTY, *_AXES, "hypot", candidate.axis}
+    return [word for word in dict.fromkeys(written) if word not in plain]
+
+
+def modifiers_of(candidate: Candidate) -> set[str]:
+    """The words that make another quantity of it: of its field, of a number alone of its topic."""
+    is_alone = candidate.meaning.sort is Sort.OPEN and candidate.value == "data"
+    words = [*candidate.own, *(words_of(candidate.topic.name) if is_alone else ())]
+    return {word for word in words if word in MODIFIERS}

@@ -1,0 +1,190 @@
+"""How well what is in a recording fits a name: never against a unit, a kind or a word."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from rvmon.binding.candidates import ALONG, Candidate, foreign_words, modifiers_of
+from rvmon.binding.words import (
+    EMPTY,
+    MODIFIERS,
+    ORDINALS,
+    SUBJECTS,
+    WEAK,
+    dimensions_of,
+    is_found,
+    words_of,
+)
+from rvmon.readers.messages.meaning import Sort
+from rvmon.readers.messages.topic import Topic
+from rvmon.spec.checked.specification import Type
+from rvmon.trace.schema import Kind
+from rvmon.units.table import parse_unit
+
+_FITTING = {
+    Kind.BOOL: {Kind.BOOL},
+    Kind.INT: {Kind.INT},
+    Kind.REAL: {Kind.REAL, Kind.INT},
+    Kind.LABEL: {Kind.LABEL, Kind.INT},
+}
+
+_REQUESTS = frozenset({"request", "requested", "event", "pressed", "command"})
+"""Words that say of an event no more than that it is one."""
+
+_A_WORD = 0.05
+"""Scores differ by less where the same words are found."""
+
+_MOVING = "nav_msgs/msg/Odometry"
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A name for which something is looked for.
+
+    Attributes:
+        words: of it.
+        type: declared; `None` of an event.
+        guess: what a word of it was taken for; empty if all are taken as they are.
+    """
+
+    words: tuple[str, ...]
+    type: Type | None
+    guess: str = ""
+
+    @property
+    def axis(self) -> str:
+        """Along which axis, if the name says it."""
+        return next((word for word in self.words if word in ("x", "y", "z")), "")
+
+
+def wanted_of(name: str, type_: Type | None, topics: Iterable[Topic]) -> Wanted:
+    """What a name asks for; a leader is the first of topics that are numbered."""
+    words = words_of(name)
+    there = {word for topic in topics for word in words_of(topic.name)}
+    guess = ""
+    for place, word in enumerate(words):
+        if word in ORDINALS and word not in there and {"1", "2"} <= there:
+            words[place] = ORDINALS[word]
+            guess = f"`{word}` is taken for number {ORDINALS[word]}"
+    if type_ is not None and type_.unit and "A" not in type_.unit:
+        # The current speed is the speed.
+        words = [word for word in words if word != "current" or len(words) == 1]
+    return Wanted(tuple(words), type_, guess)
+
+
+def fitting(wanted: Wanted, candidates: Iterable[Candidate]) -> list[tuple[float, Candidate]]:
+    """Those that fit, the best first, each with how well it does."""
+    type_ = wanted.type
+    fit = [
+        one
+        for one in candidates
+        if (_says_so(wanted, one) if type_ is None else _fits(wanted, type_, one))
+    ]
+    scored = [(_score(wanted, one), one) for one in fit]
+    return sorted(
+        ((score, one) for score, one in scored if score),
+        key=lambda found: (-found[0], found[1].topic.name, len(found[1].value), found[1].value),
+    )
+
+
+def is_clear(found: Sequence[tuple[float, Candidate]]) -> bool:
+    """Whether one is better than all others; of two topics that say the same, none is."""
+    if not found:
+        return False
+    best, first = found[0]
+    return all(
+        score < best - (_A_WORD if _is_twin(first, one) else 1e-9) for score, one in found[1:]
+    )
+
+
+def _is_twin(first: Candidate, second: Candidate) -> bool:
+    is_same = (first.value, first.topic.type) == (second.value, second.topic.type)
+    return is_same and first.topic.name != second.topic.name
+
+
+def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
+    """Whether kind, unit, role, modifiers and axis are those that the name asks for."""
+    if candidate.kind not in _FITTING[type_.kind] or candidate.topic.fault:
+        return False
+    if candidate.meaning.sort is Sort.QUATERNION:
+        return False
+    if ("command" in wanted.words) != candidate.is_command:
+        return False
+    asked = {word for word in wanted.words if word in MODIFIERS}
+    if not (modifiers_of(candidate) - {"command"} <= asked) or _is_of_another(wanted, candidate):
+        return False
+    if type_.kind in (Kind.BOOL, Kind.LABEL):
+        return candidate.meaning.sort is not Sort.MEASURED
+    return _is_along(wanted, candidate) and _is_in_unit(wanted, type_, candidate)
+
+
+def _is_of_another(wanted: Wanted, candidate: Candidate) -> bool:
+    """Whether it speaks of a part or of something else that the name does not speak of."""
+    element = re.search(r"\[([^\[\]]*\D[^\[\]]*)\]$", candidate.value)
+    if element is not None:
+        return not any(is_found(word, wanted.words) for word in words_of(element[1]))
+    subjects = {word for word in foreign_words(candidate) if word in SUBJECTS}
+    if "temperature" in wanted.words:  # each part has one of its own
+        subjects |= {"battery"} & {*candidate.around}
+    return not all(is_found(word, wanted.words) for word in subjects)
+
+
+def _says_so(wanted: Wanted, candidate: Candidate) -> bool:
+    """Whether the last words of a topic, or a field, are those of an event and no others."""
+    if candidate.value not in ("", "data"):
+        return True
+    last = words_of(candidate.topic.name.rpartition("/")[2])
+    return all(word in EMPTY or is_found(word, wanted.words) for word in last)
+
+
+def _is_along(wanted: Wanted, candidate: Candidate) -> bool:
+    """Whether it is along the axis that is asked for, or that goes without saying."""
+    if wanted.axis or not candidate.axis:
+        return wanted.axis == candidate.axis
+    if candidate.value.endswith("linear.x") and "speed" in wanted.words:
+        return True  # a robot drives forwards
+    return not ALONG.isdisjoint({*wanted.words} & {*candidate.own})
+
+
+def _is_in_unit(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
+    said, there = dimensions_of(wanted.words), candidate.dimensions
+    if type_.unit:
+        dimension = parse_unit(type_.unit).dimension
+        if (said and dimension not in said) or candidate.meaning.sort is Sort.CODE:
+            return False
+        if candidate.meaning.is_scaled:
+            return False
+        return dimension in there if there else candidate.meaning.sort is Sort.OPEN
+    return not (said and there) or not said.isdisjoint(there)
+
+
+def _score(wanted: Wanted, candidate: Candidate) -> float:
+    """How well the words are found, 0 if one is not; a little less for words that are not asked."""
+    total = 0.0
+    ignorable = EMPTY | (_REQUESTS if wanted.type is None else frozenset())
+    asked = [word for word in wanted.words if word not in ignorable] or list(wanted.words)
+    foreign = [word for word in foreign_words(candidate) if not is_found(word, asked)]
+    for word in asked:
+        weight = _weight(word, candidate)
+        if not weight and word in WEAK and not foreign:
+            weight = 0.3
+        if not weight:
+            return 0.0
+        total += weight
+    better = 0.05 * (candidate.topic.type == _MOVING) + 0.02 * candidate.value.startswith("hypot(")
+    if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
+        better += 0.2  # a text says which label it is, a number does not
+    worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
+    return total / len(asked) + better - worse
+
+
+def _weight(word: str, candidate: Candidate) -> float:
+    if word.isdigit():
+        return float(word in candidate.own or word in candidate.around)
+    if word == "command":
+        return float(candidate.is_command)
+    if is_found(word, candidate.own) or (word == "minimum" and candidate.value[:4] == "min("):
+        return 1.0
+    return 0.9 * is_found(word, candidate.around)

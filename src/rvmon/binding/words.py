@@ -1,0 +1,235 @@
+"""The words of names, topics and fields, and what they say of a quantity."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+from rvmon.units.table import parse_unit
+
+Dimension = tuple[tuple[str, int], ...]
+
+_SAME = {
+    "speed": "velocity vel velocities groundspd spd",
+    "acceleration": "acc accel accelerometer accelerations",
+    "command": "cmd commanded commands setpoint desired target goal reference ref teleop",
+    "distance": "dist range ranges",
+    "temperature": "temp temperatures thermistor",
+    "voltage": "volt volts",
+    "latitude": "lat",
+    "longitude": "lon lng long",
+    "altitude": "alt",
+    "battery": "batt bat",
+    "yaw": "heading hdg theta",
+    "position": "pos positions",
+    "relative": "rel",
+    "satellites": "satellite sats nsats sat",
+    "percentage": "percent pct soc",
+    "number": "num nr count",
+    "torque": "torques",
+    "wheel": "wheels",
+    "motor": "motors",
+    "minimum": "min least smallest",
+    "maximum": "max greatest largest",
+    "magnetometer": "mag magnetic compass",
+    "front": "fore",
+    "rear": "back",
+    "status": "state",
+    "estop": "emergencystop estopped",
+}
+"""Words that people use for the same, by the one that stands for them."""
+
+_CANONICAL = {word: one for one, words in _SAME.items() for word in words.split()}
+
+
+def _set(*lines: str) -> frozenset[str]:
+    return frozenset(word for line in lines for word in line.split())
+
+
+_APART = re.compile(r"[A-Z]?[^\W\d_A-Z]+|[A-Z]+|\d+")
+
+_JOINED = {
+    **{f"v{axis}": ("speed", axis) for axis in "xyz"},
+    **{f"a{axis}": ("acceleration", axis) for axis in "xyz"},
+    "groundspeed": ("ground", "speed"),
+    "airspeed": ("air", "speed"),
+    "yawspeed": ("yaw", "rate"),
+    "yawrate": ("yaw", "rate"),
+    "rollspeed": ("roll", "rate"),
+    "pitchspeed": ("pitch", "rate"),
+}
+"""Words that are written as one."""
+
+EMPTY = _set(
+    "a actual at base body data has in is it joint measured msg my of on own robot self",
+    "sensor signal the value vehicle values ego reading link frame fmu out",
+)
+"""Words that say nothing of what is meant."""
+
+WEAK = frozenset({"imu", "ground", "horizontal"})
+"""Words that need not be found where nothing else is said of the same."""
+
+MODIFIERS = _set(
+    "command error tolerance limit minimum maximum offset bias variance accuracy delta",
+    "reset counter design time timestamp stamp increment last home initial origin average",
+    "mean derivative integral raw scaling covariance confidence quality valid health",
+    "fault",
+)
+"""Words that make another quantity of what they stand beside."""
+
+SUBJECTS = _set(
+    "wind water air person pedestrian human people obstacle object ball door target lead other",
+    "engine motor fan pump thruster propeller gimbal load fuel cpu gpu ambient external internal",
+    "gripper hand finger trailer fork lift",
+)
+"""Words for what is not the robot as a whole: what is said of them is not said of it."""
+
+ORDINALS = {
+    **dict.fromkeys(("leader", "lead", "first", "master", "primary"), "1"),
+    **dict.fromkeys(("follower", "second", "slave", "secondary"), "2"),
+}
+"""Words that people use for the first and the second of several."""
+
+_QUANTITIES = {
+    "speed": "m/s rad/s",
+    "climb": "m/s",
+    "distance": "m",
+    "clearance": "m",
+    "obstacle": "m",
+    "gap": "m",
+    "height": "m",
+    "altitude": "m",
+    "depth": "m",
+    "length": "m",
+    "width": "m",
+    "radius": "m",
+    "x": "m",
+    "y": "m",
+    "z": "m",
+    "position": "m rad",
+    "yaw": "rad",
+    "roll": "rad",
+    "pitch": "rad",
+    "tilt": "rad",
+    "angle": "rad",
+    "course": "rad",
+    "bearing": "rad",
+    "steering": "rad",
+    "latitude": "rad",
+    "longitude": "rad",
+    "gyro": "rad/s",
+    "rpm": "rad/s",
+    "acceleration": "m/s^2 rad/s^2",
+    "force": "N",
+    "thrust": "N 1",
+    "torque": "N*m",
+    "effort": "N*m N",
+    "temperature": "degC K",
+    "voltage": "V",
+    "current": "A",
+    "charge": "A*s 1",
+    "power": "W",
+    "energy": "J",
+    "pressure": "Pa",
+    "frequency": "Hz",
+    "rate": "Hz rad/s m/s",
+    "mass": "kg",
+    "weight": "kg N",
+    "payload": "kg",
+    "percentage": "1",
+    "ratio": "1",
+    "scaling": "1",
+    "humidity": "1",
+    "throttle": "1",
+    "illuminance": "lx",
+    "duration": "s",
+    "age": "s",
+    "area": "m^2",
+    "volume": "m^3",
+    "flow": "m^3/s",
+    "magnetometer": "T",
+}
+"""Units of the quantities that words stand for."""
+
+_TURNING = frozenset({"angular", "yaw", "turn", "turning", "roll", "pitch", "gyro", "steering"})
+
+_ENDINGS = (
+    ("m_s2", "m/s^2"),
+    ("m_s", "m/s"),
+    ("mps", "m/s"),
+    ("kmh", "km/h"),
+    ("kph", "km/h"),
+    ("rad_s", "rad/s"),
+    ("deg_s", "deg/s"),
+    ("rad", "rad"),
+    ("deg", "deg"),
+    ("rpm", "rpm"),
+    ("hz", "Hz"),
+    ("mm", "mm"),
+    ("cm", "cm"),
+    ("m", "m"),
+    ("ms", "ms"),
+    ("s", "s"),
+    ("mv", "mV"),
+    ("v", "V"),
+    ("ma", "mA"),
+    ("a", "A"),
+    ("w", "W"),
+    ("pa", "Pa"),
+    ("celsius", "degC"),
+    ("degc", "degC"),
+    ("percent", "%"),
+    ("pct", "%"),
+    ("kg", "kg"),
+)
+
+
+def words_of(text: str) -> list[str]:
+    """The words of a name, a topic or a path, each by the one that stands for it.
+
+    >>> words_of("/robot1/handDistance.twist_vx"), words_of("e_stop")
+    (['robot', '1', 'hand', 'distance', 'twist', 'speed', 'x'], ['estop'])
+    """
+    plain = re.sub(r"(?i)\b(e|emergency)[_ ]?stop(ped)?(?![a-z])", "estop", text.replace("_", " "))
+    found = [word.casefold() for word in _APART.findall(plain)]
+    split = [part for word in found for part in _JOINED.get(word, (word,))]
+    return [_CANONICAL.get(word, word) for word in split]
+
+
+def is_found(word: str, there: Iterable[str]) -> bool:
+    """Whether a word stands among others, maybe in another form: `wheel` and `wheels`."""
+    return any(
+        word == one or (min(len(word), len(one)) > 3 and one.rstrip("s") == word.rstrip("s"))
+        for one in there
+    )
+
+
+def dimensions_of(words: Sequence[str]) -> frozenset[Dimension]:
+    """The quantities that words may speak of, by the last of them that speaks of one; or none.
+
+    >>> sorted(map(str, dimensions_of(["yaw", "rate"]))), dimensions_of(["mode"])
+    (["(('rad', 1), ('s', -1))"], frozenset())
+    """
+    for word in reversed(words):
+        units = _QUANTITIES.get(word, "").split()
+        if word in ("speed", "rate", "acceleration") and not _TURNING.isdisjoint(words):
+            units = ["rad/s^2" if word == "acceleration" else "rad/s"]
+        elif word in ("speed", "acceleration") and "linear" in words:
+            units = units[:1]
+        elif word == "x" or word == "y" or word == "z":
+            others = dimensions_of([one for one in words if one not in ("x", "y", "z")])
+            if others:
+                return others
+        if units:
+            return frozenset(parse_unit(unit).dimension for unit in units)
+    return frozenset()
+
+
+def unit_in_name(field: str) -> str:
+    """The unit that the end of a field's name says, such as `speed_m_s`; empty if there is none.
+
+    >>> unit_in_name("true_airspeed_m_s"), unit_in_name("voltage_v"), unit_in_name("pose.x")
+    ('m/s', 'V', '')
+    """
+    last = field.rpartition(".")[2].casefold()
+    return next((unit for end, unit in _ENDINGS if last.endswith(f"_{end}")), "")

@@ -1,0 +1,254 @@
+"""A folder of tables that are one recording: a CSV file per topic, joined by time.
+
+A file `topics.toml` in it says so; it may be empty.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from heapq import merge
+from io import TextIOWrapper
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from rvmon.diagnostics.nearest import cannot_read, did_you_mean
+from rvmon.diagnostics.text_file import text_of_file
+from rvmon.errors import TraceError
+from rvmon.readers.csv_rows import read_layout, split_lines
+from rvmon.readers.line_chunks import bounded_lines
+from rvmon.readers.messages.forms import TOPICS
+from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.places import endings_of, opened
+from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import stamps_of, ticks_of_cell
+from rvmon.trace.time import format_ticks
+
+_LOOKED_AT = 1000
+"""Rows that say of which kind the columns are."""
+
+_WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+_PATH = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*(\[\d{1,4}\])?")
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """A file: what it holds, and of which kind the columns are that are no stamps, if known."""
+
+    path: Path
+    type: str
+    stamps: Stamps | None
+    kinds: Mapping[str, Kind | None]
+
+
+class TableMessages:
+    """An open folder.
+
+    Args:
+        folder: that has a `topics.toml`.
+
+    Attributes:
+        topics: by name, one of each file.
+        end: `None`: it ends with the last row that is read.
+        count: 0: nobody has counted the rows.
+
+    Raises:
+        TraceError: a file cannot be read, or `topics.toml` says something else.
+    """
+
+    end: int | None = None
+    count = 0
+
+    def __init__(self, folder: Path) -> None:
+        self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
+        self.topics: Mapping[str, Topic] = {
+            name: Topic(
+                name,
+                table.type,
+                {_leaf(column): kind or Kind.REAL for column, kind in table.kinds.items()},
+                doubtful=frozenset(_leaf(one) for one, kind in table.kinds.items() if kind is None),
+            )
+            for name, table in self._tables.items()
+        }
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The rows of these files, by time; those of one instant as the files are called.
+
+        Raises:
+            TraceError: a row is wrong, or before the one above it.
+        """
+        rows = [_rows(name, table) for name, table in self._tables.items() if name in topics]
+        yield from merge(*rows, key=lambda row: row[1])
+
+    def close(self) -> None:
+        """Nothing is open between rows."""
+
+
+def _tables(folder: Path) -> Iterator[tuple[str, _Table]]:
+    """The files by topic, as `topics.toml` says, or all of them."""
+    place = folder / TOPICS
+    try:
+        content = tomllib.loads(text_of_file(place))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TraceError(f"{place}: no TOML: {error}") from None
+    _expect(content, ("time", "topics"), place)
+    listed = content.get("topics") or {
+        endings_stripped(path): path.name
+        for path in sorted(folder.iterdir())
+        if endings_of(path.name)[0] == ".csv"
+    }
+    if not isinstance(listed, dict) or not listed:
+        raise TraceError(f"{folder}: there is no table: put .csv files beside {TOPICS}")
+    for name, entry in listed.items():
+        table = {"file": entry} if isinstance(entry, str) else entry
+        if not isinstance(table, dict) or not isinstance(table.get("file"), str):
+            raise TraceError(f'{place}: which file is `{name}`? {name} = "{name}.csv"')
+        _expect(table, ("file", "time", "type"), place)
+        time = table.get("time", content.get("time"))
+        stamps = None if time is None else stamps_of(str(time))
+        kind = str(table.get("type", "CSV"))
+        yield f"/{name.strip('/')}", _Table(folder / table["file"], kind, stamps, {})
+
+
+def endings_stripped(path: Path) -> str:
+    """The name of a file without its endings.
+
+    >>> endings_stripped(Path("flight/odom.csv.gz"))
+    'odom'
+    """
+    return path.name.partition(".")[0]
+
+
+def _expect(table: Mapping[str, Any], known: Sequence[str], place: Path) -> None:
+    for key in table:
+        if key not in known:
+            meant = did_you_mean(key, known, f"there are {', '.join(known)}")
+            raise TraceError(f"{place}: no key `{key}`: {meant}")
+
+
+@contextmanager
+def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
+    """The lines of a file, split; errors inside name it."""
+    try:
+        with (
+            opened(str(table.path)) as (plain, _),
+            TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
+        ):
+            yield split_lines(bounded_lines(text))
+    except UnicodeDecodeError:
+        raise TraceError(f"{table.path}: not UTF-8 text: is this a binary file?") from None
+    except OSError as error:
+        raise TraceError(cannot_read(table.path, error)) from None
+    except TraceError as error:
+        message = str(error)
+        placed = message if message.startswith(str(table.path)) else f"{table.path}: {message}"
+        raise TraceError(placed) from None
+
+
+def _header(table: _Table, rows: Iterator[tuple[int, list[str]]]) -> tuple[Sequence[str], Stamps]:
+    _, header = next(rows, (0, []))
+    layout = read_layout(header, Schema({}, {}, stamps=table.stamps))
+    return layout.header, layout.stamps
+
+
+def _looked_over(table: _Table) -> _Table:
+    """A file with the kinds of its columns, by its first rows."""
+    with _lines(table) as rows:
+        header, stamps = _header(table, rows)
+        cells: dict[str, list[str]] = {name: [] for name in header}
+        for _, row in islice(rows, _LOOKED_AT):
+            for name, cell in zip(header, row, strict=False):
+                if cell:
+                    cells[name].append(cell)
+        kinds = {
+            name: _kind(own)
+            for name, own in cells.items()
+            if name != stamps.column and _PATH.fullmatch(name)
+        }
+    return _Table(table.path, table.type, table.stamps, kinds)
+
+
+def _kind(cells: Sequence[str]) -> Kind | None:
+    if not cells:
+        return None
+    if all(_WHOLE.fullmatch(cell) for cell in cells):
+        return Kind.INT
+    if all(cell in TRUE_WORDS or cell in FALSE_WORDS for cell in cells):
+        return Kind.BOOL
+    return Kind.REAL if all(_number(cell) is not None for cell in cells) else Kind.LABEL
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return int(cell) if _WHOLE.fullmatch(cell) else double_of(cell.replace("_", "?"))
+    except TraceError:  # it is too large for one
+        raise
+    except ValueError:
+        return None
+
+
+def _leaf(column: str) -> str:
+    """The path of a column; `q[0]` is an element of the array `q`."""
+    return re.sub(r"\[\d+\]$", "[]", column)
+
+
+def _rows(name: str, table: _Table) -> Iterator[Message]:
+    """The rows of a file as messages: what a row leaves empty is not in it."""
+    with _lines(table) as rows:
+        header, stamps = _header(table, rows)
+        time = header.index(stamps.column)
+        places = [
+            (place, column.partition("[")[0].split("."), _element(column), table.kinds[column])
+            for place, column in enumerate(header)
+            if column in table.kinds
+        ]
+        last: int | None = None
+        for line, row in rows:
+            if len(row) != len(header):
+                raise TraceError(f"line {line}: {len(row)} cells, and the header has {len(header)}")
+            try:
+                t = ticks_of_cell(row[time], stamps)
+            except TraceError as error:
+                raise TraceError(f"line {line}: {error}") from None
+            if last is not None and t < last:
+                back = f"from {format_ticks(last)} to {format_ticks(t)}"
+                raise TraceError(f"line {line}: time goes backwards, {back}: sort the file by time")
+            last = t
+            content: dict[str, Any] = {}
+            for place, steps, element, kind in places:
+                if row[place]:
+                    _put(content, steps, element, _value(row[place], kind))
+            yield name, t, content
+
+
+def _element(column: str) -> int | None:
+    """Which element of an array a column is, if it is one."""
+    found = re.search(r"\[(\d+)\]$", column)
+    return int(found[1]) if found else None
+
+
+def _put(content: dict[str, Any], steps: Sequence[str], element: int | None, value: Any) -> None:
+    inner = content
+    for step in steps[:-1]:
+        inner = inner.setdefault(step, {})
+    if element is None:
+        inner[steps[-1]] = value
+        return
+    array: list[Any] = inner.setdefault(steps[-1], [])
+    array += [math.nan] * (element + 1 - len(array))  # of an array that is there all are given
+    array[element] = value
+
+
+def _value(cell: str, kind: Kind | None) -> Any:
+    if kind is Kind.LABEL:
+        return cell
+    if kind is Kind.BOOL and (cell in TRUE_WORDS or cell in FALSE_WORDS):
+        return cell in TRUE_WORDS
+    number = _number(cell)
+    return cell if number is None else number

@@ -1,0 +1,113 @@
+"""What the topics of a recording of messages can be declared as."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from rvmon.errors import TraceError
+from rvmon.readers.messages.by_names import arrays_with_names
+from rvmon.readers.messages.fields import field_of, getter
+from rvmon.readers.messages.file import MessageFile
+from rvmon.readers.messages.look import Looked, names_in
+from rvmon.readers.messages.match import dotted
+from rvmon.readers.messages.meaning import Sort, meaning_of
+from rvmon.readers.messages.topic import Topic
+from rvmon.starter.column import Shape, Shapes
+from rvmon.starter.seen import Seen, shapes_seen
+from rvmon.trace.schema import Kind
+
+_ARRAY = "an array: bind an element, or `min` of all"
+_QUATERNION = "a part of a quaternion: bind `yaw` of it"
+_ODD = "a covariance, or the like"
+
+
+def message_shapes(source: MessageFile) -> Shapes:
+    """What topics, their fields and the named elements of their arrays can be declared as.
+
+    Raises:
+        TraceError: a message with a text cannot be read.
+    """
+    looked = names_in(source)
+    declared: dict[str, Shape] = {}
+    texts: dict[str, tuple[str, str]] = {}
+    left_out: dict[str, str] = {}
+    for topic in source.topics.values():
+        name = dotted(topic.name)
+        leaves = {leaf: kind for leaf, kind in topic.leaves.items() if leaf[:7] != "header."}
+        if topic.fault:
+            left_out[name] = topic.fault
+        elif not leaves:
+            declared[name] = Shape(None, source=topic.name)
+        plain = [leaf for leaf in leaves if "[" not in leaf]
+        for leaf, kind in leaves.items():
+            full = name if len(plain) == 1 and plain[0] == leaf else f"{name}.{leaf}"
+            why = _reason(leaf, topic)
+            if why:
+                left_out[full] = why
+            elif kind is Kind.LABEL:
+                texts[full] = topic.name, leaf
+            else:
+                declared[full] = Shape(kind, unit=_unit(leaf, topic), source=topic.name)
+        for full, shape in _elements(name, topic, looked[topic.name]):
+            declared[full] = shape
+            left_out.pop(full.rpartition(".")[0] + "[]", None)
+    seen = _texts_seen(source, texts)
+    found = shapes_seen(seen)
+    for full, shape in found.declared.items():
+        declared[full] = replace(shape, source=texts[full][0])
+    return Shapes(declared, {**left_out, **found.left_out})
+
+
+def _reason(leaf: str, topic: Topic) -> str:
+    """Why a field is not declared; empty if it is."""
+    sort = meaning_of(leaf, topic).sort
+    if sort is Sort.ODD or "covariance" in leaf:
+        return _ODD
+    if "[" in leaf:
+        return _ARRAY
+    return _QUATERNION if sort is Sort.QUATERNION else ""
+
+
+def _unit(leaf: str, topic: Topic) -> str:
+    meaning = meaning_of(leaf, topic)
+    is_clear = len(meaning.units) == 1 and not meaning.is_scaled
+    return meaning.units[0].symbol if is_clear and topic.leaves[leaf] is Kind.REAL else ""
+
+
+def _elements(name: str, topic: Topic, looked: Looked) -> Iterator[tuple[str, Shape]]:
+    """The named elements of arrays, such as the positions of joints."""
+    for array, names in arrays_with_names(topic).items():
+        kind = topic.leaves[f"{array}[]"]
+        for element in (looked.joints or {}).get(names, ()):
+            if re.fullmatch(r"\w+", element) and not element.isdigit():
+                full = f"{name}.{array}.{element}"
+                yield full, Shape(kind, unit=_unit(f"{array}[]", topic), source=topic.name)
+
+
+def _texts_seen(source: MessageFile, texts: Mapping[str, tuple[str, str]]) -> dict[str, Seen]:
+    """The texts of a recording; a topic on which nothing was said has none."""
+    seen = {name: Seen() for name in texts}
+    reading: dict[str, list[tuple[Seen, str]]] = {}
+    for name, (topic, leaf) in texts.items():
+        reading.setdefault(topic, []).append((seen[name], leaf))
+    getters = {
+        (leaf, mappings): getter(field, mappings=mappings)
+        for own in reading.values()
+        for _, leaf in own
+        for mappings in (False, True)
+        if (field := field_of(leaf)) is not None
+    }
+    for topic, _, content in source.read(reading) if reading else ():
+        for entry, leaf in reading[topic]:
+            try:
+                value = getters[leaf, isinstance(content, Mapping)](content)
+            except KeyError:
+                continue
+            except TraceError:
+                entry.other = True
+                continue
+            if isinstance(value, str):
+                entry.add(value)
+    return seen

@@ -1,0 +1,1 @@
+"""Units of measure: how they are read, multiplied and compared."""

@@ -1,0 +1,83 @@
+"""What is proposed for recordings as robots make them is right, or left open."""
+
+import tomllib
+
+import pytest
+from tests.rvmon.binding.more_robots import LAST, LATER
+from tests.rvmon.binding.robots import HELD_OUT, REPORTED, Robot
+from tests.rvmon.binding.traps import FRESH, TRAPS
+from tests.tools.bags import START, write_ros1
+
+import rvmon
+from rvmon.cli import main
+
+pytest.importorskip("rosbags")
+
+ROBOTS = {**REPORTED, **HELD_OUT, **LATER, **LAST, **TRAPS, **FRESH}
+
+
+def write(robot, folder):
+    """The recording and the specification of a robot."""
+    types = {topic: kind for topic, (kind, _) in robot.topics.items()}
+    sent = [
+        (topic, START + turn * 10**8 + place, content)
+        for turn in range(3)
+        for place, (topic, (_, content)) in enumerate(robot.topics.items())
+    ]
+    bag = write_ros1(folder / "a.bag", sent, types, robot.definitions)
+    spec = folder / "a.rv"
+    spec.write_text(f"spec robot\n{robot.declared}\nrequirement R1\n  always true\n")
+    return str(spec), str(bag)
+
+
+def flat(tables, prefix=""):
+    """The place of each name."""
+    for key, table in tables.items():
+        if "topic" in table:
+            yield prefix + key, f"{table['topic']} {table.get('value', '')}".strip()
+        else:
+            yield from flat(table, f"{prefix}{key}.")
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
+    """Right for all that a recording says; open for the rest; it passes `check`, and runs."""
+    robot = ROBOTS[name]
+    spec, bag = write(robot, tmp_path)
+    status = main(["bind", spec, bag])
+    told = capsys.readouterr()
+    found = dict(flat(tomllib.loads(told.out).get("bind", {})))
+    wrong = {
+        one: found.get(one, "")
+        for one, places in robot.expected.items()
+        if found.get(one, "") not in (places or ("",))
+    }
+    assert not wrong
+    open_ones = [one for one in robot.expected if one not in found]
+    assert status == int(bool(open_ones))
+    for one in open_ones:
+        assert f"`{one}`" in told.out
+        assert f"`{one}`" in told.err
+    binding = tmp_path / "a.toml"
+    binding.write_text(told.out)
+    assert main(["check", spec, "--binding", str(binding)]) == 0
+    rvmon.load(spec).evaluate(bag, binding=binding, allow_missing=True)
+
+
+def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
+    """What the messages hold is shown beside what they should mean."""
+    topics = {"/battery": ("sensor_msgs/msg/BatteryState", {"percentage": 75.0})}
+    spec, bag = write(Robot(topics, "signal battery_level : real [%]", {}), tmp_path)
+    assert main(["bind", spec, bag]) == 0
+    told = capsys.readouterr().out
+    assert 'value = "percentage"  # always 75\nunit = "1"\n# It looks like per cent' in told
+    binding = tmp_path / "a.toml"
+    binding.write_text(told.replace('"percentage"', '"1 * percentage"').replace('"1"', '"%"'))
+    assert main(["check", spec, "--binding", str(binding)]) == 0
+
+
+def test_a_leader_is_a_guess(tmp_path, capsys):
+    """That it is the first of several is told where it is proposed."""
+    main(["bind", *write(REPORTED["turtle"], tmp_path)])
+    told = capsys.readouterr().out
+    assert "[bind.leader_x]  # real [m]\n# A guess: `leader` is taken for number 1.\n" in told

@@ -1,0 +1,104 @@
+"""`rvmon init` with recordings of messages: it writes what they can support, and that runs."""
+
+import pytest
+from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
+
+from rvmon.cli import main
+
+pytest.importorskip("rosbags")
+pytest.importorskip("mcap")
+
+TYPES = {
+    "/joints": "sensor_msgs/msg/JointState",
+    "/odom": "nav_msgs/msg/Odometry",
+    "/battery": "sensor_msgs/msg/BatteryState",
+    "/present": "std_msgs/msg/Bool",
+    "/temp": "std_msgs/msg/Float64",
+    "/note": "std_msgs/msg/String",
+    "/go": "std_msgs/msg/Empty",
+    "/done": "std_msgs/msg/Empty",
+}
+
+
+def arm(count=40):
+    """An arm that is driven about, with a battery that is present all the time."""
+    for tick in range(count):
+        t, x = START + tick * 10**8, tick / 7
+        names = ["shoulder_joint", "elbow_joint"] if tick % 2 else ["finger_joint"]
+        yield "/joints", t, {"name": names, "position": [x] * len(names)}
+        yield "/odom", t + 10, {"twist": {"twist": {"linear": {"x": x}}}}
+        yield "/battery", t + 20, {"present": True, "voltage": 24.0}
+        yield "/present", t + 30, {"data": True}
+        if tick % 10 == 5:
+            yield "/go", t + 40, {}
+            yield "/done", t + 10**7, {}
+
+
+def written(tmp_path, bag, capsys):
+    """The starter, with spaces as one; it runs without a warning and with no F."""
+    made = tmp_path / "made.rv"
+    assert main(["init", str(bag), "-o", str(made), "--force"]) == 0
+    assert main(["check", str(made), "--strict"]) == 0
+    capsys.readouterr()
+    assert main(["run", str(made), str(bag), "--strict"]) == 0
+    told = capsys.readouterr()
+    assert "warning" not in told.err + told.out
+    return " ".join(made.read_text().split())
+
+
+def test_joints_go_by_their_names(tmp_path, capsys):
+    """With units where messages say them; also where a message has only some of the joints."""
+    text = written(tmp_path, write_ros1(tmp_path / "a.bag", [*arm()], TYPES), capsys)
+    for joint in ("shoulder_joint", "elbow_joint", "finger_joint"):
+        assert f"signal joints.position.{joint}" in text
+    assert "signal odom.twist.twist.linear.x: real [m/s]" in text.replace(" :", ":")
+    assert "odom.twist.twist.linear.x <= 5.58 m/s" in text
+    assert "upon go then within 10 ms done" in text
+
+
+def test_what_is_always_true_is_no_event(tmp_path, capsys):
+    """Nor is a constant a range; both are said to be constant."""
+    text = written(tmp_path, write_ros1(tmp_path / "a.bag", [*arm()], TYPES), capsys)
+    assert "event present" not in text
+    assert "event battery.present" not in text
+    assert "battery.voltage: real [V] # always 24;" in text.replace(" :", ":")
+    assert "battery.voltage >= 24" not in text
+
+
+@pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
+def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, capsys, plugin):
+    """Of texts, of numbers, and of neither."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.LATEST)
+    number = store.types["std_msgs/msg/Float64"]
+    writer = Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin[plugin.upper()])
+    with writer:
+        connections = {
+            topic: writer.add_connection(topic, kind, typestore=store)
+            for topic, kind in TYPES.items()
+        }
+        for tick in range(10):
+            data = store.serialize_cdr(number(data=float(tick)), "std_msgs/msg/Float64")
+            writer.write(connections["/temp"], START + tick * 10**8, data)
+    text = written(tmp_path, tmp_path / "bag", capsys)
+    assert "signal temp" in text
+    for name in ("note", "go", "present", "joints"):
+        assert f"signal {name}" not in text
+    assert "no value in the recording" in text
+
+
+def test_a_recording_of_nothing_is_told(tmp_path, capsys):
+    """With its name."""
+    write_json_mcap(tmp_path / "a.mcap", [])
+    assert main(["init", str(tmp_path / "a.mcap"), "-o", "-"]) == 2
+    assert "a.mcap" in capsys.readouterr().err
+
+
+def test_json_and_ros_2_give_the_same(tmp_path, capsys):
+    """The starter says what is there, whatever packs it."""
+    sent = [("/temp", START + tick * 10**8, {"data": tick + 0.5}) for tick in range(9)]
+    one = written(tmp_path, write_ros2(tmp_path / "one", sent, "mcap"), capsys)
+    two = written(tmp_path, write_json_mcap(tmp_path / "two.mcap", sent), capsys)
+    assert one.partition("time held")[2] == two.partition("time held")[2]
