@@ -32,7 +32,8 @@ _RUNS = "`in at least 95 % of runs`, `in at most 5 % of runs`: single runs are j
 _LINES = {
     ("spec",): '`spec NAME "title"`',
     ("time", "sampled", "every"): "`time held`, `time sampled`, `time sampled every 20 ms`",
-    ("max delay",): "`max delay 50 ms`: late samples are put in order within that time",
+    ("max delay",): "`max delay 50 ms`: late samples of a stream are put in order within that "
+    "time, those of a file altogether",
     ("import",): '`import "signals.rv"`, relative to the file, within the project',
     ("signal",): "`signal a, b : TYPE ROLE ignore NaN stale after D`",
     ("event",): "`event a, pick(id: int, x: real [m]) ROLE`; a payload field is read as `pick.id`",
