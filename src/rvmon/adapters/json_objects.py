@@ -19,6 +19,8 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 _log = logging.getLogger("rvmon.live.input")
 
+_UNREADABLE = "it cannot be read"
+
 _JUMP_NS = 10 * TICKS_PER_SECOND
 """Stamps that go back by more than this are not late, but of another run."""
 
@@ -95,9 +97,9 @@ class JsonObjects:
         _log.warning("%s is not taken: %s", where, why)
         for one in self._last if robot is None else [robot]:
             if self._last.get(one) is None:  # what has no time is stamped as it comes
-                self.driver.lose(robot=one, is_over=True, why=f"{where}: {why}")
+                self.driver.lose(robot=one, is_over=True, why=_UNREADABLE)
             else:
-                self.driver.miss(robot=one, why=f"{where}: {why}")
+                self.driver.miss(robot=one, why=_UNREADABLE)
 
 
 def decoded_object(text: bytes) -> Any:

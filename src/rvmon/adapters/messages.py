@@ -124,8 +124,13 @@ class MessageFeed:
         """
         _log.warning("a message of %s is not taken: %s", topic, why)
         since = self._heard.get(topic, self._began) + 1
+        declared = self._driver.spec.schema  # of the specification that holds now
         self._driver.lose(
-            self._fed.get(topic) or self._may_feed(topic),
+            [
+                name
+                for name in self._fed.get(topic) or self._may_feed(topic)
+                if name in declared.signals or name in declared.events
+            ],
             robot=self._robot,
             since_ns=since if before or topic in self._stamped else None,
             is_over=not for_good,

@@ -161,8 +161,8 @@ class MqttSource:
     def _on_disconnect(self, _: object, __: object, ___: object, reason: Any, ____: object) -> None:
         self._dropped = None
         if reason.is_failure:
-            why = f"the connection to the broker is lost ({reason})"
-            _log.warning("%s: what is published until it is back is not known", why)
+            why = "the connection to the broker is lost"
+            _log.warning("%s (%s): what is published is not known until it is back", why, reason)
             self._objects.driver.lose(why=why)
 
     def hear(self, topic: str, payload: bytes) -> None:

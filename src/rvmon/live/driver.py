@@ -14,6 +14,7 @@ from rvmon.live.robot import Judgement, Robot, Watch
 from rvmon.live.status import Status
 from rvmon.live.timers import Timers
 from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Told, Values, Waiting
+from rvmon.spec.checked.selection import sources_asked
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdict.verdict import Verdict
@@ -99,22 +100,18 @@ class Driver:
         self._runs_by_itself = isinstance(self._clock, WallClock)
         self._only = None if only is None else tuple(only)
         self._sources = None if sources is None else tuple(sources)
-        self._keep = keep
-        self._asked_lag = lag_ns
-        self._most_robots = most_robots
+        self._keep, self._asked_lag, self._most_robots = keep, lag_ns, most_robots
         self._on_judged, self._on_failure, self._on_report = on_judged, on_failure, on_report
         self.wake: Callable[[], object] = int
-        self.errors = 0
+        self.errors, self.turned_away = 0, False
         self._lock = Lock()  # of what waits, and of the stamps that are given
         self._has_room = Condition(self._lock)
         self._working = RLock()  # of the monitors; callbacks may ask how they stand
-        self._is_working = False
+        self._is_working = self._is_closed = False
         self._stamped = -(1 << 62)
-        self._is_closed = False
         self._robots: dict[str, Robot] = {}
         self._patience = _PATIENCE_NS if self._runs_by_itself else 0
         self._timers = Timers()
-        self.turned_away = False
         self._watch, self._lag = self._watching(spec)
         self._waiting = Waiting(room)
         self._clock.on_change(self._clock_was_set)
@@ -192,7 +189,10 @@ class Driver:
             robot: whose; `None`: of every robot that was heard of.
             since_ns: the first instant, ns; default the time now.
             is_over: whether they are found again by now; else when `found` says so.
-            why: a phrase for people, for the input health.
+            why: a phrase for people, for the input health: the same for all losses of one kind.
+
+        Raises:
+            UnknownNameError: there is no such signal or event.
         """
         self._tell(Told.LOST, names, robot, why, since_ns, is_over=is_over)
 
@@ -220,7 +220,7 @@ class Driver:
         *,
         is_over: bool = False,
     ) -> None:
-        some = None if names is None else tuple(names)
+        some = sources_asked(self.spec.checked, names)
         with self._lock:
             now = max(self._clock.now_ns(), self._stamped)
             if told is not Told.MISSED:  # what is offered from now on is stamped later

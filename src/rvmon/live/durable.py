@@ -130,7 +130,7 @@ class DurableMonitor:
         if isinstance(error, TimeOrderError):
             self.monitor.late_ns(names, t)
         else:
-            self.monitor.lose_ns(names, t, t, why=f"refused, as {error}")
+            self.monitor.lose_ns(names, t, t, why="refused")
 
     def _hear(self, attempt: Attempt) -> None:
         self._number += 1

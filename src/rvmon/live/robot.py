@@ -112,6 +112,7 @@ class Robot:
         self._ended = ended
         self._samples = self._lost = 0
         self._refusal = ""
+        self._down: dict[str | None, str] = {}  # what is lost until it is found, `None`: all; why
         self.begin(watch)
 
     def begin(self, watch: Watch) -> None:
@@ -130,6 +131,7 @@ class Robot:
         self._since: int | None = None
         self.last: int | None = None
         self._why: Health | None = None
+        self._is_to_lose_again = bool(self._down)
 
     def _hear(self, attempt: Attempt) -> None:
         self._counts[attempt.requirement, attempt.verdict] += 1
@@ -162,6 +164,7 @@ class Robot:
         Returns:
             Why it was refused; what it spoke of is unknown then. Empty: it was taken.
         """
+        self._lose_again(t)
         try:
             self._monitor.step_ns(t, values)
         except TraceError as error:
@@ -171,7 +174,7 @@ class Robot:
             if isinstance(error, TimeOrderError):
                 self._monitor.late_ns(names, t)
             else:
-                self._monitor.lose_ns(names, t, t, why=f"refused, as {error}")
+                self._monitor.lose_ns(names, t, t, why="refused")
                 self._come_to(t)
             return self._refusal
         self._samples += 1
@@ -181,6 +184,7 @@ class Robot:
     def drop(self, dropped: Dropped) -> None:
         """Have lost what found no room."""
         self._lost += dropped.count
+        self._lose_again(dropped.first)
         why = "came faster than they were evaluated"
         names = self._declared(dropped.names)
         self._monitor.lose_ns(names, dropped.first, dropped.last, why=why)
@@ -188,17 +192,31 @@ class Robot:
 
     def hear(self, gap: Gap) -> None:
         """Take what was lost, or found again, on the way here."""
-        match gap.told:
-            case Told.LOST:
-                self._lost += 1
-                self._monitor.lose_ns(gap.names, gap.since, gap.until, why=gap.why)
-                self._come_to(gap.since if gap.until is None else gap.until)
-            case Told.FOUND:
-                self._monitor.found_ns(gap.names, gap.since)
-                self._come_to(gap.since)
-            case Told.MISSED:
-                self._lost += 1
-                self._monitor.miss(gap.names, why=gap.why)
+        # A door may speak of names that a specification had before it was replaced.
+        names = None if gap.names is None else self._declared(gap.names)
+        if gap.told is Told.FOUND:
+            self._down = (
+                {} if names is None else {n: w for n, w in self._down.items() if n not in names}
+            )
+            self._monitor.found_ns(names, gap.since)
+            self._come_to(gap.since)
+            return
+        self._lost += 1
+        if gap.told is Told.MISSED:
+            self._monitor.miss(names, why=gap.why)
+            return
+        self._lose_again(gap.since)
+        if gap.until is None:
+            self._down |= dict.fromkeys((None,) if names is None else names, gap.why)
+        self._monitor.lose_ns(names, gap.since, gap.until, why=gap.why)
+        self._come_to(gap.since if gap.until is None else gap.until)
+
+    def _lose_again(self, t: int) -> None:
+        """What was down when a run ended is down still as the next one begins, at `t`."""
+        if self._is_to_lose_again:
+            self._is_to_lose_again = False
+            for name, why in self._down.items():
+                self._monitor.lose_ns(None if name is None else self._declared([name]), t, why=why)
 
     def _declared(self, names: Iterable[str]) -> list[str]:
         checked = self._watch.spec.checked

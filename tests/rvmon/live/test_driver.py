@@ -184,6 +184,45 @@ def test_what_was_missed_of_one_robot_is_nothing_to_another():
     assert reports["right"] == {"D1": Verdict.INCONCLUSIVE, "D2": Verdict.PASS}
 
 
+@pytest.mark.parametrize("names", [None, ["opened"], ["knock", "speed", "opened"]])
+@pytest.mark.parametrize("found", [False, True])
+def test_what_is_down_is_down_in_the_next_run_too(names, found):
+    """Whatever began it: another specification, or a clock that was set back."""
+    door = Door()
+    door.driver.offer({"speed": 0.5})
+    door.at(1)
+    door.driver.lose(names, why="nobody listens")
+    door.at(2)
+    door.driver.replace_spec(loads(DOOR))
+    if found:
+        door.driver.found(names)
+        door.clock.set_ns(2 * S + 1)
+    for t in (3, 4):
+        door.clock.set_ns(t * S)
+        door.driver.offer({"speed": 0.5, "knock": True})
+    door.at(7)
+    door.clock.set_ns(1)
+    door.at(0.5)
+    door.driver.offer({"speed": 0.5, "knock": True})
+    door.at(9)
+    reports = [one.verdicts["D1"].value for one in door.driver.close()[""][-2:]]
+    assert reports == (["F", "F"] if found else ["I", "I"])
+
+
+def test_what_a_specification_does_not_declare_is_not_lost():
+    """A name that is misspelt is told; one that another specification had harms nothing."""
+    door = Door()
+    door.driver.offer({"speed": 0.5})
+    with pytest.raises(UnknownNameError, match="`speed`"):
+        door.driver.lose(["sped"])
+    door.driver.lose(["opened"])
+    door.driver.miss(["opened", "knock"])
+    door.driver.replace_spec(loads("signal speed : real\nrequirement R1\n  always speed <= 1\n"))
+    door.driver.offer({"speed": 0.5})
+    door.at(1)
+    assert door.driver.close()[""][-1].verdicts == {"R1": Verdict.PASS}
+
+
 def test_what_is_too_late_is_lost_for_good():
     """A stretch that was judged already leaves nothing green that reads its names."""
     door = Door()

@@ -95,7 +95,7 @@ class FedMonitor(ABC, Generic[T]):
             names: signals and events; `None`: all.
             since_ns: the first instant at which they are lost, ticks.
             until_ns: the last one, to which time has come then; `None`: when `found_ns` says so.
-            why: a phrase for people, for the input health.
+            why: a phrase for people, for the input health: the same for all losses of one kind.
 
         Returns:
             What this decided.
@@ -142,7 +142,7 @@ class FedMonitor(ABC, Generic[T]):
 
         Args:
             names: signals and events that it may have spoken of; `None`: all.
-            why: a phrase for people, for the input health.
+            why: a phrase for people, for the input health: the same for all losses of one kind.
         """
         return self._tell(self._miss, names, why)
 
@@ -164,7 +164,7 @@ class FedMonitor(ABC, Generic[T]):
         Args:
             names: of the sample; `None`: it cannot be read.
             t_ns: its instant, ticks.
-            why: a phrase for people, for the input health.
+            why: a phrase for people, for the input health: the same for all losses of one kind.
 
         Raises:
             UnknownNameError: there is no such signal or event; nothing changed.

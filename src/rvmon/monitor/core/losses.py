@@ -21,6 +21,10 @@ _UNREAD = ""
 """For names that no requirement reads: in sampled time what is lost of them is a position."""
 
 
+_MOST_TOLD = 1_000
+"""With more entries of input health, reasons that were not heard of are told as one."""
+
+
 class Losses:
     """Has names of a run lost and found, and keeps what is said of it (SEMANTICS 1 and 6).
 
@@ -145,6 +149,8 @@ class Losses:
         return [self._planned.numbers[name] for name in names if name != _UNREAD]
 
     def _note(self, kind: HealthKind, names: Iterable[str] | None, t: int, why: str) -> None:
+        if len(self._seen) >= _MOST_TOLD and not any(why == known for _, _, known in self._seen):
+            why = "for other reasons"
         for name in (ANY,) if names is None else sorted({*names} - {_UNREAD}):
             count, first = self._seen.get((kind, name, why), (0, t))
             self._seen[kind, name, why] = (count + 1, min(first, t))

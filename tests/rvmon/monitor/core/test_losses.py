@@ -240,3 +240,13 @@ def test_margins_are_intervals_where_a_source_was_lost():
     monitor.step(5, {"x": 2.0})
     [figure] = monitor.finish(6)
     assert (figure.robustness.low, figure.robustness.high) == (float("-inf"), 3.0)
+
+
+def test_reasons_that_are_all_different_do_not_fill_the_memory():
+    """As those of a program that puts a line number into each."""
+    monitor = begun()
+    for number in range(3_000):
+        monitor.late(["x"], 0, why=f"line {number}")
+    found = [one for one in monitor.finish(1).health if one.kind is HealthKind.LATE]
+    assert len(found) < 1_100
+    assert sum(one.count for one in found) == 3_000
