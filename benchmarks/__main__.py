@@ -1,6 +1,6 @@
 """Measure our monitors beside the peers and write the page of results.
 
-    python -m benchmarks [--quick] [--only SECTION …] [--out FILE]
+    python -m benchmarks [--quick] [--only SECTION …] [--r2u2 FOLDER] [--out FILE]
 
 Peers run in their own environment beside this file, made from the package index on the first run.
 """
@@ -29,6 +29,7 @@ from benchmarks.peers.client import PeerError
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.native import build
 from benchmarks.processes import measure_process
+from benchmarks.r2u2 import table as many_beside_r2u2
 from benchmarks.render import render
 from benchmarks.workload import Workload
 
@@ -146,8 +147,8 @@ def _lines(path: Path) -> list[str]:
     return path.read_text().splitlines() if path.exists() else []
 
 
-def run(size: Size, sections: Sequence[str], command: str) -> Findings:
-    """Measure all chosen sections, reporting what is under way."""
+def run(size: Size, sections: Sequence[str], command: str, r2u2: Path | None) -> Findings:
+    """Measure all chosen sections, and beside R2U2 from a folder, reporting what is under way."""
     began = time.monotonic()
 
     def say(text: str) -> None:
@@ -193,6 +194,12 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
             files = tuple(measured)
     if "differences" in sections:
         say("where the peers read otherwise")
+    beside: tuple[str, ...] = ()
+    if r2u2 is not None:
+        say("many monitors beside R2U2")
+        beside = tuple(many_beside_r2u2(r2u2, size.rows // 2, size.counts))
+    else:
+        absent["R2U2"] = "the package index has none; `--r2u2` with a clone of its repository"
     table = differences.table(environment) if "differences" in sections else []
     versions = {"rvmon": version("rvmon"), **environment.versions}
     if native.binary is None:
@@ -206,6 +213,7 @@ def run(size: Size, sections: Sequence[str], command: str) -> Findings:
         tuple(agreements),
         tuple(table),
         files,
+        beside,
         absent,
     )
 
@@ -221,6 +229,7 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
     )
     parser.add_argument("--quick", action="store_true", help="a few minutes, for a first look")
     parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, metavar="SECTION")
+    parser.add_argument("--r2u2", type=Path, help="a clone of its repository", metavar="FOLDER")
     parser.add_argument("--out", type=Path, default=OUT, metavar="FILE")
     return parser.parse_args(argv)
 
@@ -229,8 +238,9 @@ def main(argv: Sequence[str]) -> int:
     """Measure and write the page."""
     options = parse(argv)
     size = QUICK if options.quick else Size()
-    command = " ".join(["python -m benchmarks", *argv])
-    findings = run(size, options.only, command)
+    shown = ["FOLDER" if Path(one) == options.r2u2 else one for one in argv]
+    command = " ".join(["python -m benchmarks", *shown])
+    findings = run(size, options.only, command, options.r2u2)
     options.out.write_text(render(findings), encoding="utf-8")
     _say(f"wrote {options.out}")
     return 0

@@ -114,6 +114,7 @@ class Findings:
         agreements: by contender and workload.
         differences: lines of the table of readings.
         files: lines of the table of whole files.
+        r2u2: lines of the table of `benchmarks.r2u2`.
         absent: what was not measured, and why.
     """
 
@@ -125,4 +126,5 @@ class Findings:
     agreements: tuple[Agreement, ...] = ()
     differences: tuple[str, ...] = ()
     files: tuple[str, ...] = ()
+    r2u2: tuple[str, ...] = ()
     absent: dict[str, str] = field(default_factory=dict)

@@ -47,6 +47,8 @@ def render(findings: Findings) -> str:
         results = [result for result in findings.results if result.section == section]
         if results:
             lines += ["", f"## {title}", "", *_results(results), *_refusals(results)]
+    if findings.r2u2:
+        lines += ["", "## Many monitors beside R2U2", "", *findings.r2u2]
     if findings.files:
         lines += ["", "## Whole files, on all cores", "", *findings.files]
     if findings.open_attempts:
