@@ -24,7 +24,7 @@ from rvmon.formula.state import (
     StateOp,
     Unborn,
 )
-from rvmon.plan.graph import Graph
+from rvmon.plan.graph import lasting
 from rvmon.plan.plan import Plan, PlannedRule
 from rvmon.spec.checked.formula import Compare, Constant, SignalAtom
 
@@ -208,19 +208,11 @@ def _count_slots(nodes: Iterable[Node], kinds: Sequence[NodeOp]) -> int:
 
 def _needed(plan: Plan) -> frozenset[int]:
     """The nodes that matter once every signal is born and every trigger was true or false."""
-    graph = plan.graph
-    settled = _settled(plan)
     states = [state for _, rule in plan.judges for state in _asked(rule, plan)]
     states += (one.proposition for core in plan.truths for one in literals(core))
     states += (watch.state for watch in plan.watches)
-    stack = [graph.index[state] for state in states if settled[graph.index[state]] is None]
-    needed: set[int] = set()
-    while stack:
-        place = stack.pop()
-        if place not in needed:
-            needed.add(place)
-            stack += [one for one in graph.operands[place] if settled[one] is None]
-    return frozenset(needed)
+    determined = {one.determined for one in plan.rules if one.determined is not None}
+    return lasting(plan.graph, states, determined)
 
 
 def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
@@ -228,39 +220,8 @@ def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
     named = (rule.trigger, rule.again, rule.unborn, rule.running, rule.blurs)
     yield from (state for state in named if state is not None)
     yield from rule.alphabet.propositions
+    yield from rule.noted
     leaves = () if rule.measured is None else plan_of(rule.measured, plan.gap).leaves
     for _, core in leaves:
         if isinstance(core, Literal) and is_followed(core, plan.spec, rule.requirement):
             yield core.proposition
-
-
-def _settled(plan: Plan) -> list[int | None]:
-    """The truths that nodes have from then on; `None`: they go on changing."""
-    graph: Graph = plan.graph
-    determined = {graph.index[one.determined] for one in plan.rules if one.determined is not None}
-    found: list[int | None] = []
-    for place, state in enumerate(graph.nodes):
-        if place in determined:
-            found.append(TRUE)
-        else:
-            found.append(_truth(state, [found[one] for one in graph.operands[place]]))
-    return found
-
-
-def _truth(state: State, operands: Sequence[int | None]) -> int | None:
-    known = [one for one in operands if one is not None]
-    match state.op:
-        case StateOp.LEAF:
-            if isinstance(state.leaf, Constant):
-                return TRUE if state.leaf.value else FALSE
-            return {Unborn: FALSE, Lost: UNKNOWN}.get(type(state.leaf))
-        case StateOp.NOT if known:
-            return TRUE - known[0]
-        case StateOp.SURE if known:
-            return TRUE if known[0] == TRUE else FALSE
-        case StateOp.AND if FALSE in known or len(known) == len(operands):
-            return min(known)
-        case StateOp.OR if TRUE in known or len(known) == len(operands):
-            return max(known)
-        case _:
-            return None

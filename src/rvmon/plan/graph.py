@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
 from rvmon.formula.numeric import captured_of, inputs_of
-from rvmon.formula.state import Elapsed, Lapsed, Leaf, Lost, Shown, State, StateOp, Unborn
+from rvmon.formula.state import (
+    FALSE,
+    TRUE,
+    UNKNOWN,
+    Elapsed,
+    Lapsed,
+    Leaf,
+    Lost,
+    Shown,
+    State,
+    StateOp,
+    Unborn,
+)
 from rvmon.spec.checked.formula import (
     BoundAtom,
     Compare,
@@ -64,13 +76,70 @@ class Graph:
     remembers_captured: bool
 
 
-def leaf_texts(graph: Graph) -> tuple[tuple[State, str], ...]:
-    """The leaves that are read off the input, with their text."""
-    return tuple(
-        (state, format_formula(state.leaf))
-        for state in graph.nodes
-        if isinstance(state.leaf, Shown)
-    )
+def leaf_texts(
+    roots: Sequence[State], determined: Collection[State]
+) -> tuple[tuple[State, str], ...]:
+    """The leaves that are read off the input, with their text.
+
+    Of those with one text, which differ in what they are before birth, it is one that goes on
+    mattering: the core leaves the others as they were then.
+
+    Args:
+        roots: the state formulas that are made of them.
+        determined: see `lasting`.
+    """
+    graph = graph_of(roots)
+    last = lasting(graph, roots, determined)
+    found: dict[str, State] = {}
+    for place, state in enumerate(graph.nodes):
+        if isinstance(state.leaf, Shown):
+            text = format_formula(state.leaf)
+            if text not in found or place in last:
+                found[text] = state
+    return tuple((state, text) for text, state in found.items())
+
+
+def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State]) -> frozenset[int]:
+    """The nodes that matter once every signal is born and every trigger was true or false.
+
+    Args:
+        graph: of the roots at least.
+        roots: the state formulas that are asked for.
+        determined: what is true from then on.
+    """
+    settled: list[int | None] = []
+    for state, operands in zip(graph.nodes, graph.operands, strict=True):
+        known = TRUE if state in determined else _settled(state, [settled[one] for one in operands])
+        settled.append(known)
+    places = (graph.index[state] for state in roots)
+    stack = [place for place in places if settled[place] is None]
+    needed: set[int] = set()
+    while stack:
+        place = stack.pop()
+        if place not in needed:
+            needed.add(place)
+            stack += [one for one in graph.operands[place] if settled[one] is None]
+    return frozenset(needed)
+
+
+def _settled(state: State, operands: Sequence[int | None]) -> int | None:
+    """The truth that a node has from then on; `None`: it goes on changing."""
+    known = [one for one in operands if one is not None]
+    match state.op:
+        case StateOp.LEAF:
+            if isinstance(state.leaf, Constant):
+                return TRUE if state.leaf.value else FALSE
+            return {Unborn: FALSE, Lost: UNKNOWN}.get(type(state.leaf))
+        case StateOp.NOT if known:
+            return TRUE - known[0]
+        case StateOp.SURE if known:
+            return TRUE if known[0] == TRUE else FALSE
+        case StateOp.AND if FALSE in known or len(known) == len(operands):
+            return min(known)
+        case StateOp.OR if TRUE in known or len(known) == len(operands):
+            return max(known)
+        case _:
+            return None
 
 
 def leaf_count(roots: Iterable[State]) -> int:

@@ -88,7 +88,7 @@ def _blurs(one: CompiledRequirement) -> State | None:
     """What is UNKNOWN where an attempt may have begun with other values than it captured."""
     obligation = one.obligation
     # What it owes by a trigger that is TRUE, it owes at one position.
-    return obligation.doubt or (obligation.trigger if one.is_beside else None)
+    return obligation.doubt or (None if one.beside is None else obligation.trigger)
 
 
 def plan_alone(

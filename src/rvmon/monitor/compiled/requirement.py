@@ -44,7 +44,7 @@ class CompiledRequirement:
         obligation: its formulas.
         alphabet: of what it owes.
         gap: ticks between two positions; `None` if only samples are positions.
-        is_beside: whether this judges the attempts in doubt of a requirement.
+        beside: the requirement whose attempts in doubt this judges; `None`: it is no such.
         measured: its formulas as they are measured: their truth is that of `obligation`.
     """
 
@@ -57,12 +57,12 @@ class CompiledRequirement:
         factory: Factory,
         shapes: Shapes,
         *,
-        is_beside: bool = False,
+        beside: CompiledRequirement | None = None,
         measured: Callable[[], Obligation],
     ) -> None:
         self._factory = factory
         self._shapes = shapes
-        self.is_beside = is_beside
+        self.beside = beside
         self._measured = measured
         self.rank = rank
         self.spec = spec
@@ -98,7 +98,7 @@ class CompiledRequirement:
 
     @property
     def _budget(self) -> Budget:
-        return _BESIDE if self.is_beside else Budget()
+        return Budget() if self.beside is None else _BESIDE
 
     @property
     def refusal(self) -> str:
@@ -139,7 +139,7 @@ class CompiledRequirement:
             obligation,
             self._factory,
             self._shapes,
-            is_beside=True,
+            beside=self,
             measured=lambda: measured() or obligation,
         )
 
@@ -171,7 +171,7 @@ class CompiledRequirement:
         """
         upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
         bare = self.requirement.for_each is None and not self.requirement.captures
-        return upon and bare and not self.is_beside
+        return upon and bare and self.beside is None
 
     @cached_property
     def forecaster(self) -> Forecaster:
@@ -181,7 +181,8 @@ class CompiledRequirement:
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:
         """What it reads of the input, with its text."""
-        return leaf_texts(graph_of(self._read))
+        determined = (self.beside or self).obligation.determined
+        return leaf_texts(self._read, () if determined is None else (determined,))
 
     @property
     def _read(self) -> Sequence[State]:

@@ -111,6 +111,18 @@ def test_the_blamed_sample_is_the_one_that_changed_the_value():
     assert failed.blame.at == (10**9,)
 
 
+@pytest.mark.parametrize("owed", ["false since near", "slow since near", "once near"])
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 s"])
+def test_a_proposition_of_which_the_past_is_asked_too_is_shown_as_it_stands(owed, time):
+    """Not as it stood when all was born, from when on some of what is asked rests."""
+    head = HEAD.replace("held", time, 1)
+    monitor = rvmon.loads(f"{head}requirement R\nupon near\nthen {owed}\n").monitor()
+    for t, near in enumerate([False, True, False, True, None, True, False]):
+        monitor.step(t, {"near": near, "slow": True})
+    found = [(one.in_doubt, one.at_trigger["near"]) for one in monitor.finish().attempts]
+    assert {(False, True)} <= {*found} <= {(False, True), (True, None)}
+
+
 def test_propositions_are_shown_at_trigger_and_decision():
     """A record carries the values of what the requirement reads, unknown ones as None."""
     _, [failed] = run("upon go\nthen within 1 s (released and near)", [(0, {"go": True})], 5)
