@@ -173,7 +173,13 @@ def compiled(folder, *line):
 def strict():
     """The compilers that there are, each with all warnings as errors."""
     warnings = [*STRICT, "-Wconversion", "-Wshadow"]
-    names = ["gcc -m32", "arm-none-eabi-gcc -mthumb -mcpu=cortex-m3", "clang", "gcc -O1"]
+    names = [
+        "gcc -m32",
+        "arm-none-eabi-gcc -mthumb -mcpu=cortex-m3",
+        "clang",
+        "gcc -O1",
+        "clang -O3",
+    ]
     return [[*name.split(), *warnings] for name in names if shutil.which(name.split()[0])]
 
 
@@ -320,7 +326,12 @@ def test_the_face_for_cpp(tmp_path, gcc):
     for source in (plan, "rvmon_core.c"):
         compiled(tmp_path, gcc, *SANITIZED, "-c", source)
     objects = [plan.replace(".c", ".o"), "rvmon_core.o"]
-    warnings = ["-std=c++11", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
-    compiled(tmp_path, "g++", *warnings, *SANITIZED, "main.cpp", *objects, "-o", "main")
+    warnings = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-pedantic", "-Werror"]
+    for compiler in filter(shutil.which, ("clang++", "g++")):
+        for standard in ("-std=c++20", "-std=c++11"):
+            line = [compiler, standard, *warnings]
+            compiled(tmp_path, *line, "-x", "c++", "-c", plan, "-o", "plan.o")
+            compiled(tmp_path, *line, "-c", "main.cpp", "-o", "main.o")
+    compiled(tmp_path, "g++", "-std=c++11", *SANITIZED, "main.cpp", *objects, "-o", "main")
     done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603
     assert done.stdout == "0 at 2\n0 0\n0 at 2\n0 0\nnone\n"
