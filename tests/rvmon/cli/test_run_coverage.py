@@ -2,6 +2,9 @@
 
 import io
 import json
+import signal
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -128,3 +131,34 @@ def test_from_standard_input(files, monkeypatch):
     lines = ['{"t": 0, "near": true, "state": "moving"}', '{"t": 1, "state": "idle"}']
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO("\n".join(lines).encode())))
     assert main(["run", "arm.rv", "-"]) == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limits of files")
+@pytest.mark.parametrize("kilobytes", [0, 8])
+def test_a_full_disk_is_told_and_takes_nothing_away(tmp_path, kilobytes):
+    """Whether there was room for none, or some of the tables; `cover` tells what is left of it."""
+    (tmp_path / "arm.rv").write_text(SPEC)
+    (tmp_path / "calm.csv").write_text(CALM)
+    database = str(tmp_path / "c.db")
+    line = [sys.executable, "-m", "rvmon", "run", "arm.rv", "calm.csv", "--coverage", database]
+
+    def limited():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (kilobytes << 10, kilobytes << 10))
+
+    resource = pytest.importorskip("resource")
+    done = subprocess.run(  # noqa: S603
+        line, cwd=tmp_path, preexec_fn=limited, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert "the disk" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert main(["cover", database]) == 2
+    assert subprocess.run(line, cwd=tmp_path, capture_output=True, check=False).returncode == 0  # noqa: S603
+    assert main(["cover", database]) in (0, 1)
+    kept = [entry.record for entry in read([database]).entries]
+    done = subprocess.run(  # noqa: S603
+        line, cwd=tmp_path, preexec_fn=limited, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert [entry.record for entry in read([database]).entries] == kept
