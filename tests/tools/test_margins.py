@@ -2,13 +2,16 @@
 
 import pytest
 
+from rvmon import loads
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
+from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.margins import margins
 from rvmon.testing.show import show_case
+from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict
 from tests.tools.compare import key_of
@@ -86,3 +89,21 @@ def test_engine_and_oracle_agree(time):
     assert finite > 5
     assert early > 5
     assert doubtful > 5
+
+
+@pytest.mark.parametrize("value", [float("inf"), float("-inf")])
+@pytest.mark.parametrize("compare", ["<=", "<", ">=", ">", "==", "!="])
+@pytest.mark.parametrize("time", ["held", "sampled"])
+def test_equal_infinities_are_nothing_apart(time, compare, value):
+    """In rows, in steps and in the oracle."""
+    text = f"time {time}\nsignal x, y : real\nevent q\nrequirement Q\n"
+    spec = loads(f"{text}  upon q then immediately x {compare} y\n")
+    values = {"x": value, "y": value, "q": True}
+    case = Case(spec.checked, (Sample(0, values), Sample(1, {"x": 1.0, "y": 2.0})))
+    judgement = Judgement(case)
+    of_steps, _ = measured(case)
+    of_oracle = margins(judgement.followings, judgement.outcomes)
+    columns = {"t": [0, 1], "x": [value, 1.0], "y": [value, 2.0], "q": [1, 0]}
+    of_rows = [(one.low, one.high, one.kept) for one in spec.robustness(columns).attempts.values()]
+    figures = [*of_rows, *of_steps.values(), *of_oracle.values()]
+    assert figures == [(0.0, 0.0, 0.0)] * 3
