@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise, product
-from math import prod
+from math import ceil, floor, inf, prod
 
 from rvmon.spec.check.comparisons import compared
 from rvmon.spec.check.expressions import Checker
@@ -87,6 +87,8 @@ def checked_coverpoint(checker: Checker, item: CoverpointItem) -> Coverpoint | N
                 places = syntax.name.span, earlier.name.span
                 raise Refusal(name_rules.double(syntax.name.text, "bin", *places))
             formula = present(_bin_formula(checker, item.expression, value, syntax))
+            if _is_empty(formula, value):
+                checker.report(rules.empty_bin(syntax.span))
             bins.append(Bin(syntax.name.text, formula, syntax.kind, syntax.span))
         except Refusal as refusal:
             checker.report(refusal.finding)
@@ -160,6 +162,44 @@ def present(formula: Formula) -> Formula:
     if end is not None and end.span is not None:
         raise Refusal(trigger_rules.end_not_alone(end.span))
     return formula
+
+
+def _is_empty(formula: Formula, value: Value | None) -> bool:
+    """Whether comparisons of the value with constants, of which a bin consists, exclude all."""
+    parts: tuple[Formula, ...] = (formula,)
+    if isinstance(formula, Binary) and formula.op is BinaryOp.AND:
+        parts = formula.left, formula.right
+    if not isinstance(value, Quantity):
+        return False
+    least: float = -inf
+    most: float = inf
+    open_ = False
+    for part in parts:
+        match part:
+            case Compare(op=op, left=left, right=Literal(value=int() | float() as bound)):
+                if left != value.node:
+                    return False
+                low, high = _ends(op, bound, whole=value.integral)
+                strict = op in (CompareOp.GT, CompareOp.LT) and not value.integral
+                open_, least, most = open_ or strict, max(least, low), min(most, high)
+            case _:
+                return False
+    return least > most or (open_ and least == most)
+
+
+def _ends(op: CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
+    """Between which values a comparison with a constant is true, bounds that are open included."""
+    match op:
+        case CompareOp.GT | CompareOp.GE:
+            first = floor(bound) + 1 if op is CompareOp.GT else ceil(bound)
+            return first if whole else bound, inf
+        case CompareOp.LT | CompareOp.LE:
+            last = ceil(bound) - 1 if op is CompareOp.LT else floor(bound)
+            return -inf, last if whole else bound
+        case CompareOp.EQ:
+            return (ceil(bound), floor(bound)) if whole else (bound, bound)
+        case CompareOp.NE:
+            return -inf, inf
 
 
 def _bin_formula(

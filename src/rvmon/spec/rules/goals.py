@@ -16,7 +16,9 @@ BIN = Rule("RV060", "bin", Severity.ERROR)
 
 CROSS = Rule("RV061", "cross", Severity.ERROR)
 
-RULES = (BIN, CROSS)
+EMPTY_BIN = Rule("RV062", "empty-bin", Severity.WARNING)
+
+RULES = (BIN, CROSS, EMPTY_BIN)
 
 
 bin_without_values = Breach(
@@ -38,6 +40,11 @@ bad_goal = Breach(BIN, "`{}` is no count of hits", "write `goal 3`")
 bad_weight = Breach(BIN, "`{}` is no weight", "write `weight 2`")
 same_value = Breach(
     BIN, "`{}` is where the step began", "a step leads to another value: `idle => moving`"
+)
+empty_bin = Breach(
+    EMPTY_BIN,
+    "no value lies in `{}`: nothing can hit this bin",
+    "write the lower bound first; `[` and `]` take a bound in",
 )
 sampled_apart = Breach(
     CROSS,

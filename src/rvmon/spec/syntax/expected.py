@@ -71,6 +71,7 @@ _WORDS = {
     "PATH": "`A[]` or `E<>`",
     "QUANTIFIER": "`A` or `E`",
 }
+_TITLE = re.compile(r'[ \t]*(?:["#\n]|\Z)')
 _SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
 
 
@@ -90,7 +91,7 @@ def explain_unexpected(
     place = _place(error, source, start, end)
     accepted, _ = accepted_terminals(parser, source.text[start:end], rule)
     found = place.text
-    nameless = found in NAMELESS and source.text[start : place.start].split() == ["requirement"]
+    nameless = found in NAMELESS and _is_demanded(source.text[start : place.start], place)
     if found in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
         return names.reserved(place)
     if swallowed := _SWALLOWED.search(source.text, start, place.start):
@@ -102,6 +103,15 @@ def explain_unexpected(
     message = f"found {shown}" + (f", expected {expected}" if expected else "")
     fix = fix_of(found, accepted, parser, Span(source, start, place.start))
     return syntax.syntax_error(message, place, fix)
+
+
+def _is_demanded(before: str, word: Span) -> bool:
+    """Whether a word begins what a requirement without a name demands; else it is the name.
+
+    A name stands on the line of `requirement`, with its text or nothing behind it.
+    """
+    named = re.fullmatch(r"requirement[ \t]+", before) and _TITLE.match(word.source.text, word.end)
+    return before.split() == ["requirement"] and not named
 
 
 def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span:

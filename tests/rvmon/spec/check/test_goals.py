@@ -120,3 +120,26 @@ def test_crosses_are_limited(codes):
     many = ", ".join(f"b{number}: {number}" for number in range(101))
     points = f"coverpoint p = n {{{many}}}\ncoverpoint q = x {{{many}}}\n"
     assert codes(f"{points}cross c = p, q") == ["RV061"]
+
+
+@pytest.mark.parametrize(
+    ("text", "empty"),
+    [
+        ("= x {b: [5, 3]}", True),
+        ("= x {b: (2, 2)}", True),
+        ("= x {b: (2, 2]}", True),
+        ("= x {b: [2, 2], c: (2, 3), illegal d: [3, inf)}", False),
+        ("= d {b: [1 m, 50 cm)}", True),
+        ("= d {b: [100 cm, 1 m]}", False),
+        ("= n {b: (2, 3)}", True),
+        ("= n {b: [2.25, 2.75]}", True),
+        ("= n {b: 2.5}", True),
+        ("= n {b: (2, 4), c: [3, 3], d: (1, 3)}", False),
+        ("= n {b: x > 5}", False),
+        ("= n {b: n > 5 or n < 3}", False),
+        ("= state {idle, moving}", False),
+    ],
+)
+def test_bins_that_nothing_can_hit(codes, text, empty):
+    """Bounds the wrong way round, nothing between them, a whole number that is none."""
+    assert codes(f"coverpoint p {text}") == (["RV062"] if empty else [])

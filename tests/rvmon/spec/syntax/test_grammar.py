@@ -139,6 +139,20 @@ def test_reserved_words_are_no_names(codes, name):
     assert codes(f"signal `{name}`, {name}.z : bool\nrequirement R always `{name}`") == []
 
 
+@pytest.mark.parametrize("name", sorted(RESERVED))
+def test_reserved_words_are_no_names_of_requirements(codes, name):
+    """With a text or nothing behind it a word is taken for the name, and refused as one."""
+    assert codes(f'requirement {name} "text"\n  always a') == ["RV010"]
+    assert codes(f"requirement {name}  # so\n  always a") == ["RV010"]
+    assert codes(f"requirement `{name}`\n  always a") == []
+
+
+@pytest.mark.parametrize("text", ["always a", "\n  upon\n  a then b", "not a"])
+def test_a_requirement_without_a_name_is_told_so(message, text):
+    """A word that begins what is demanded is not taken for a name."""
+    assert "its name comes first" in message(f"requirement {text}")
+
+
 @pytest.mark.parametrize("name", sorted(INFIX_WORDS | CLAUSE_WORDS))
 def test_infix_and_clause_words_may_be_names(codes, name):
     """Where an operand stands, infix words and clause words are names."""
