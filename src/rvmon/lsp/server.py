@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
-from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.uris import to_fs_path
 
 from rvmon import __version__
@@ -21,6 +20,7 @@ from rvmon.errors import SpecError
 from rvmon.lsp.completion import hover, proposals
 from rvmon.lsp.document import Document, Text
 from rvmon.lsp.names import meanings
+from rvmon.lsp.protocol import UNREADABLE, Protocol
 from rvmon.spec.print.formatter import format_text
 from rvmon.spec.syntax.expressions import Name
 from rvmon.spec.syntax.parse import parse_expression
@@ -38,27 +38,23 @@ _KINDS = {
 }
 
 
-class _Protocol(LanguageServerProtocol):
-    """Leaves edits to us: see `Text`."""
-
-    @lsp_method(lsp.TEXT_DOCUMENT_DID_CHANGE)
-    def lsp_text_document__did_change(
-        self, params: lsp.DidChangeTextDocumentParams
-    ) -> Generator[Any, Any, None]:
-        """Hand the edit on as it came."""
-        yield self.fm.features[lsp.TEXT_DOCUMENT_DID_CHANGE], (params,), None
-
-
 class Server(LanguageServer):
     """The state of a session: texts that are open, and what was made of them."""
 
     def __init__(self) -> None:
-        super().__init__("rvmon", __version__, protocol_cls=_Protocol)
+        super().__init__("rvmon", __version__, protocol_cls=Protocol)
         for name, (answer, options) in _FEATURES.items():
             self.feature(name, options)(answer)
         self.texts: dict[str, Text] = {}
         self._documents: dict[str, Document] = {}
         self._sent: dict[str, Document] = {}
+
+    def report_server_error(self, error: Exception, source: type[Any]) -> None:
+        """Answer what is no JSON as the protocol says; anything else as ever."""
+        if isinstance(error, UNREADABLE) and isinstance(self.protocol, Protocol):
+            self.protocol.refuse(None, lsp.ErrorCodes.ParseError, f"it is no JSON: {error}")
+        else:
+            super().report_server_error(error, source)
 
     def document(self, uri: str) -> Document:
         """A document as it is now."""
