@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections import Counter
+from itertools import islice
 from typing import Any
 
 import msgspec
@@ -13,6 +13,7 @@ from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
 from rvmon.readers.jsonl_rows import decoded, read_object
 from rvmon.readers.naming import DEFAULT_COLUMNS
+from rvmon.trace.ignored import Ignored
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -45,13 +46,13 @@ class JsonObjects:
     def __init__(
         self, driver: Driver, schema: Schema, *, clock: SimulatedClock | None = None
     ) -> None:
-        self.ignored: Counter[str] = Counter()
+        self.ignored = Ignored()
         self.unread = 0
         self.driver = driver
         self._schema = schema
         self._clock = clock
         self._last: dict[str, int | None] = {}
-        self._told: set[str] = set()
+        self._told = 0
 
     def take(self, fields: Any, robot: str = "", *, wait: bool = False) -> None:
         """Offer what an object says.
@@ -65,18 +66,22 @@ class JsonObjects:
             TraceError: it cannot be read; nothing was offered.
         """
         t_ns, values = _read(fields, self._schema, self.ignored)
-        self._tell_of_ignored()
+        if len(self.ignored) > self._told:
+            self._tell_of_ignored()
         if self._clock is not None and t_ns is not None:
             now = self._clock.now_ns()
             if t_ns > now or t_ns < now - _JUMP_NS:
                 self._clock.set_ns(t_ns)
-        self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
-        self._last[robot] = t_ns
+        took = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
+        # Of robots that are one too many nothing is kept.
+        if took or robot in self._last or len(self._last) < self.driver.most_robots:
+            self._last[robot] = t_ns
 
     def _tell_of_ignored(self) -> None:
         """Say of a name that comes first, and feeds nothing, what it was probably meant for."""
-        for name in [name for name in self.ignored if name not in self._told]:
-            self._told.add(name)
+        fresh = list(islice(self.ignored, self._told, None))
+        self._told += len(fresh)
+        for name in fresh:
             ends = [one for one in self._schema.signals if name.endswith(f".{one}")]
             ends += [one for one in self._schema.signals if one.endswith(f".{name}")]
             if ends:
@@ -117,14 +122,12 @@ def decoded_object(text: bytes) -> Any:
 def stamp_of(text: bytes, schema: Schema) -> int | None:
     """The instant, ns, that an object says; `None` if it says none, or cannot be read."""
     try:
-        return _read(decoded_object(text), schema, Counter())[0]
+        return _read(decoded_object(text), schema, Ignored())[0]
     except TraceError:
         return None
 
 
-def _read(
-    fields: Any, schema: Schema, ignored: Counter[str]
-) -> tuple[int | None, dict[str, Value]]:
+def _read(fields: Any, schema: Schema, ignored: Ignored) -> tuple[int | None, dict[str, Value]]:
     """What an object says: its instant, if it has one, and values."""
     stamps = DEFAULT_COLUMNS if schema.stamps is None else (schema.stamps.column,)
     try:

@@ -60,7 +60,7 @@ class Driver:
     Attributes:
         wake: to be set to what has `work` called soon; it is called from any thread.
         errors: so many callbacks raised something, which was logged.
-        turned_away: whether a robot was one too many: of that there are no verdicts.
+        most_robots, turned_away: as given, and whether one was too many: of that no verdicts are.
 
     Raises:
         RvmonError: `room`, `most_robots` or `keep` is no count.
@@ -100,7 +100,7 @@ class Driver:
         self._runs_by_itself = isinstance(self._clock, WallClock)
         self._only = None if only is None else tuple(only)
         self._sources = None if sources is None else tuple(sources)
-        self._keep, self._asked_lag, self._most_robots = keep, lag_ns, most_robots
+        self._keep, self._asked_lag, self.most_robots = keep, lag_ns, most_robots
         self._on_judged, self._on_failure, self._on_report = on_judged, on_failure, on_report
         self.wake: Callable[[], object] = int
         self.errors, self.turned_away = 0, False
@@ -234,10 +234,10 @@ class Driver:
 
     def _is_room_for(self, robot: str) -> bool:
         known = {*self._waiting.robots, *self._robots}
-        if robot in known or len(known) < self._most_robots:
+        if robot in known or len(known) < self.most_robots:
             return True
         if not self.turned_away:
-            _input_log.warning("robot %r is one too many: at most %d", robot, self._most_robots)
+            _input_log.warning("robot %r is one too many: at most %d", robot, self.most_robots)
         self.turned_away = True
         return False
 

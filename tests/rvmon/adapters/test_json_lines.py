@@ -8,6 +8,7 @@ from rvmon import Verdict, loads
 from rvmon.adapters.json_lines import feed_lines, read_lines
 from rvmon.adapters.json_objects import JsonObjects, stamp_of
 from rvmon.live import Driver, SimulatedClock
+from rvmon.trace.ignored import MORE, MOST_NAMES
 
 SPEC = """
 spec s
@@ -67,6 +68,29 @@ def test_a_name_that_a_declared_one_may_be_meant_by_is_told_at_once(live, caplog
     _verdicts(driver, [b'{"t": 0, "state": {"x": 0}, "y": 1}', b'{"t": 1, "state.x": 0}'], source)
     [told] = [one.getMessage() for one in caplog.records if "feeds nothing" in one.getMessage()]
     assert told == "`state.x` feeds nothing, and `x` is declared: is `--map x=state.x` meant?"
+
+
+def test_names_that_keep_coming_take_no_room_for_ever(live):
+    """Of fresh names in each line so many are told apart, the others counted together."""
+    driver, _, source = live
+    lines = [b'{"t": %d, "x": 0, "y%d": 1}' % (number, number) for number in range(1_200)]
+    assert _verdicts(driver, lines, source) == {"": Verdict.PASS}
+    assert len(source.ignored) == MOST_NAMES + 1
+    assert source.ignored["y0"] == 1
+    assert source.ignored[MORE] == 200
+
+
+def test_robots_that_are_turned_away_take_no_room(live):
+    """What was last heard is known of those alone that there are."""
+    spec, clock = loads(SPEC), SimulatedClock()
+    driver = Driver(spec, clock=clock, most_robots=2)
+    source = JsonObjects(driver, spec.schema, clock=clock)
+    feed_lines(source, [b'{"t": 0, "x": 0, "r": "%d"}' % name for name in range(50)], "r")
+    feed_lines(source, [b"x: 7"], "r")
+    while driver.work() == 0:
+        pass
+    driver.close()
+    assert len(source._last) == len(driver.status()) == 2
 
 
 def test_lines_without_a_time_are_stamped_as_they_arrive():
