@@ -232,7 +232,23 @@ class FileRecording:
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
         ]
-        return ignored + self.rows.conflicts() + self.stamp_doubts()
+        return ignored + self.rows.conflicts() + self.stamp_doubts() + self._cut_off()
+
+    def _cut_off(self) -> list[Health]:
+        """That the last cell may be half of one: in CSV the end of a line alone says that it ends.
+
+        Of a file as it is; what is packed, or piped, says itself where it ends.
+        """
+        is_file = self._format == "csv" and can_be_read_again(self.path)
+        if not is_file or not self.path.endswith(".csv") or is_address(self.path):
+            return []
+        with open(self.path, "rb") as file:
+            size = file.seek(0, os.SEEK_END)
+            file.seek(max(0, size - 1))
+            if file.read() in (b"\n", b"\r", b""):
+                return []
+        remark = "it has no end of line: if it was cut off, its last value is another"
+        return [Health(HealthKind.CUT, "the last line", remark=remark)]
 
     def _layout(self, rows: Iterator[tuple[int, list[str]]]) -> Layout:
         try:

@@ -242,7 +242,7 @@ def health_lines(found: Sequence[Health]) -> Iterator[str]:
         if health.kind is HealthKind.IGNORED:
             ignored.setdefault(health.remark, []).append(health.name)
             continue
-        if health.kind in (HealthKind.UNIT, HealthKind.CLOCK):
+        if health.kind in (HealthKind.UNIT, HealthKind.CLOCK, HealthKind.CUT):
             yield f"  {health.name}  warning: {health.remark}"
             continue
         first = "" if health.first is None else f", first at {format_ticks(health.first)}"

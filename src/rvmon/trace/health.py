@@ -21,6 +21,7 @@ class HealthKind(StrEnum):
     UNIT = "unit"
     CLOCK = "clock"
     INTERRUPTED = "interrupted"
+    CUT = "cut off"
 
 
 @dataclass(frozen=True, slots=True)

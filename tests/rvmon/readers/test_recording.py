@@ -78,6 +78,15 @@ def test_undeclared_columns_are_ignored_and_counted(tmp_path):
     assert recording.names == {"ok"}
 
 
+@pytest.mark.parametrize(("end", "told"), [("", True), ("\n", False), ("\r\n", False)])
+def test_a_last_line_without_its_end_is_told(tmp_path, end, told):
+    """`1.2` may be what was written of `1.25`; it is read as it stands."""
+    recording, samples = read(tmp_path, "a.csv", f"t,n\n0,1\n1,12{end}")
+    assert samples[-1] == (10**9, {"n": 12})
+    found = [(one.kind, one.name) for one in recording.health()]
+    assert found == ([(HealthKind.CUT, "the last line")] if told else [])
+
+
 def test_decimal_seconds_are_exact(tmp_path):
     """A CSV stamp is converted without going through a float."""
     _, samples = read(tmp_path, "a.csv", "t,ok\n1700000000.123456789,1\n")

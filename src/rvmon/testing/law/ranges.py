@@ -246,11 +246,11 @@ def _distance(
         return TOP if (left == right) is (op is CompareOp.EQ) else BOTTOM
     apart = 0.0 if left == right else float(left - right)
     value = {
-        CompareOp.LT: -apart,
-        CompareOp.LE: -apart,
+        CompareOp.LT: 0.0 - apart,  # nothing is -0
+        CompareOp.LE: 0.0 - apart,
         CompareOp.GT: apart,
         CompareOp.GE: apart,
-        CompareOp.EQ: -abs(apart),
+        CompareOp.EQ: 0.0 - abs(apart),
         CompareOp.NE: abs(apart),
     }[op]
     return value, value
