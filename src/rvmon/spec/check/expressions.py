@@ -187,7 +187,7 @@ class Checker:
     def _value(self, expression: Expression, scope: Scope) -> Value:
         match expression:
             case Group(inner=inner):
-                return self.values((inner,), scope)[0]
+                return self._value(inner, scope)
             case Number():
                 return self._number(expression)
             case Name():

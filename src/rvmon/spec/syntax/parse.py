@@ -28,6 +28,9 @@ from rvmon.units.table import compound_pattern
 DEEPEST = 100
 """Expressions nested more deeply are refused."""
 
+MOST_ENCLOSED = 200
+"""The same with brackets that only enclose, which are no levels but take as much to read."""
+
 KEPT = 4_000
 """Trees of items that are kept for the next time that the same text is read."""
 
@@ -79,8 +82,8 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
     builder = Builder(source, start)
     try:
         tree = _tree(source.text[start:end], rule)
-        if _depth(tree) > DEEPEST:
-            place = Span(source, start, start + len(source.text[start:end].rstrip()))
+        if (part := _too_deep(tree)) is not None:
+            place = Span(source, start + part.meta.start_pos, start + part.meta.end_pos)
             return None, [rules.too_deep(place, DEEPEST)]
         return builder.transform(tree), builder.findings
     except UnexpectedInput as error:
@@ -142,16 +145,15 @@ def _any(words: frozenset[str]) -> str:
     return "|".join(sorted(words))
 
 
-def _depth(tree: Any) -> int:
-    deepest = 0
+def _too_deep(tree: lark.Tree[Any]) -> lark.Tree[Any] | None:
+    """The first part that is nested too deeply; brackets that only enclose are no level."""
+    within = 0
     level = [tree]
-    while level:
-        deepest += 1
-        level = [
-            child
-            for node in level
-            if isinstance(node, lark.Tree)
-            for child in node.children
-            if isinstance(child, lark.Tree)
-        ]
-    return deepest
+    for _ in range(MOST_ENCLOSED):
+        level = [part for node in level for part in node.children if isinstance(part, lark.Tree)]
+        within += any(node.data != "group" for node in level)
+        if not level:
+            return None
+        if within >= DEEPEST:
+            break
+    return level[0]

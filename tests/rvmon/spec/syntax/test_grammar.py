@@ -268,3 +268,20 @@ def test_words_in_texts_and_comments_are_no_operators():
     """A long comment stands in no one's way."""
     text = 'signal p : bool\nrequirement R "' + "and " * 3000 + '"\n  always p  # ' + "or " * 3000
     compile_text(text)
+
+
+@pytest.mark.parametrize("many", [90, 99, 150])
+def test_brackets_that_only_enclose_are_no_levels(owed, many):
+    """What is in them means the same with them."""
+    assert owed("(" * many + "a" + ")" * many) == "a"
+
+
+@pytest.mark.parametrize("opening", ["not (", "("])
+def test_what_is_nested_too_deeply_is_shown(opening):
+    """The place is that of what is too deep, not of the whole requirement."""
+    text = f"signal a : bool\nrequirement R\n  always {opening * 300}a{')' * 300}\n"
+    with pytest.raises(SpecError) as caught:
+        compile_text(text)
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "RV005"
+    assert finding.spans[0].span.start > text.index("always") + 90
