@@ -18,9 +18,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from fuzz.targets import TARGETS
-
-CORPUS = Path(__file__).with_name("corpus")
+from fuzz.targets import TARGETS, seeds
 
 LONGEST = {"spec": 3000, "recording": 1000, "snapshot": 20_000}
 """Bytes of an input; of others 12,000."""
@@ -45,7 +43,9 @@ def fuzz_target(name: str, out: Path, seconds: int) -> Found:
     (folder / "found").mkdir(parents=True, exist_ok=True)
     before = set(folder.glob("input-*"))
     words = [sys.executable, "-m", "fuzz.one", name, str(folder)]
-    words += [str(folder / "found"), str(CORPUS / name), f"-max_total_time={seconds}"]
+    for number, data in enumerate(seeds(name)):
+        (folder / "found" / f"seed-{number}").write_bytes(data)
+    words += [str(folder / "found"), f"-max_total_time={seconds}"]
     words += [f"-timeout={PATIENCE}", "-rss_limit_mb=2500", "-print_final_stats=1"]
     words += [f"-artifact_prefix={folder}/input-", f"-max_len={LONGEST.get(name, 12_000)}"]
     with (folder / "log.txt").open("w") as log:

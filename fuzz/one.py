@@ -13,8 +13,6 @@ from pathlib import Path
 
 import atheris
 
-CORPUS = Path(__file__).with_name("corpus")
-
 EVERY = 200
 """Inputs between two times that the answers are written."""
 
@@ -22,10 +20,10 @@ EVERY = 200
 def main(name: str, folder: Path, options: list[str]) -> None:
     """Fuzz until libFuzzer ends the process."""
     with atheris.instrument_imports(include=["rvmon"]):
-        from fuzz.targets import ANSWERS, run
+        from fuzz.targets import ANSWERS, run, seeds
 
-        for path in sorted((CORPUS / name).iterdir()):  # imports what is imported late
-            run(name, path.read_bytes())
+        for data in seeds(name):  # imports what is imported late
+            run(name, data)
     ANSWERS.clear()
 
     def take(data: bytes) -> None:

@@ -25,6 +25,8 @@ from rvmon.readers.source import Source
 from rvmon.spec.print.formatter import format_text
 from rvmon.trace.sample import Sample
 
+CORPUS = Path(__file__).with_name("corpus")
+
 ANSWERS: Counter[str] = Counter()
 """How inputs ended, by target."""
 
@@ -191,6 +193,28 @@ def snapshot(data: bytes) -> str:
         return "restored, refuses a sample"
     monitor.finish()
     return "restored"
+
+
+def seeds(name: str) -> Iterator[bytes]:
+    """What a target begins with: what is kept, and runs as they are put away today."""
+    if (CORPUS / name).exists():
+        yield from (path.read_bytes() for path in sorted((CORPUS / name).iterdir()))
+    if name == "snapshot":
+        yield from _runs()
+
+
+def _runs() -> Iterator[bytes]:
+    """Snapshots without what `snapshot` gives them: they hold the plan's own numbers."""
+    belongs = _sealed()[1]
+    for count in (1, 40):
+        monitor = _recorded(TIMES[0]).monitor()
+        for t in range(count):
+            values = {"speed": t % 7.0, "mode": "idle", "door": t % 3 == 0, "parts": t}
+            monitor.step(t / 4, values | ({"halt": True} if t % 11 == 5 else {}))
+            if t == 20:
+                monitor.lose(["speed"], since=5.1)
+        document = json.loads(monitor.snapshot().partition(b"\n")[2])
+        yield json.dumps({k: v for k, v in document.items() if k not in belongs}).encode()
 
 
 @cache
