@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections import Counter
 from itertools import islice
 from typing import Any
 
@@ -13,7 +14,6 @@ from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
 from rvmon.readers.jsonl_rows import decoded, read_object
 from rvmon.readers.naming import DEFAULT_COLUMNS
-from rvmon.trace.ignored import Ignored
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -46,7 +46,7 @@ class JsonObjects:
     def __init__(
         self, driver: Driver, schema: Schema, *, clock: SimulatedClock | None = None
     ) -> None:
-        self.ignored = Ignored()
+        self.ignored: Counter[str] = Counter()
         self.unread = 0
         self.driver = driver
         self._schema = schema
@@ -122,12 +122,14 @@ def decoded_object(text: bytes) -> Any:
 def stamp_of(text: bytes, schema: Schema) -> int | None:
     """The instant, ns, that an object says; `None` if it says none, or cannot be read."""
     try:
-        return _read(decoded_object(text), schema, Ignored())[0]
+        return _read(decoded_object(text), schema, Counter())[0]
     except TraceError:
         return None
 
 
-def _read(fields: Any, schema: Schema, ignored: Ignored) -> tuple[int | None, dict[str, Value]]:
+def _read(
+    fields: Any, schema: Schema, ignored: Counter[str]
+) -> tuple[int | None, dict[str, Value]]:
     """What an object says: its instant, if it has one, and values."""
     stamps = DEFAULT_COLUMNS if schema.stamps is None else (schema.stamps.column,)
     try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import sys
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -95,9 +96,8 @@ def watch_kept(
 def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes], *, skipped: int) -> None:
     from rvmon.adapters.json_objects import decoded_object
     from rvmon.readers.jsonl_rows import read_object
-    from rvmon.trace.ignored import Ignored
 
-    ignored = Ignored()
+    ignored: Counter[str] = Counter()
     filled = ((number, line) for number, line in enumerate(lines, 1) if line.strip())
     for number, line in itertools.islice(filled, skipped, None):
         try:

@@ -27,6 +27,7 @@ from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.rows import Row
 from rvmon.readers.table_batch import ticks_of_column
+from rvmon.trace.ignored import bound
 from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
@@ -148,6 +149,7 @@ def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
         count = sum(cell is not msgspec.UNSET for cell in map(attrgetter(place), rows))
         if count:
             ignored[name] += count
+    bound(ignored)
     return batch
 
 

@@ -14,6 +14,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
 from rvmon.readers.values import DESCRIPTION, as_declared, double_of, fits, shorten
 from rvmon.trace.gaps import Gaps
+from rvmon.trace.ignored import bound
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
@@ -160,6 +161,7 @@ def read_object(
             else:
                 ignored[name] += 1
     _collect(fields, "", schema, aliases, values, ignored)
+    bound(ignored)
     return t, values
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -24,7 +24,6 @@ from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.ignored import Ignored
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
@@ -75,7 +74,7 @@ class FileRecording:
         self.path = str(path)
         self._schema = schema
         self._ordered = ordered
-        self.ignored = Ignored()
+        self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
         if self.is_of_messages and schema.stamps is not None:
             raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")

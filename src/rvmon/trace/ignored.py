@@ -11,18 +11,14 @@ MORE = "… and more"
 """What counts for all other names."""
 
 
-class Ignored(Counter[str]):
-    """How often each name came; of many, all but the first are counted together.
+def bound(ignored: Counter[str]) -> None:
+    """Of many names, count all but the first together.
 
-    >>> seen = Ignored()
-    >>> for number in range(MOST_NAMES + 5):
-    ...     seen[f"name{number}"] += 1
+    >>> seen = Counter({f"name{number}": 1 for number in range(MOST_NAMES + 5)})
+    >>> bound(seen)
     >>> len(seen) - MOST_NAMES, seen["name0"], seen[MORE]
     (1, 1, 5)
     """
-
-    def __setitem__(self, name: str, count: int) -> None:
-        """Set the count of a name, or add it to that of all others."""
-        if name not in self and len(self) >= MOST_NAMES:
-            name, count = MORE, self[MORE] + count
-        super().__setitem__(name, count)
+    if len(ignored) > MOST_NAMES + 1:
+        further = [name for name in list(ignored)[MOST_NAMES:] if name != MORE]
+        ignored[MORE] += sum(ignored.pop(name) for name in further)
