@@ -23,19 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
-    from rvmon.errors import (
-        CoverageError,
-        MissingNameError,
-        ModelError,
-        OverlapError,
-        RvmonError,
-        SnapshotError,
-        SpecError,
-        TimeOrderError,
-        TraceError,
-        UnknownNameError,
-        WorkerLostError,
-    )
+    from rvmon.errors import RvmonError, SpecError, TraceError
     from rvmon.loading import load, loads
     from rvmon.monitor import Monitor
     from rvmon.session import Spec
@@ -49,24 +37,16 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Attempt",
-    "CoverageError",
     "Diagnostic",
-    "MissingNameError",
-    "ModelError",
     "Monitor",
-    "OverlapError",
     "Report",
     "Requirement",
     "RvmonError",
     "Sample",
-    "SnapshotError",
     "Spec",
     "SpecError",
-    "TimeOrderError",
     "TraceError",
-    "UnknownNameError",
     "Verdict",
-    "WorkerLostError",
     "__version__",
     "load",
     "loads",

@@ -13,8 +13,8 @@ from handover.generator.abstract_test import AbstractTest
 from rvmon.cdv import Test
 from rvmon.cdv.presentation import RobotTest
 from rvmon.execute import parallel
-from rvmon.report.coverage_summary import counted
 from rvmon.report.markup import Child, e
+from rvmon.report.percent import counted
 from rvmon.report.table import checked_text
 
 if TYPE_CHECKING:

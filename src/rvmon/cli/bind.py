@@ -14,7 +14,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "bind",
-        help="which topics and fields of a recording feed a specification: a proposal",
         description="Print a binding (TOML): which topics and fields of a bag or MCAP file feed "
         "the signals and events of a specification, by what messages mean, by units, types and "
         "words, with the values that they have there. What nothing fits clearly is left open, and "

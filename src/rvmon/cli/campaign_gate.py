@@ -8,8 +8,8 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.gate import CampaignJudgement
 from rvmon.cdv.junit import junit_xml
 from rvmon.cli.say import warn
-from rvmon.report.coverage_summary import counted
 from rvmon.report.folder import write_file
+from rvmon.report.percent import counted
 
 SHOWN = 20
 """Lines about what is wrong; `--junit` has all of them."""

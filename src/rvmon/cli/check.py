@@ -25,7 +25,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "check",
-        help="find what is wrong in specifications",
         description="Find what is wrong in specifications: all errors and warnings of each file.",
         epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
     )

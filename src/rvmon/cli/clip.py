@@ -39,7 +39,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "clip",
-        help="a recording cut around an attempt; a file that reproduces it",
         description="Cut a recording around an attempt, in the recording's own format. The last "
         "values of signals before the cut are carried to its start. The piece is evaluated again; "
         "the exit code is 1 if the attempt gets another verdict there.",

@@ -23,7 +23,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compare",
-        help="show what has changed between two files of verdicts",
         description="Hold the verdicts on recordings against earlier ones, by recording and "
         "requirement: what fails now, what is fixed, what is no longer shown. Files are those of "
         "`rvmon run --out` (.csv, .parquet, .sqlite, .duckdb) and of `--format json` (.json). The "

@@ -27,7 +27,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compile",
-        help="a specification as C that runs alone, or as automata",
         description="Write a monitor that needs nothing of rvmon: C99 (the core that judges, the "
         "plan that it judges by, a header for C++) that runs in one block of memory. Or the "
         "automata: dot for Graphviz, json, hoa (the least LTL3 monitors of requirements without "

@@ -24,7 +24,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "conform",
-        help="hold recorded runs against a network of timed automata",
         description="Decide whether recordings (.csv, .jsonl) are runs of a network, as far as "
         "they show: their events are the labels of its edges, or its channels. The first sample "
         "is the network's start. Exit code 0: all conform; 1: some do not, or it is not decided; "

@@ -24,7 +24,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "cover",
-        help="what tests have covered, what is missing, and what each test is good for",
         description="Show what the tests of one or several databases of coverage have covered "
         "together: groups and total, verdicts, and first of all what is wrong.",
         epilog="examples: rvmon run examples/base.rv examples/base.csv --coverage base.cov; "

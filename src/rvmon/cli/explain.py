@@ -25,7 +25,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "explain",
-        help="a requirement, or a diagnostic's code, in plain words",
         description="Explain a requirement: in plain words, its automaton, and the shortest runs "
         "on which it passes, fails, is not triggered, stays open. Two: where they differ. "
         "A diagnostic's code such as RV012: its page; `codes`: all codes.",

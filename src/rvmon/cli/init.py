@@ -22,7 +22,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "init",
-        help="a starter specification from a recording",
         description="Write a starter specification from a recording: signals with guessed types, "
         "ranges and rates, events, and requirements that run at once.",
         epilog="examples: rvmon init examples/base.csv -o mine.rv; rvmon run mine.rv "

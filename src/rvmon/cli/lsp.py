@@ -14,7 +14,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "lsp",
-        help="the language server that editors start",
         description="Serve an editor over standard input and output by the Language Server "
         "Protocol: findings, explanations, definitions, names and units, layout. It ends when the "
         "editor does.",

@@ -46,7 +46,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "run",
-        help="check recordings against a specification",
         description="Check recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
         "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
         "I inconclusive.",
@@ -123,7 +122,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--evidence",
         metavar="FILE",
         help="keep recordings, specification and verdicts in one archive; "
-        "`rvmon evidence verify FILE` sees whether it holds",
+        "`rvmon evidence FILE` sees whether it holds",
     )
     parser.add_argument(
         "--strict", action="store_true", help="exit with 1 also if a requirement is I or NT"

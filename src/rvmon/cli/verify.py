@@ -27,7 +27,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "verify",
-        help="model-check a network of timed automata",
         description="Decide queries on a network of timed automata (.ta, or UPPAAL's .xml), each "
         "with a timed run that shows why. Exit code 0: all hold; 1: some do not, or the budget "
         "ended first.",

@@ -42,7 +42,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "watch",
-        help="monitor a running robot: verdicts as they are decided",
         description="Evaluate JSON lines as they arrive, and report each verdict as soon as it is "
         "decided: a missed deadline is reported when it is over. A change of the specification is "
         "taken up at once. Ends with the stream, or with Ctrl-C.",

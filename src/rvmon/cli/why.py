@@ -27,7 +27,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "why",
-        help="an attempt taken apart: why it passed, failed or stayed open",
         description="Take one attempt apart: when each part of its requirement was true.",
         epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
     )

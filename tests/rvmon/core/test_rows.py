@@ -45,7 +45,7 @@ def test_without_a_declared_column_all_is_unknown(form, tmp_path):
         parquet = pytest.importorskip("pyarrow.parquet")
         table, trace = arrow.table(trace), tmp_path / "a.parquet"
         parquet.write_table(table, trace)
-    with pytest.raises(rvmon.MissingNameError, match="`e`, read by R1"):
+    with pytest.raises(rvmon.errors.MissingNameError, match="`e`, read by R1"):
         spec.evaluate(trace)
     report = spec.evaluate(trace, allow_missing=True)
     assert report.verdicts == {"R1": "I"}

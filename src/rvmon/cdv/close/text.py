@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.coverage.nearest import Goal
-from rvmon.report.coverage_summary import counted, name_of, share_text
-from rvmon.report.percent import percent_text
+from rvmon.report.coverage_summary import name_of
+from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
 
 if TYPE_CHECKING:
