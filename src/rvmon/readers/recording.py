@@ -168,11 +168,10 @@ class FileRecording:
             yield from parquet_batches_of(local_path(self.path), self._schema)
             return
         with opened(self.path) as (plain, self._open_file):
-            size = os.fstat(self._open_file.fileno()).st_size
             if self._format == "csv":
                 from rvmon.readers.csv_batch import csv_batches
 
-                yield from csv_batches(plain, size, self._layout)
+                yield from csv_batches(plain, self._layout)
             else:
                 from rvmon.readers.jsonl_batch import jsonl_batches
 
