@@ -148,6 +148,8 @@ class _Reader:
         Raises:
             TraceError: a cell is none of its kind; the rows above it have been given out.
         """
+        if text.start == len(text.rest):
+            return _ALL, 0
         room = max(1, text.rest.count(b"\n", text.start) + text.rest.count(b"\r", text.start))
         numbers = np.empty((len(self._kinds), room), np.int64)
         says = np.empty((len(self._kinds), room), np.uint8)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import rvmon
-from rvmon.readers import csv_batch, line_chunks, recording
+from rvmon.readers import csv_batch, line_chunks
 from rvmon.readers.batch import Batch
 
 SPEC = rvmon.loads("""
@@ -24,12 +24,6 @@ requirement R1 "a"
 HEADER = ["t", "p", "speed", "count", "mode", "stop", "stop.id", "stop.part", "note"]
 ODD = ["", " ", "nan", "NaN", "-1", "7.0", "1e3", "x", '"', 'a"b', "\xa0", "\xa05", "é", "\x1f3"]
 ENDS = ["\n"] * 6 + ["\r\n", "\r", "\n\n", "\n \n", "\r\n\r\n"]
-
-
-@pytest.fixture(autouse=True)
-def none_is_tiny(monkeypatch):
-    """Little text is read in columns, too."""
-    monkeypatch.setattr(recording, "TINY", 0)
 
 
 def quoted(rng: random.Random, cell: str) -> str:
