@@ -134,6 +134,12 @@ bool same_number(const rv_number *a, const rv_number *b);
 rv_number program_value(const run *r, int32_t place, const int32_t *at);
 rv_number number_of_double(double x);
 
+/* ---- functions.c */
+#define MOST_ARGUMENTS 4
+int32_t arguments_of(int32_t op); /* how many an operation has; 0: it is none */
+rv_number function_of_wholes(int32_t op, int64_t a, int64_t b);
+double function_of_reals(int32_t op, const double *x); /* not finite: unknown */
+
 /* ---- values.c: samples, held values, what occurred */
 void mark(run *r, int32_t name);
 uint8_t remember(history *h, int64_t t, const rv_number *value);
