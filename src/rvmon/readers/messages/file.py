@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Collection, Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from rvmon.errors import TraceError
@@ -26,7 +26,7 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
         TraceError: it cannot be read.
         OSError: it cannot be opened.
     """
-    try:
+    with _sizes():
         if form == "mcap":
             from rvmon.readers.messages.mcap import mcap_messages
 
@@ -38,9 +38,16 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
         from rvmon.readers.messages.ros import BagMessages
 
         return BagMessages(path, form, schema.binding.definitions)
-    except MemoryError:  # to open it takes little, unless what it says of its sizes is wrong
+
+
+@contextmanager
+def _sizes() -> Iterator[None]:
+    """Messages take little memory, unless what the file says of their sizes is wrong."""
+    try:
+        yield
+    except MemoryError:
         raise TraceError(
-            "cannot be opened: a size in it is beyond the memory: copy it again if it is damaged, "
+            "cannot be read: a size in it is beyond the memory: copy it again if it is damaged, "
             "or raise --max-memory"
         ) from None
 
@@ -101,13 +108,13 @@ class MessageFile:
         Raises:
             TraceError: one cannot be read.
         """
-        with closing(self._opened()) as source:
+        with closing(self._opened()) as source, _sizes():
             yield from source.read(topics)
 
     def rows(self, *, ordered: bool) -> Iterator[Row]:
         """The rows of its messages; see `message_rows`."""
         if not self._bounds:
             raise TraceError("holds no topic that is read")
-        with closing(self._ready.pop() if self._ready else self._opened()) as source:
+        with closing(self._ready.pop() if self._ready else self._opened()) as source, _sizes():
             self.skew = skew = Skew()
             yield from message_rows(source, self._bounds, self._schema, skew, ordered=ordered)
