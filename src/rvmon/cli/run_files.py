@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.reading import reading_words
 from rvmon.cli.say import say
+from rvmon.readers.held import HeldRecording
+from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 
 if TYPE_CHECKING:
@@ -66,10 +68,12 @@ def write_files(
 
         write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
 
-    def read(trace: str) -> list[Sample]:
+    def read(trace: str) -> Sequence[Sample]:
         # What came over standard input is gone: its page has the verdicts, not the signals.
         place = arguments.traces[0] if reproducer else trace
-        return [] if trace == "-" else list(spec.recording(place))
+        if trace == "-":
+            return []
+        return HeldRecording(Source(spec.recording(place)).pieces(), spec.checked.events)
 
     if arguments.mcap:
         from rvmon.export.verdicts_mcap import write_verdicts

@@ -13,6 +13,7 @@ from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor.core.watching import TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
+from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.formula import Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print.printer import format_formula
@@ -107,7 +108,7 @@ def look_through(
     begin: int | None = None
     instants = array("q")
     unborn = set(spec.signals)
-    for piece in pieces:
+    for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
         times = (piece.t,) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])

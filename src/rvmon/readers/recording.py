@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
-from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
+from rvmon.readers.csv_rows import Layout, read_layout, split_lines
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMATS, MESSAGE_FORMS, form_of_folder
@@ -124,26 +124,23 @@ class FileRecording:
         Raises:
             TraceError: with file and line; the samples before it have been given out.
         """
-        if self._format == "parquet":
-            from rvmon.readers.parquet import parquet_samples
+        with self._named_errors():
+            yield from self.rows.samples(self._each_row())
+            if not self.rows.count:
+                raise TraceError("holds no sample")
 
-            with self._named_errors():
-                yield from self._merged(parquet_samples(local_path(self.path), self._schema))
-            return
+    def _each_row(self) -> Iterator[Row]:
         if self._messages is not None:
-            with self._named_errors():
-                yield from self._merged(self._messages.rows(ordered=self._ordered))
-            return
-        with self._text() as text:
-            lines = bounded_lines(text)
-            if self._format == "csv":
-                rows = split_lines(lines)
-                yield from self._merged(csv_samples(rows, self._layout(rows)))
-            else:
-                from rvmon.readers.jsonl_rows import jsonl_samples
+            yield from self._messages.rows(ordered=self._ordered)
+        elif self._format == "jsonl" and not can_be_read_again(self.path):
+            from rvmon.readers.jsonl_rows import jsonl_samples
 
-                seen = self._seeing_unit(lines)
-                yield from self._merged(jsonl_samples(seen, self._schema, self.ignored))
+            with self._text() as text:
+                seen = self._seeing_unit(bounded_lines(text))
+                yield from jsonl_samples(seen, self._schema, self.ignored)
+        else:
+            for piece in self._batches():
+                yield from piece.numbered() if hasattr(piece, "numbered") else piece
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """The recording in order: rows as columns where it has such, else samples; see `__iter__`.
@@ -185,11 +182,6 @@ class FileRecording:
             if number == 0 and self._schema.stamps is None and '"t_ns"' in line:
                 self._stamps = stamps_of("t_ns")
             yield line
-
-    def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
-        yield from self.rows.samples(rows)
-        if not self.rows.count:
-            raise TraceError("holds no sample")
 
     @property
     def fraction_read(self) -> float:
