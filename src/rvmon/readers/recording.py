@@ -19,12 +19,17 @@ from rvmon.errors import TraceError
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.forms import MESSAGE_FORMATS, MESSAGE_FORMS, form_of_folder
+from rvmon.readers.messages.forms import (
+    ARRAYS,
+    MESSAGE_FORMATS,
+    MESSAGE_FORMS,
+    form_of_folder,
+)
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Outage, Sample
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
@@ -76,7 +81,8 @@ class FileRecording:
         self._ordered = ordered
         self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
-        if self.is_of_messages and schema.stamps is not None:
+        brings_stamps = self.is_of_messages and self._format not in ARRAYS
+        if brings_stamps and schema.stamps is not None:
             raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
         if not self.is_of_messages and schema.binding != BY_NAME:
             message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
@@ -113,6 +119,11 @@ class FileRecording:
     def unread(self) -> Sequence[str]:
         """The columns, or topics and fields, that nothing is declared for."""
         return list(self.ignored) if self._messages is None else self._messages.unread
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost, in order; text is whole, or an error."""
+        return () if self._messages is None else self._messages.outages
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names

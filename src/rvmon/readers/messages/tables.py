@@ -64,6 +64,7 @@ class TableMessages:
 
     end: int | None = None
     count = 0
+    outages: tuple[()] = ()
 
     def __init__(self, folder: Path) -> None:
         self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
