@@ -6,7 +6,7 @@ import os
 import sys
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import replace
 from errno import ENOENT
 from io import TextIOWrapper
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
+from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
@@ -178,7 +179,7 @@ class FileRecording:
 
             yield from parquet_batches_of(local_path(self.path), self._schema)
             return
-        with opened(self.path) as (plain, self._open_file):
+        with self._opened() as (plain, self._open_file):
             size = os.fstat(self._open_file.fileno()).st_size
             if self._format == "csv":
                 from rvmon.readers.csv_batch import csv_batches
@@ -265,7 +266,13 @@ class FileRecording:
             _, header = next(rows)
         except StopIteration:
             raise TraceError("is empty: expected a header with a time column `t`") from None
-        return read_layout(header, self._schema)
+        return read_layout(*bare_names(header, self._schema))
+
+    def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:
+        """The text, and the file as it lies there."""
+        if self._format == "csv":
+            return opened_as_csv(self.path, self._schema.stamps)
+        return opened(self.path)
 
     @contextmanager
     def _text(self) -> Iterator[TextIO]:
@@ -276,7 +283,7 @@ class FileRecording:
             else:
                 # The mark that some editors begin a text with would make its first cell odd.
                 with (
-                    opened(self.path) as (plain, self._open_file),
+                    self._opened() as (plain, self._open_file),
                     TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
                 ):
                     yield text
