@@ -34,6 +34,7 @@ COMMANDS = {
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
     "clip": "a recording cut around an attempt; a file that reproduces it",
+    "look": "what a recording holds, over time",
     "init": "a starter specification from a recording",
     "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as C that runs alone, or as automata",

@@ -269,6 +269,16 @@ def _stamp(cells: Sequence[str], parts: Sequence[str], stamps: Stamps) -> str:
         raise TraceError(f"time `{shorten(text)}` is not {form}") from None
 
 
+def name_and_unit(column: str) -> tuple[str, str]:
+    """A name without the unit that stands behind it in brackets, and that.
+
+    >>> name_and_unit("speed [m/s]"), name_and_unit("mode")
+    (('speed', 'm/s'), ('mode', ''))
+    """
+    found = _UNIT_IN_NAME.fullmatch(column)
+    return (column, "") if found is None else (found["name"], found["unit"] or found["same"] or "")
+
+
 def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema]:
     """A header without the units that stand in it, where what is left is a name that is read.
 
@@ -280,10 +290,9 @@ def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema
     aliases = aliases_of(schema)
     names: list[str] = []
     for column in header:
-        found = _UNIT_IN_NAME.fullmatch(column)
-        unit = "" if found is None else (found["unit"] or found["same"] or "")
-        name = aliases.get(column, "" if found is None else found["name"])
-        if found is not None and name in declared:
+        bare, unit = name_and_unit(column)
+        name = aliases.get(column, bare)
+        if name in declared:
             _expect_unit(column, name, unit, schema)
         is_time = schema.stamps is None and name in DEFAULT_COLUMNS
         if column in aliases or name in header or not (name in declared or is_time):
