@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rvmon.starter.course import Course
+from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
 
@@ -57,6 +59,7 @@ class Column:
         first: the instant of the first update, ticks; `None` if there was none.
         gaps_in_value: whether it is unknown somewhere: at the first sample, or by a value.
         instants: of an event its occurrences, of a truth value where it became true; ticks.
+        course: how it goes over time.
     """
 
     name: str
@@ -71,6 +74,7 @@ class Column:
     first: int | None = None
     gaps_in_value: bool = False
     instants: tuple[int, ...] = ()
+    course: Course = field(default_factory=lambda: Course(0))
 
     @property
     def changes(self) -> bool:
@@ -95,6 +99,7 @@ class Profile:
         end: the last instant, ticks.
         samples: how many.
         lateness: how far its time goes backwards at most, ticks; 0 if it is in order.
+        outages: what it lost, as far as it says so.
     """
 
     path: str
@@ -104,3 +109,4 @@ class Profile:
     end: int
     samples: int
     lateness: int
+    outages: tuple[Outage, ...] = ()

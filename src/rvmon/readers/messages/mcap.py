@@ -68,6 +68,8 @@ def mcap_reader(file: BinaryIO) -> Any:
 class _OtherMessages:
     """An open MCAP file of any encodings; see `mcap_messages`."""
 
+    outages: tuple[()] = ()
+
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
         self._definitions = definitions
         self._file = open(path, "rb")  # noqa: SIM115 - closed by `close`
