@@ -95,6 +95,8 @@ class _Truth:
                 return self._plain.before_actions(body)
             case PathOp.EVERY_NEXT:
                 return everywhere - self._plain.before_actions(everywhere - body)
+            case _:
+                raise AssertionError(f"{op} speaks of one run")
 
     def _until(self, body: Regions, bound: int | None, left: Regions, *, every: bool) -> Regions:
         if bound is None:

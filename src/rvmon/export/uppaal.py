@@ -34,7 +34,7 @@ _HEAD = """<?xml version="1.0" encoding="utf-8"?>
 'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
 <nta>
 """
-_NEXT = (PathOp.SOME_NEXT, PathOp.EVERY_NEXT)
+_OUTERMOST = list(PathOp)[:4]
 _GRID = (200, 150)
 """Distance of locations in a drawing, right and down."""
 
@@ -174,7 +174,7 @@ def _formula(names: Names, formula: Expression | LeadsToFormula) -> str:
         case LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
             return f"{names.expression(left)} --> {names.expression(right)}"
         case PathFormula(op, body, None, left) if (
-            left == TRUE and op not in _NEXT and not has_paths(body)
+            left == TRUE and op in _OUTERMOST and not has_paths(body)
         ):
             return names.expression(formula)
         case _:

@@ -9,6 +9,7 @@ from math import prod
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
+from rvmon.timed.language.assumed import assuming
 from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.declare import Findings, Parts, declare, refuse_double
 from rvmon.timed.language.instantiate import processes_of
@@ -152,6 +153,9 @@ def _signals(written: Iterable[SignalText], names: Names, findings: Findings) ->
 def _formula(
     written: syntax.Expression, resolver: Resolver, top: Scope
 ) -> Expression | LeadsToFormula:
+    if isinstance(written, syntax.Assuming):
+        asked = _formula(written.query, resolver, top)
+        return assuming(asked, resolver.expression(written.premise, top), written.span)
     if not isinstance(written, syntax.LeadsTo):
         return resolver.expression(written, top)
     left, right = resolver.expression(written.left, top), resolver.expression(written.right, top)

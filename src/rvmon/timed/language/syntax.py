@@ -117,6 +117,15 @@ class LeadsTo:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class Assuming:
+    """A query about the runs that a formula holds of."""
+
+    query: Expression
+    premise: Expression
+    span: Span
+
+
 Expression = (
     Number
     | Name
@@ -129,6 +138,7 @@ Expression = (
     | Quantified
     | Path
     | LeadsTo
+    | Assuming
 )
 
 
