@@ -19,7 +19,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "look",
-        help="what a recording holds, over time",
         description="Show every signal and event of a recording over time: kind, unit, rate, "
         "longest gap, range, and what was lost. With a specification, what feeds its requirements "
         "comes first.",

@@ -60,6 +60,8 @@ _LINES = {
     "`property E<> (…)`: upon its `input` part, its `output` part is owed within D",
     ("monitor as written",): "`monitor as written`: the requirement's `property` itself, on every "
     "run",
+    ("monitor as cover",): "`monitor as cover`: the requirement's `property E<> …` is a goal that "
+    "some run should show",
     ("source", "rationale", "severity", "tags"): '`source "…"`, `rationale "…"`, `severity high`, '
     "`tags a, b`: kept and shown",
     ("let",): "`let v = expression`: the value at the trigger, for the consequent",

@@ -44,6 +44,7 @@ _WORDS = {
     "IGNORE_NAN": "`ignore NaN`",
     "MONITOR_AS_RESPONSE": "`monitor as response`",
     "MONITOR_AS_WRITTEN": "`monitor as written`",
+    "MONITOR_AS_COVER": "`monitor as cover`",
     "MAX_DELAY": "`max delay`",
     "COMPARE": "a comparison",
     "MINUS": "`-`",

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf, log, prod
-from typing import assert_never
 
 from rvmon.timed.model.expressions import (
     TRUE,
@@ -24,6 +23,8 @@ from rvmon.timed.model.guards import is_discrete
 from rvmon.timed.model.network import Assignment, Edge, Network, Reset
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
+from rvmon.timed.search.linear import Ways, WayState
+from rvmon.timed.search.nested import together
 from rvmon.timed.search.programs import Programs
 from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
 from rvmon.timed.zones.zone_unions import (
@@ -54,6 +55,7 @@ class Seek(IntEnum):
     LATE_AFTER = 5
     NESTED = 6
     START = 7
+    RUN = 8
 
 
 class Choose(IntEnum):
@@ -81,6 +83,8 @@ class Sought:
         goal: normalised; where runs lead, or from where they are watched, or what holds where
             there is no deadlock.
         inside: normalised; where runs stay, or what holds where there is a deadlock.
+        ways: the automaton of a formula of LTL, that accepts the run.
+        progress: whether time has to pass on for ever on the run, beside what `ways` says.
         nested: normalised; where runs lead, or what holds at the start, if that speaks of runs.
         choose: among several runs.
         bound: units of time, if there is one.
@@ -90,6 +94,8 @@ class Sought:
     goal: Expression | None = None
     inside: Expression | None = None
     nested: Expression | None = None
+    ways: Ways | None = None
+    progress: bool = False
     choose: Choose = Choose.SHORTEST
     bound: int | None = None
 
@@ -98,6 +104,7 @@ class Sought:
         """Whether one more clock belongs to the query."""
         return (
             self.bound is not None
+            or self.progress
             or self.choose is Choose.FASTEST
             or (self.nested is not None and has_bounds(self.nested))
         )
@@ -105,7 +112,14 @@ class Sought:
     @property
     def is_levelled(self) -> bool:
         """Whether only states that can do the same stand for each other, not those that do more."""
-        return self.kind in (Seek.DEADLOCK, Seek.STAY, Seek.STAY_AFTER, Seek.NESTED, Seek.START)
+        return self.kind in (
+            Seek.DEADLOCK,
+            Seek.STAY,
+            Seek.STAY_AFTER,
+            Seek.NESTED,
+            Seek.START,
+            Seek.RUN,
+        )
 
 
 class Plan:
@@ -136,6 +150,8 @@ class Plan:
         automata, locations, edges = self._automata()
         self.goal = alternatives_of(sought.goal, due)
         self.inside = alternatives_of(sought.inside, due)
+        states = () if sought.ways is None else sought.ways.states
+        self.inside += [one for state in states for one in alternatives_of(together(state.label))]
         goal = self._alternatives(self.goal)
         inside = self._alternatives(self.inside)
         if sought.nested is not None:
@@ -156,10 +172,13 @@ class Plan:
             (3, self._extra(sought, timer + 1)),
             (4, self._tree),
             (3, self._pieces),
+            (4, _way_rows(states)),
+            (1, [arc for state in states for arc in state.arcs]),
         ]
-        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else 0
-        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer]
-        self.numbers = _packed([*head, sought.is_levelled, late or 0], sections)
+        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
+        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer, sought.is_levelled]
+        sets = 0 if sought.ways is None else sought.ways.sets
+        self.numbers = _packed([*head, int(late or 0), sets], sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
 
@@ -240,7 +259,9 @@ class Plan:
     def _extra(self, sought: Sought, timer: int) -> list[int]:
         """What the query compares clocks with, in every location."""
         bounds = no_bounds(len(self._network.clocks))
-        for formula in (sought.goal, sought.inside, sought.nested):
+        states = () if sought.ways is None else sought.ways.states
+        labels = [part for state in states for part in state.label]
+        for formula in (sought.goal, sought.inside, sought.nested, *labels):
             if formula is not None:
                 bounds = bounds.joined([formula_bounds(formula, self._network)])
         rows = _limit_rows(bounds)
@@ -283,7 +304,7 @@ class Plan:
             case PathOp.EVERY_NEXT:
                 return self._row(_NOT, self._row(_NEXT, self._row(_NOT, body)))
             case _:
-                assert_never(op)
+                raise AssertionError(f"{op} speaks of one run")
 
     def _stay(self, body: int, left: int, bound: int) -> int:
         """A run on which the body holds for ever, or until both it and `left` end at once."""
@@ -307,6 +328,14 @@ def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) 
     for _, section in sections:
         numbers += section
     return array("i", numbers).tobytes()
+
+
+def _way_rows(states: Iterable[WayState]) -> list[int]:
+    rows, arcs = list[int](), 0
+    for state in states:
+        rows += (state.starts, state.sets, arcs, len(state.arcs))
+        arcs += len(state.arcs)
+    return rows
 
 
 def _limit_rows(bounds: ClockBounds) -> list[int]:
