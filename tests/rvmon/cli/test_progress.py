@@ -5,7 +5,8 @@ from contextlib import redirect_stderr
 
 import pytest
 
-from rvmon.cli import main, progress
+from rvmon.cli import main
+from rvmon.cli import output as progress
 
 
 class Screen(io.StringIO):

@@ -9,7 +9,8 @@ import pytest
 from rich.table import Table
 
 import rvmon
-from rvmon.cli import main, say
+from rvmon.cli import main
+from rvmon.cli import output as say
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.report.terminal import Terminal
 

@@ -189,7 +189,7 @@ def test_the_end_of_the_editor(ending):
 def test_without_pygls(monkeypatch, capsys):
     """Where the extra is missing its line of installation is named."""
     monkeypatch.setitem(sys.modules, "pygls.lsp.server", None)
-    monkeypatch.delitem(sys.modules, "rvmon.lsp.server", raising=False)
+    monkeypatch.delitem(sys.modules, "rvmon.cli.lsp.server", raising=False)
     assert main(["lsp"]) == 2
     assert "pip install 'rvmon[lsp]'" in capsys.readouterr().err
 

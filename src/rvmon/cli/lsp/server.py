@@ -14,13 +14,13 @@ from pygls.lsp.server import LanguageServer
 from pygls.uris import to_fs_path
 
 from rvmon import __version__
+from rvmon.cli.lsp.completion import hover, proposals
+from rvmon.cli.lsp.document import Document, Text
+from rvmon.cli.lsp.names import meanings
+from rvmon.cli.lsp.protocol import UNREADABLE, Protocol
 from rvmon.diagnostics.span import Source, Span
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
-from rvmon.lsp.completion import hover, proposals
-from rvmon.lsp.document import Document, Text
-from rvmon.lsp.names import meanings
-from rvmon.lsp.protocol import UNREADABLE, Protocol
 from rvmon.spec.print.formatter import format_text
 from rvmon.spec.syntax.expressions import Name
 from rvmon.spec.syntax.parse import parse_expression

@@ -11,7 +11,7 @@ from lsprotocol.types import (
     TextDocumentContentChangeWholeDocument,
 )
 
-from rvmon.lsp.document import Text
+from rvmon.cli.lsp.document import Text
 
 UNITS = {
     "utf-8": lambda text: len(text.encode()),

@@ -5,10 +5,29 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
-from rvmon.units.unit import Unit
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit: `factor` times the product of base units to the powers of `dimension`.
+
+    Attributes:
+        symbol: as people write it; empty for a plain number.
+        dimension: exponent by base unit, sorted by its symbol, none zero.
+        factor: exact, but for degrees of angle (60 digits of π).
+    """
+
+    symbol: str
+    dimension: tuple[tuple[str, int], ...] = ()
+    factor: Fraction = Fraction(1)
+
+
+PLAIN = Unit("")
+"""The unit of a plain number."""
+
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494")
 

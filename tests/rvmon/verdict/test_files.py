@@ -9,9 +9,9 @@ from tests.tools.hostile import hostile_names
 
 import rvmon
 from rvmon.errors import RvmonError
-from rvmon.results.read import Kept, read_results
-from rvmon.results.write import refuse_format, write_results
+from rvmon.verdict.read_rows import Kept, read_results
 from rvmon.verdict.rows import VerdictRow, broken_rows
+from rvmon.verdict.write_rows import refuse_format, write_results
 
 SPEC = """signal speed : real
 event go(id: int)
@@ -142,7 +142,7 @@ def test_a_verdict_that_there_is_not_is_refused(tmp_path):
 
 def test_a_package_that_is_missing_is_named(monkeypatch):
     """Before anything is judged."""
-    monkeypatch.setattr("rvmon.results.write.find_spec", lambda _: None)
+    monkeypatch.setattr("rvmon.verdict.write_rows.find_spec", lambda _: None)
     with pytest.raises(RvmonError, match="needs pyarrow, which is not installed: pip install"):
         refuse_format("v.parquet")
 

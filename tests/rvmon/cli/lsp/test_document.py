@@ -9,17 +9,17 @@ from lsprotocol.types import Position, Range
 from pygls.uris import to_fs_path
 from tests.tools.code_pages import page
 
+from rvmon.cli.lsp.completion import hover, proposals
+from rvmon.cli.lsp.document import Document, Text
+from rvmon.cli.lsp.names import _LINES, meanings
 from rvmon.diagnostics.span import Source, Span
 from rvmon.explain.codes import every_rule, page_of
-from rvmon.lsp.completion import hover, proposals
-from rvmon.lsp.document import Document, Text
-from rvmon.lsp.names import _LINES, meanings
 from rvmon.spec.syntax.expected import accepted_terminals
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.split import split_items
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 SPEC = """spec demo "😋 all kinds of names"
 signal state : {idle, moving}  output
 signal s : real [m]  input  stale after 200 ms

@@ -25,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way to serve
     """Serve until the editor ends it, and return the exit code."""
     try:
-        from rvmon.lsp.server import Server
+        from rvmon.cli.lsp.server import Server
     except ImportError:
         raise not_installed("the language server", "pygls") from None
     for ending in (signal.SIGINT, signal.SIGTERM):  # at once: a thread waits for the editor

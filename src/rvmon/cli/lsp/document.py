@@ -23,12 +23,12 @@ from lsprotocol.types import (
 from pygls.uris import from_fs_path, to_fs_path
 
 from rvmon.cache import cache_folder
+from rvmon.cli.lsp.names import Names
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.nearest import proposed
 from rvmon.diagnostics.shown import shown
 from rvmon.diagnostics.span import Source, Span
 from rvmon.explain.codes import page_of
-from rvmon.lsp.names import Names
 from rvmon.spec.compile import Compilation, compilation
 from rvmon.spec.syntax.expressions import Ident
 from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 from itertools import product
 
+from rvmon.cli.lsp.names import Names, about_word
 from rvmon.diagnostics.span import Span
 from rvmon.explain.words import requirement_in_words
-from rvmon.lsp.names import Names, about_word
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
 from rvmon.spec.syntax.expected import accepted_terminals
@@ -18,7 +18,7 @@ from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem, Requi
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.split import split_items
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS
-from rvmon.units.table import unit_table
+from rvmon.units import unit_table
 
 _NO_CODE = re.compile(r'`[^`\n]*`|"(?:[^"\\\n]|\\.)*"')
 _BEGUN = re.compile(r"(?:`[^`\n]*|[^\W\d][\w.]*|%)\Z")

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import msgspec
 
 from rvmon.errors import RvmonError, TraceError, not_installed
-from rvmon.results.write import TABLE, refuse
 from rvmon.verdict.report import Report
 from rvmon.verdict.rows import broken_rows
 from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.write_rows import TABLE, refuse
 
 
 class Kept(NamedTuple):

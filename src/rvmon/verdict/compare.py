@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from rvmon.results.read import Kept
+from rvmon.verdict.read_rows import Kept
 from rvmon.verdict.verdict import Verdict, fold
 
 

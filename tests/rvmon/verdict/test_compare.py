@@ -2,8 +2,8 @@
 
 import pytest
 
-from rvmon.results.compare import Change, compare
-from rvmon.results.read import Kept
+from rvmon.verdict.compare import Change, compare
+from rvmon.verdict.read_rows import Kept
 
 
 def rows(*verdicts, recording="a.csv", requirement="R1", error=""):
