@@ -37,10 +37,9 @@ from rvmon.explain.graph import quoted
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.report.junit import junit_xml
 from rvmon.report.markup import e
-from rvmon.report.pages import component, data
+from rvmon.report.pages import component, data, table_html
 from rvmon.report.run_text import print_reports
 from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
-from rvmon.report.table_html import table_html
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind

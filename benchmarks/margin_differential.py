@@ -22,10 +22,9 @@ from tests.tools.shrink import shrink
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case
+from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.margins import margins
-from rvmon.testing.show import show_case
 
 
 class Specs:

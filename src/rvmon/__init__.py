@@ -24,9 +24,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.errors import RvmonError, SpecError, TraceError
-    from rvmon.loading import load, loads
     from rvmon.monitor import Monitor
-    from rvmon.session import Spec
+    from rvmon.session import Spec, load, loads
     from rvmon.spec.checked.specification import Requirement
     from rvmon.trace.sample import Sample
     from rvmon.verdict.attempt import Attempt
@@ -62,8 +61,8 @@ _HOMES = {
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",
     "Verdict": "rvmon.verdict.verdict",
-    "load": "rvmon.loading",
-    "loads": "rvmon.loading",
+    "load": "rvmon.session",
+    "loads": "rvmon.session",
     **{name: "rvmon.errors" for name in __all__ if name.endswith("Error")},
 }
 

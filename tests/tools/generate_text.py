@@ -11,7 +11,7 @@ from typing import Any
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.rules.rule import Findings
 from rvmon.spec.syntax.parse import grammar, parse_spec
-from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.generate.choices import Rng, chance, pick
 
 HEAD = """spec demo
 time sampled

@@ -1,6 +1,16 @@
-"""Bindings from TOML files."""
+"""Bindings from TOML files, and the schema that a specification has under one."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING, Unpack
+
+from rvmon.readers.naming import read_as
+from rvmon.trace.schema import Schema
+
+if TYPE_CHECKING:
+    from rvmon.readers.reading import SchemaArguments
+    from rvmon.spec.checked.specification import CheckedSpec
+
 
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
@@ -20,7 +30,7 @@ from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
+from rvmon.units import UnknownUnitError, parse_unit
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 
@@ -214,3 +224,27 @@ def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any], what: st
         if key not in known:
             listed = f"there are {', '.join(known)}" if known else "it has none"
             raise RvmonError(f"no {what} `{key}` is declared: {did_you_mean(key, known, listed)}")
+
+
+def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:
+    """A schema for recordings that are read with other options.
+
+    Args:
+        spec: the specification.
+        schema: of it; what no option gives stays as it says.
+        **options: see `rvmon.session.Spec.reading`; so are the errors.
+    """
+    binding = None
+    if (path := options.get("binding")) is not None:
+        from rvmon.binding.load import load_binding
+
+        binding = load_binding(path, spec)
+    return read_as(
+        schema,
+        time=options.get("time"),
+        columns=options.get("columns"),
+        nan=options.get("nan"),
+        no_update=options.get("no_update"),
+        binding=binding,
+        clock=options.get("clock"),
+    )

@@ -12,8 +12,7 @@ from rvmon.cdv.examples import Cell
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import INTERVALS, RobotTables
-from rvmon.report.pages import render
-from rvmon.report.table_html import table_html
+from rvmon.report.pages import render, table_html
 
 
 def campaign_page(

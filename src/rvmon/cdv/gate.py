@@ -16,7 +16,7 @@ from rvmon.cdv.summary import differences, missed
 from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
-from rvmon.loading import load
+from rvmon.session import load
 from rvmon.verdict.verdict import Verdict
 
 RobotRequirement = tuple[str, str]

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli.options import at_most
+from rvmon.cli.output import rendered, spell, warn
 from rvmon.cli.reading import with_values
 from rvmon.cli.reproduced import relax
-from rvmon.cli.say import rendered, spell, warn
 from rvmon.errors import EXTRAS, DiagnosedError, RvmonError, not_installed
 from rvmon.execute.ended import interrupted_by_sigterm
 

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.reading import allowed_names, opened, reading_spec
-from rvmon.loading import load
 from rvmon.readers.recording import FileRecording, can_be_read_again
-from rvmon.session import Spec
+from rvmon.session import Spec, load
 from rvmon.trace.sample import Sample
 from rvmon.verdict.covered import IllegalHit
 

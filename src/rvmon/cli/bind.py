@@ -6,8 +6,7 @@ import argparse
 import shlex
 
 from rvmon.cli.options import add_const, constants_of
-from rvmon.cli.progress import busy
-from rvmon.cli.say import say, warn
+from rvmon.cli.output import busy, say, warn
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -29,8 +28,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Look at the topics, print the binding, and return the exit code."""
     from rvmon.binding.propose import propose
-    from rvmon.loading import load
     from rvmon.readers.recording import messages_of
+    from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     with busy(f"reading {arguments.data}"):

@@ -24,8 +24,7 @@ from rvmon.cdv.outcome import Results
 from rvmon.cdv.plan import Plan
 from rvmon.cdv.program import typed
 from rvmon.cli.campaign_run import specs_of, written
-from rvmon.cli.progress import bar
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
 from rvmon.writing import write_whole

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import span, ticks
 from rvmon.cli.options import add_const, constants_of, refuse_over
+from rvmon.cli.output import say, warn
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
     add_allow_missing,
@@ -21,7 +22,6 @@ from rvmon.cli.reading import (
     reading_spec,
 )
 from rvmon.cli.reproduced import ENDING
-from rvmon.cli.say import say, warn
 from rvmon.errors import RvmonError
 from rvmon.readers.places import name_of
 from rvmon.report.folder import refuse_no_file
@@ -81,7 +81,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Find the attempt, cut the recording, judge the piece, and return the exit code."""
     from rvmon.clipping.clip import clip, refuse_place
-    from rvmon.loading import load
+    from rvmon.session import load
 
     data = arguments.data
     out, case = _places(arguments)

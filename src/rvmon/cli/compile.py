@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
-from rvmon.cli.say import say
+from rvmon.cli.output import say
 from rvmon.diagnostics.shown import shown_json, shown_line
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.costs import CompileReport
@@ -46,7 +46,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Generate and write, and return the exit code."""
-    from rvmon.loading import load
+    from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = asked_ids(arguments, spec)

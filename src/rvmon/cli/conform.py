@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_budget, add_format, budget_of
-from rvmon.cli.progress import busy
+from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.reading import add_time
-from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
 
 if TYPE_CHECKING:

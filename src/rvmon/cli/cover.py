@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import percentage
 from rvmon.cli.options import add_format, add_max_memory
-from rvmon.cli.progress import busy
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:

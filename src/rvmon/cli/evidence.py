@@ -16,8 +16,7 @@ from rvmon.cli.evidence_write import is_recording, rows_of_judged
 from rvmon.cli.judging import judge_all
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import constants_of
-from rvmon.cli.progress import bar
-from rvmon.cli.say import say
+from rvmon.cli.output import bar, say
 from rvmon.evidence.keep import (
     Kept,
     TamperedError,
@@ -27,10 +26,10 @@ from rvmon.evidence.keep import (
     sha256_of,
 )
 from rvmon.evidence.matrix import Row, rows_by_item
-from rvmon.loading import load
-from rvmon.results.write import csv_bytes
+from rvmon.session import load
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.verdict import LAW
+from rvmon.verdict.write_rows import csv_bytes
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign

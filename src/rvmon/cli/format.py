@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from rvmon.cli.say import say, warn
+from rvmon.cli.output import say, warn
 from rvmon.writing import write_whole
 
 

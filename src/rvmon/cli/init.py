@@ -8,9 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.progress import busy
+from rvmon.cli.output import busy, say
 from rvmon.cli.reading import add_time, time_words
-from rvmon.cli.say import say
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 

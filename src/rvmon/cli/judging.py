@@ -9,8 +9,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rvmon.cli.beside import Beside, Options
+from rvmon.cli.output import bar, shown_while_reading
 from rvmon.cli.post_analysis import post_analysis
-from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import TraceError, WorkerLostError

@@ -232,7 +232,7 @@ def chosen_attempt(report: Report, name: str, exact: str | None) -> Attempt:
         RvmonError: the requirement has no attempt.
         UnknownNameError: it has others.
     """
-    from rvmon.report.afterword import without_attempts
+    from rvmon.report.wording import without_attempts
 
     attempts = sorted(report.attempts, key=lambda attempt: (attempt.in_doubt, attempt.number))
     if not attempts:

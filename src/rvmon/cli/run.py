@@ -18,6 +18,7 @@ from rvmon.cli.options import (
     ids_of,
     refuse_over,
 )
+from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
@@ -25,7 +26,6 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_files import write_files, write_results
-from rvmon.cli.say import rendered, say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from rvmon.cli.beside import Options
     from rvmon.cli.judging import Judged
     from rvmon.reproducer import Case
-    from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.known_failures import KnownFailures
     from rvmon.verdict.report import Report
 
 
@@ -191,7 +191,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
 
 
 def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
-    from rvmon.results.known import NONE_KNOWN, KnownFailures, read_known
+    from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures, read_known
 
     if arguments.known is None:
         return NONE_KNOWN
@@ -273,7 +273,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.resume and arguments.out is None:
         raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
     if arguments.out is not None:
-        from rvmon.results.write import refuse_format
+        from rvmon.verdict.write_rows import refuse_format
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)

@@ -8,17 +8,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
-from rvmon.cli.say import say
 from rvmon.readers.held import HeldRecording
 from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
-    from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
     from rvmon.trace.sample import Sample
+    from rvmon.verdict.known_failures import KnownFailures
     from rvmon.verdict.rows import VerdictRow
 
 
@@ -29,7 +29,7 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
         RvmonError: it cannot be written.
     """
     import rvmon
-    from rvmon.results import write
+    from rvmon.verdict import write_rows as write
     from rvmon.verdict.verdict import LAW
 
     about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}

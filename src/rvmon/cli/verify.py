@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_budget, add_format, budget_of
-from rvmon.cli.say import rendered, say, say_json, warn
+from rvmon.cli.output import rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -284,7 +284,7 @@ def check_spec(
     network: Network, arguments: argparse.Namespace, budget: Budget, watch: Watch | None
 ) -> int:
     """Decide, show, and return the exit code."""
-    from rvmon.loading import load
+    from rvmon.session import load
     from rvmon.timed.describe import observation_data
     from rvmon.timed.observation.observe import observe
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive, span
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
+from rvmon.cli.output import warn
 from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
-from rvmon.cli.say import warn
 from rvmon.errors import RvmonError, SpecError
 from rvmon.verdict.verdict import Verdict
 
@@ -326,7 +326,7 @@ def _live(
 
 
 def _loaded(arguments: argparse.Namespace) -> Spec:
-    from rvmon.loading import load
+    from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     columns = mapped_names(arguments.map)

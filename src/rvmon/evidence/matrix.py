@@ -12,10 +12,10 @@ from rvmon.report.pages import render
 from rvmon.report.style import MARKS
 from rvmon.report.table import plain
 from rvmon.report.terminal import in_short
-from rvmon.results.write import csv_table
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.verdict import Verdict, fold
+from rvmon.verdict.write_rows import csv_table
 
 LISTED = 100
 """Recordings, or tests, of one verdict that the page names; the table names all."""

@@ -15,10 +15,9 @@ from rvmon.coverage.model import Group, Item, combination
 from rvmon.coverage.record import TestRecord
 from rvmon.report.coverage_chart import growth_chart
 from rvmon.report.coverage_summary import LISTED, Summary, cell_text, is_grid, strategy_name
-from rvmon.report.pages import render
+from rvmon.report.pages import render, table_html
 from rvmon.report.percent import counted, share_text
 from rvmon.report.table import VerdictTable
-from rvmon.report.table_html import table_html
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict.verdict import Verdict
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
@@ -18,11 +19,14 @@ from markupsafe import Markup
 from rvmon.diagnostics.shown import shown
 from rvmon.report.markup import to_html
 from rvmon.report.percent import counted, percent_text, share_text
+from rvmon.report.proportion import interval_text
 from rvmon.report.style import MARKS, verdict_colours
+from rvmon.report.table import Counts, VerdictTable, checked_text
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+
 
 _UNIT = re.compile(r"(?<=\d) (?=(s|ns|us|ms|min|h|m|cm|mm)\b)")
 """The space between a number and its unit, where no line should end."""
@@ -121,3 +125,38 @@ def _as_shown(value: object) -> object:
             return [_as_shown(part) for part in value]
         case _:
             return value
+
+
+Link = Callable[[str, str, Verdict], str | None]
+"""The address of an example behind a count, from group, requirement and verdict."""
+
+
+def table_html(
+    table: VerdictTable,
+    *,
+    beside: Mapping[str, VerdictTable] | None = None,
+    link: Link | None = None,
+) -> Markup:
+    """A table of counts, with a line per requirement.
+
+    Args:
+        table: the counts.
+        beside: by label, tables whose counts stand in further lines of each row.
+        link: where a count leads to.
+    """
+    others = beside or {}
+    text = render(
+        "counts.html",
+        table=table,
+        others=others,
+        link=link,
+        has_checked=any(one.checked for one in (table, *others.values())),
+        checked_text=checked_text,
+        interval_text=interval_text,
+        counts_in=_counts_in,
+    )
+    return Markup(text)  # noqa: S704 - a template escapes
+
+
+def _counts_in(table: VerdictTable, group: str, requirement: str) -> Counts | None:
+    return next((one.counts.get(requirement) for one in table.groups if one.name == group), None)

@@ -8,13 +8,13 @@ from itertools import groupby
 from typing import NamedTuple
 
 from rvmon.explain.dissect import Strand
-from rvmon.report.afterword import with_afterword, without_attempts
 from rvmon.report.markup import Child, e
-from rvmon.report.run_page import Panel
+from rvmon.report.panels import Panel
 from rvmon.report.style import MARKS
 from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names
 from rvmon.report.view import moment, with_moments
+from rvmon.report.wording import with_afterword, without_attempts
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Blame

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import groupby, islice
 
-from rvmon.report.afterword import forecast_sentence
 from rvmon.report.markup import e
 from rvmon.report.pages import render
 from rvmon.report.panel_html import (
@@ -19,12 +18,12 @@ from rvmon.report.panel_html import (
     parts_timeline,
     spec_lines,
 )
-from rvmon.report.panels_of import opening, panel_id, panels_of
-from rvmon.report.run_page import Panel, RunPage
+from rvmon.report.panels import Panel, RunPage, opening, panel_id, panels_of
 from rvmon.report.scene import Outline, Scene
 from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Track, TrackKind
 from rvmon.report.view import View, moment, whole_run
+from rvmon.report.wording import forecast_sentence
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.report import Report

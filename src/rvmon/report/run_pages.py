@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 from rvmon.report.folder import made
 from rvmon.report.pages import render
+from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
-from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.report.terminal import in_short
-from rvmon.results.known import NONE_KNOWN, KnownFailures
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.sample import Sample
+from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole

@@ -13,7 +13,7 @@ from rvmon.cdv.plan import plan
 from rvmon.coverage.database import read
 from rvmon.coverage.hits import count_of, merged
 from rvmon.errors import RvmonError
-from rvmon.loading import load
+from rvmon.session import load
 
 SPEC = """signal speed : real
 requirement L1

@@ -10,12 +10,12 @@ from rvmon.explain.spans import both, outside, union
 from rvmon.explain.truths import Eye, look_through, parts_of, subformulas
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.case import show_case
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-from rvmon.testing.law.kleene import Truth
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Truths
-from rvmon.testing.show import show_case
+from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict

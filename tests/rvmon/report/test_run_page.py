@@ -10,8 +10,8 @@ import pytest
 from tests.tools.hostile import FORGERIES, STEERING
 
 import rvmon
+from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
-from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.report.run_pages import write_run_pages
 from rvmon.report.scene import Outline, Scene
 from rvmon.trace.time import TICKS_PER_SECOND

@@ -26,8 +26,7 @@ from functools import cache
 from importlib import resources
 
 from rvmon.readers.messages.topic import Topic
-from rvmon.units.table import UnknownUnitError, parse_unit
-from rvmon.units.unit import Unit
+from rvmon.units import Unit, UnknownUnitError, parse_unit
 
 
 class Sort(Enum):

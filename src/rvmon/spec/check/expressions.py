@@ -55,8 +55,7 @@ from rvmon.spec.syntax.expressions import (
 from rvmon.spec.syntax.expressions import Window as WindowSyntax
 from rvmon.spec.syntax.items import ConstItem, DefineItem
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
 
 def formula_of(value: Value, span: Span) -> Formula:
