@@ -6,9 +6,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_const, constants_of
-from rvmon.cli.progress import busy
+from rvmon.cli.output import busy, say
 from rvmon.cli.reading import add_reading, reading_spec
-from rvmon.cli.say import say
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -22,8 +21,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Show every signal and event of a recording over time: kind, unit, rate, "
         "longest gap, range, and what was lost. With a specification, what feeds its requirements "
         "comes first.",
-        epilog="examples: rvmon look examples/base.csv; rvmon look examples/base.csv examples/base.rv "
-        "-o look.html",
+        epilog="examples: rvmon look examples/base.csv; "
+        "rvmon look examples/base.csv examples/base.rv -o look.html",
     )
     parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     parser.add_argument("spec", metavar="SPEC", nargs="?", help="a .rv file")
@@ -34,7 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Look, show or write, and return the exit code."""
-    from rvmon.loading import load
+    from rvmon.session import load
 
     spec = None
     if arguments.spec is not None:

@@ -18,7 +18,7 @@ from rvmon.readers.places import opened
 from rvmon.readers.values import shorten
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import UNITS, stamps_of
-from rvmon.units.table import UnknownUnitError, parse_unit
+from rvmon.units import UnknownUnitError, parse_unit
 
 _LOOKED_AT = 1 << 13
 """Bytes that say how a text is written."""

@@ -6,9 +6,10 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from rvmon.report.afterword import duration_text
 from rvmon.report.look_text import facts, grouped, is_constant, lost_names
-from rvmon.report.markup import Child, e, page
+from rvmon.report.markup import e
+from rvmon.report.pages import render
+from rvmon.report.wording import duration_text
 from rvmon.spec.checked.specification import Requirement
 from rvmon.starter.column import Column, Profile
 from rvmon.starter.course import Stretch
@@ -28,51 +29,43 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
         profile: of the recording.
         requirements: that read it; without any it is by topic.
     """
-    groups = list(grouped(profile, requirements))
-    body = [_head(profile), _axis(profile)]
-    for place, (title, columns) in enumerate(groups):
-        rows = [_row(column, profile) for column in columns]
-        is_open = place < max(_OPEN, len(requirements))
-        count = e("small", None, f" {len(columns):,}")
-        summary = e("summary", None, e("b", None, title or "names"), count)
-        body.append(e("details", {"open": is_open}, summary, *rows))
-    if profile.left_out:
-        summary = e("summary", None, e("b", None, "left out"))
-        body.append(e("details", None, summary, *_left(profile)))
-    name = profile.path.rpartition("/")[2]
-    return page(f"{name} – rvmon look", body, styles=["base.css", "look.css"], scripts=[])
-
-
-def _head(profile: Profile) -> ET.Element:
-    span = duration_text(profile.end - profile.start)
-    told = f"{profile.samples:,} samples in {span}, {len(profile.columns):,} names."
-    lost: list[Child] = []
-    for one in profile.outages:
-        at = format_ticks(one.since - profile.start)
-        lost.append(e("p", {"class": "lost"}, f"Lost: {lost_names(one)}, from {at} on: {one.why}."))
-    return e("header", None, e("h1", None, profile.path), e("p", {"class": "soft"}, told), *lost)
-
-
-def _axis(profile: Profile) -> ET.Element:
     span = profile.end - profile.start
-    marks = [e("span", None, duration_text(span * part // 4)) for part in range(5)]
-    return e("div", {"class": "row axis"}, e("div"), e("div", {"class": "marks"}, *marks))
+    groups = [
+        {
+            "title": title or "names",
+            "is_open": place < max(_OPEN, len(requirements)),
+            "rows": [_row(column, profile) for column in columns],
+        }
+        for place, (title, columns) in enumerate(grouped(profile, requirements))
+    ]
+    left_out: dict[str, list[str]] = {}
+    for name, why in profile.left_out.items():
+        left_out.setdefault(why, []).append(name)
+    return render(
+        "look.html",
+        title=f"{profile.path.rpartition('/')[2]} – rvmon look",
+        profile=profile,
+        told=f"{profile.samples:,} samples in {duration_text(span)}, "
+        f"{len(profile.columns):,} names.",
+        lost=[
+            f"Lost: {lost_names(one)}, "
+            f"from {format_ticks(one.since - profile.start)} on: {one.why}."
+            for one in profile.outages
+        ],
+        marks=[duration_text(span * part // 4) for part in range(5)],
+        groups=groups,
+        left_out=left_out,
+    )
 
 
-def _left(profile: Profile) -> Iterator[ET.Element]:
-    for why in dict.fromkeys(profile.left_out.values()):
-        names = [name for name, reason in profile.left_out.items() if reason == why]
-        yield e("p", {"class": "soft"}, e("code", None, ", ".join(names)), f": {why}")
-
-
-def _row(column: Column, profile: Profile) -> ET.Element:
+def _row(column: Column, profile: Profile) -> dict[str, object]:
     kind, rate, gap, values = facts(column)
-    told = ", ".join(one for one in (kind, rate, gap and f"gap {gap}") if one)
-    name = e("div", {"class": "name"}, e("code", None, column.name), e("small", None, told))
-    plot = e("div", {"class": "plot"}, e("small", None, values))
-    if not is_constant(column):
-        plot.append(_drawing(column, profile))
-    return e("div", {"class": "row"}, name, plot)
+    return {
+        "name": column.name,
+        "told": ", ".join(one for one in (kind, rate, gap and f"gap {gap}") if one),
+        "values": values,
+        "drawing": None if is_constant(column) else _drawing(column, profile),
+    }
 
 
 def _drawing(column: Column, profile: Profile) -> ET.Element:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from rich.table import Table
 from rich.text import Text
 
-from rvmon.report.afterword import duration_text
+from rvmon.report.wording import duration_text
 from rvmon.spec.checked.specification import Requirement
 from rvmon.starter.column import Column, Profile
 from rvmon.trace.sample import Outage

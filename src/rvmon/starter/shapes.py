@@ -23,7 +23,7 @@ from rvmon.starter.column import Shape, Shapes
 from rvmon.starter.messages import message_shapes
 from rvmon.starter.seen import Seen, shapes_seen
 from rvmon.trace.schema import Kind, Stamps
-from rvmon.units.table import UnknownUnitError, parse_unit
+from rvmon.units import UnknownUnitError, parse_unit
 
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
