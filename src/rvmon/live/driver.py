@@ -224,6 +224,8 @@ class Driver:
                 self._stamped = now + self._runs_by_itself
             first = (now if since is None else min(since, now)) - (self._asked_lag or 0)
             last = now if is_over else None
+            if told is Told.FOUND and not self._runs_by_itself:
+                first = now + 1  # what bears this instant may have been sent before what was lost
             robots = {*self._waiting.robots, *self._robots} if robot is None else {robot}
             for one in robots:
                 if self._is_room_for(one):

@@ -64,7 +64,7 @@ def stdin(trial: Trial) -> Verdicts:
                 damaged(rng, one) if place in trial.lost else one for place, one in enumerate(lines)
             ]
         case "late":
-            trial.is_late = True
+            trial.is_late = trial.is_named = True
             kept.insert(
                 rng.randrange(trial.lost.start + 1, len(kept) + 1), b"\n".join(_lost(trial, lines))
             )
@@ -138,7 +138,7 @@ def _down(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
 
 
 def _late(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
-    trial.is_late = True
+    trial.is_late = trial.is_named = True
     samples = trial.case.samples
     for sample in (s for place, s in enumerate(samples) if place not in trial.lost):
         _come(driver, clock, sample)
@@ -148,6 +148,7 @@ def _late(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
 
 def _flood(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
     """The lost samples come while the callback of another one takes its time."""
+    trial.is_named = True
     with driver._working:
         driver._waiting.room = trial.lost.start + len(driver._waiting)
         for sample in trial.case.samples[: trial.lost.stop]:
@@ -160,6 +161,7 @@ def _flood(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
 
 
 def _refused(trial: Trial, driver: Driver, clock: SimulatedClock) -> None:
+    trial.is_named = True
     for place, sample in enumerate(trial.case.samples):
         wrong: dict[str, Any] = {"p": "on"} if "p" in sample.values else {"no such name": 1}
         values = {**sample.values, **wrong} if place in trial.lost else sample.values
@@ -189,6 +191,7 @@ def durable(trial: Trial) -> Verdicts:
         )
 
     how = rng.choice(("missed", "refused", "late"))
+    trial.is_named = how != "missed"
     monitor = begun()
     for place, sample in enumerate(trial.case.samples):
         if rng.random() < 0.3:

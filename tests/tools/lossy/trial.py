@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import random
+import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +17,15 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
-from tests.tools.differential import case_of
+from tests.tools.differential import cases_of
 from tests.tools.law import judge, word
 from tests.tools.sound import is_spoken_of, narrowed
 
 FILLINGS = 6
 """So many times what was lost is filled in: once by what it really was."""
+
+EACH = 4
+"""Runs of a specification."""
 
 _TRACES = TraceProfile(advances=False)
 
@@ -36,16 +42,19 @@ class Trial:
 
     Attributes:
         name: of the run; every draw comes of it.
+        spec: what judges.
         case: the run as it truly was.
         lost: the places of the samples that are lost, which follow one another.
         folder: for files.
         rng: draws how they are lost.
         names: what the lost samples spoke of; set by a door that loses only some of it.
         is_late: set by a door at which they came too late: a failure may stay that was none.
+        is_named: set by a door that knows of each lost sample what it spoke of.
         is_whole: set by a door that gives verdicts where nothing is lost, or none.
     """
 
     name: str
+    spec: Spec
     case: Case
     lost: range
     folder: Path
@@ -53,15 +62,11 @@ class Trial:
     names: list[str] = field(init=False)
     is_late: bool = False
     is_whole: bool = False
+    is_named: bool = False
 
     def __post_init__(self) -> None:
         self.rng = random.Random(f"{self.name} door")
         self.names = sorted({n for place in self.lost for n in self.case.samples[place].values})
-
-    @property
-    def spec(self) -> Spec:
-        """What judges."""
-        return Spec(self.case.spec)
 
     @property
     def end(self) -> int:
@@ -95,7 +100,7 @@ class Door:
         traces: what runs may hold.
         at_once: so many trials are given to it together.
         ends: whether time goes on behind the last sample, by a tick.
-        plain: whether it takes no events with payloads.
+        plain: whether it takes no events with payloads, nor names that no requirement reads.
     """
 
     through: Callable[[Sequence[Trial]], Iterable[Verdicts | None]]
@@ -107,26 +112,31 @@ class Door:
 
 def trials(door: str, how: Door, count: int, seed: int, folder: Path) -> Iterator[Trial]:
     """So many trials whose loss changes a letter that a requirement reads."""
-    made = number = 0
+    return islice(_trials(door, how, seed, folder), count)
+
+
+def _trials(door: str, how: Door, seed: int, folder: Path) -> Iterator[Trial]:
     profile = Profile(for_each=not how.plain)
-    while made < count:
-        number += 1
-        name = f"{door}/{seed}/{number}"
-        rng = random.Random(name)
-        case = _plain(case_of(name, profile, how.traces))
-        if len(case.samples) < 3 or case.spec.max_delay or not is_spoken_of(case.spec):
-            continue
-        if how.plain and _has_payloads(case):
-            continue
-        # Of the first and the last nobody may know that there was one.
-        begin = rng.randrange(1, len(case.samples) - 1)
-        lost = range(begin, min(begin + rng.randint(1, 6), len(case.samples) - 1))
-        own = folder / str(number)
-        trial = Trial(name, case, lost, own)
-        if trial.names and _changes_a_letter(trial):
-            own.mkdir()
-            made += 1
-            yield trial
+    for number in itertools.count():
+        spec = None
+        for part, drawn in enumerate(
+            cases_of(f"{door}/{seed}/{number}", profile, how.traces, EACH)
+        ):
+            case = _plain(narrowed(drawn) if how.plain else drawn)
+            spec = spec or Spec(case.spec)
+            if len(case.samples) < 3 or case.spec.max_delay or not is_spoken_of(case.spec):
+                continue
+            if how.plain and any(event.fields for event in case.spec.events.values()):
+                continue
+            name = f"{door}/{seed}/{number}/{part}"
+            rng = random.Random(name)
+            # Of the first and the last nobody may know that there was one.
+            begin = rng.randrange(1, len(case.samples) - 1)
+            lost = range(begin, min(begin + rng.randint(1, 6), len(case.samples) - 1))
+            trial = Trial(name, spec, case, lost, folder / f"{number}.{part}")
+            if trial.names and _changes_a_letter(trial):
+                trial.folder.mkdir()
+                yield trial
 
 
 def _plain(case: Case) -> Case:
@@ -139,11 +149,6 @@ def _plain(case: Case) -> Case:
         for one in case.samples
     ]
     return replace(case, actions=tuple(one for one in samples if one.values), end=None)
-
-
-def _has_payloads(case: Case) -> bool:
-    read = {*narrowed(case).spec.events}
-    return any(case.spec.events[name].fields for name in read)
 
 
 def _changes_a_letter(trial: Trial) -> bool:
@@ -184,8 +189,10 @@ def _filled(rng: random.Random, trial: Trial) -> Case:
     names = {*trial.names}
     for place in trial.lost:
         others: Any = random_trace(rng, trial.case.spec, TraceProfile()).samples or samples
-        heard = {n: v for n, v in samples[place].values.items() if n not in names}
-        values = {n: v for n, v in rng.choice(others).values.items() if n in names}
+        told = samples[place].values
+        heard = {n: v for n, v in told.items() if n not in names}
+        may = names & told.keys() if trial.is_named else names
+        values = {n: v for n, v in rng.choice(others).values.items() if n in may}
         samples[place] = Sample(samples[place].t, heard | values)
     return replace(trial.case, actions=tuple(samples))
 
@@ -197,6 +204,4 @@ def outcomes(door: str, how: Door, count: int, seed: int, folder: Path) -> Itera
     while batch := [trial for _, trial in zip(range(how.at_once), found, strict=False)]:
         for trial, verdicts in zip(batch, how.through(batch), strict=True):
             yield outcome(trial, how, verdicts)
-            for path in trial.folder.iterdir():
-                path.unlink()
-            trial.folder.rmdir()
+            shutil.rmtree(trial.folder)

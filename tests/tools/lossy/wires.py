@@ -30,6 +30,11 @@ def until(true: Callable[[], bool]) -> None:
         time.sleep(0.0005)
 
 
+def until_told(driver: Driver, least: int = 1) -> None:
+    """Wait until so much waits for a driver to work."""
+    until(lambda: driver.waiting >= least)
+
+
 class _Counted(JsonObjects):
     """Objects that are counted as they come."""
 
@@ -71,6 +76,7 @@ class _Subscribed:
     def play(self, places: range) -> None:
         """Publish samples in their time, those that are to be lost in their way."""
         self.trial.is_late = self.how in ("late", "down late")
+        self.trial.is_named = self.how in ("late", "flood")
         if self.how == "flood":
             self.driver._waiting.room = 1
         for place in places:
@@ -83,10 +89,6 @@ class _Subscribed:
                 self.send(sample, is_damaged=is_lost and self.how == "damaged")
             if self.trial.rng.random() < 0.3 and place + 1 not in self.trial.lost:
                 self.driver.work()
-
-    def is_told(self) -> bool:
-        """Whether the driver was told something that it has not worked on."""
-        return self.driver.waiting > 0
 
     def verdicts(self) -> Verdicts:
         """Those of the end, behind what came late."""
@@ -144,10 +146,10 @@ def _go_and_come_back(broker: Broker, runs: Sequence[_Subscribed]) -> None:
         run.driver.work()
     broker.stop()
     for run in runs:
-        until(run.is_told)
+        until_told(run.driver)
         run.clock.set_ns(run.samples[run.trial.lost[-1]].t)
         run.driver.work()
     broker.start()
     for run in runs:
-        until(run.is_told)
+        until_told(run.driver)
         run.play(range(run.trial.lost.stop, len(run.samples)))

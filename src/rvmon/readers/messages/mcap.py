@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from os import SEEK_END
 from pathlib import Path
+from struct import Struct
 from typing import Any, BinaryIO
+from zlib import crc32
 
 import msgspec
 
@@ -18,6 +21,12 @@ from rvmon.readers.values import first_line, shorten
 from rvmon.trace.schema import Kind
 
 _MAGIC = b"\x89MCAP0\r\n"
+
+_FOOTER = Struct("<BQQQI8s")
+"""Opcode, length, where the summary and its offsets begin, their checksum, the magic."""
+
+_BEFORE_SUM = 25
+"""Bytes of the footer that the checksum is of, too."""
 
 Decode = Callable[[bytes], Any]
 
@@ -43,6 +52,7 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
         raise TraceError("is an empty file: record it again")
     if not head.startswith(_MAGIC):
         raise TraceError("is no MCAP file: it begins otherwise")
+    _refuse_damaged_summary(path)
     # Behind the magic: one byte, the length in eight, and the profile, led by its length in four.
     if head[17:21] == b"\4\0\0\0" and head[21:25] == b"ros2":
         found = BagMessages(path, "ros2", definitions)
@@ -50,6 +60,27 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
             return found
         found.close()
     return _OtherMessages(path, definitions)
+
+
+def _refuse_damaged_summary(path: Path) -> None:
+    """Refuse a file whose times and counts are not what their checksum says: no reader looks at it.
+
+    Raises:
+        TraceError: it is such a file.
+    """
+    with open(path, "rb") as file:
+        footer = max(0, file.seek(0, SEEK_END) - _FOOTER.size)
+        file.seek(footer)
+        tail = file.read()
+        if len(tail) < _FOOTER.size:
+            return
+        opcode, length, start, _, expected, _ = _FOOTER.unpack(tail)
+        if (opcode, length) != (2, 20) or not 0 < start <= footer or expected == 0:
+            return  # it is cut, which others tell; or it has none
+        file.seek(start)
+        summary = file.read(footer + _BEFORE_SUM - start)
+    if crc32(summary) != expected:
+        raise TraceError("its summary is damaged: copy it again, or try `mcap recover`")
 
 
 def mcap_reader(file: BinaryIO) -> Any:
