@@ -8,7 +8,9 @@ from rvmon.native.extension import extension
 from rvmon.native.sources import CSV_FOLDER
 
 if TYPE_CHECKING:
-    from rvmon.native._csv import read
+    import rvmon.native._csv as _csv
+
+    read = _csv.read
 else:
     read = extension("_csv", CSV_FOLDER, "the reader of CSV").read
 

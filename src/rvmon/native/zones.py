@@ -8,7 +8,9 @@ from rvmon.native.extension import extension
 from rvmon.native.sources import ZONES_FOLDER
 
 if TYPE_CHECKING:
-    from rvmon.native._zones import search
+    import rvmon.native._zones as _zones
+
+    search = _zones.search
 else:
     search = extension("_zones", ZONES_FOLDER, "the search of models").search
 

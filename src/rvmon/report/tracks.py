@@ -231,10 +231,11 @@ def tracks_of(
         name: _Changes(spec.signals[name].stale_after if name in spec.signals else None)
         for name in concerned_names(requirement)
     }
+    ignoring = spec.ignoring
     for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
         for name, changes in found.items():
             if isinstance(piece, Sample):
-                updates = updates_in(piece.values, spec.ignoring)
+                updates = updates_in(piece.values, ignoring)
                 if name in updates:
                     changes.add(piece.t, updates[name], is_signal=name in spec.signals)
             elif name in piece.signals:
