@@ -226,9 +226,10 @@ def changes_of(
     """By name what each signal and event of a run changed to, whichever requirements read it."""
     found = {name: Changes(signal.stale_after) for name, signal in spec.signals.items()}
     found |= {name: Changes(None) for name in spec.events}
+    ignoring = spec.ignoring
     for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
         if isinstance(piece, Sample):
-            for name, value in updates_in(piece.values, spec.ignoring).items():
+            for name, value in updates_in(piece.values, ignoring).items():
                 if name in found:
                     found[name].add(piece.t, value, is_signal=name in spec.signals)
         else:
