@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from rvmon.diagnostics.span import Span
+from rvmon.spec.check.choices import decided, spread
 from rvmon.spec.check.operands import Operands
 from rvmon.spec.check.quantities import Placed, compare
 from rvmon.spec.check.values import Age, Quantity, Scope, Value
@@ -79,7 +80,11 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
         Refusal: the sides cannot be compared.
         Reported: a side is wrong.
     """
-    left, right = _sides(operands, node, scope)
+    sides = _sides(operands, node, scope)
+    return decided(spread(sides, node.span, lambda values: _compared(node, *values)), node.span)
+
+
+def _compared(node: Comparison, left: Value, right: Value) -> Formula:
     if isinstance(left, Age):
         limit = _comparable(right, node.right.span)
         return _age(left, node.op, limit, node.span)

@@ -6,7 +6,6 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.values import Age, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
@@ -55,9 +54,7 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
         case UpdateFunction() as of_updates:
             return _of_updates(operands, of_updates, _named(operands, call, scope, function))
         case NumericOp() as op:
-            quantities = operands.quantities(call.args, scope)
-            placed = zip(quantities, (arg.span for arg in call.args), strict=True)
-            return arithmetic(op, list(placed), call.span)
+            return operands.calculated(op, call.args, scope, call.span)
         case None:
             return Age(_named(operands, call, scope, function)[0])
 

@@ -41,7 +41,16 @@ class Age:
     name: str
 
 
-Value = Formula | Quantity | Age
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """`if φ then x else y` of numbers; a comparison of it is one of each, beside φ."""
+
+    condition: Formula
+    chosen: Value
+    otherwise: Value
+
+
+Value = Formula | Quantity | Age | Chosen
 
 
 @dataclass(frozen=True, slots=True)

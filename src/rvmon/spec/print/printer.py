@@ -132,12 +132,20 @@ def _binary(formula: Binary) -> str:
     if op.entry.chained:
         operands = _chain(formula, op)
         texts = [_left(operand, level + 1) for operand in operands[:-1]]
-        return f" {op.entry.word} ".join((*texts, _formula(operands[-1], level + 1)))
+        texts.append(_formula(operands[-1], level + 1))
+        if op is not BinaryOp.IFF:
+            pairs = zip(operands, texts, strict=True)
+            texts = [f"({text})" if _is_kin_of_until(one) else text for one, text in pairs]
+        return f" {op.entry.word} ".join(texts)
     right = formula.right
     same = isinstance(right, Binary) and right.op is op
     right_level = level if same else level + 1
     left = _left(formula.left, level + 1)
     return f"{left} {op.entry.word}{_window(formula.interval)} {_formula(right, right_level)}"
+
+
+def _is_kin_of_until(formula: Formula) -> bool:
+    return isinstance(formula, Binary) and formula.op.entry.level == BinaryOp.UNTIL.entry.level
 
 
 def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:

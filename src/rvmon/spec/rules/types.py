@@ -76,6 +76,23 @@ def age_alone(span: Span) -> Diagnostic:
     )
 
 
+choice_alone = Breach(
+    WRONG_TYPE,
+    "`{}` is a choice, expected one number",
+    "compare each side: `if φ then x <= 1 else x <= 2`",
+)
+
+
+def many_outcomes(span: Span, most: int) -> Diagnostic:
+    """Choices within choices."""
+    return finding(
+        WRONG_TYPE,
+        f"`{short(span.text)}` chooses between more than {most} numbers",
+        span,
+        fix="split it into several requirements",
+    )
+
+
 not_constant = Breach(
     WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"
 )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
-from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
 from rvmon.spec.checked.formula import (
     Arithmetic,
     Binary,
@@ -73,6 +74,13 @@ class Shape:
     longest: int = 6
 
 
+_RADIAN = Literal(1, "rad")
+_UNITS = {
+    **dict.fromkeys((UnitRule.TO_ANGLE, UnitRule.DIRECTION, UnitRule.TURN), _RADIAN),
+    UnitRule.PLACES: Literal(1, "m"),
+}
+"""Of the results that have one."""
+_CALCULATING = tuple(op for op in NumericOp if op is not NumericOp.BIT)
 _CHOOSING = (NumericOp.MIN, NumericOp.MAX)
 """What gives one of its operands, so that no whole number leaves its 64 bits."""
 
@@ -120,6 +128,9 @@ def comparison(rng: Rng, shape: Shape) -> Formula:
     if chance(rng, 12):
         op = pick(rng, (CompareOp.EQ, CompareOp.NE))
         return Compare(op, SignalValue(LABEL), Literal(pick(rng, LABELS)))
+    if chance(rng, 4) and not shape.wide:
+        bit = Arithmetic(NumericOp.BIT, (SignalValue(NUMBERS[1]), Literal(rng.randint(0, 2))))
+        return Compare(CompareOp.EQ, bit, Literal(True))
     op = pick(rng, tuple(CompareOp))
     left: Numeric = SignalValue(pick(rng, NUMBERS))
     if shape.events and chance(rng, 30):
@@ -139,14 +150,26 @@ def arithmetic(rng: Rng, shape: Shape) -> Numeric:
     if chance(rng, 40):
         functions = (UpdateFunction.PREV,) if shape.wide else tuple(UpdateFunction)
         return UpdateValue(pick(rng, functions), pick(rng, NUMBERS))
-    op = pick(rng, _CHOOSING if shape.wide else tuple(NumericOp))
+    op = pick(rng, _CHOOSING if shape.wide else _CALCULATING)
     args = [_input(rng, shape)]
     while len(args) < op.entry.least:
         further = Literal(rng.randint(0, 2)) if chance(rng, 40) else _input(rng, shape)
         args.insert(rng.randint(0, len(args)), further)
-    if op is NumericOp.ANGLE_BETWEEN:
-        args.append(Literal(pick(rng, (2.5, 4))))
-    return Arithmetic(op, tuple(args))
+    return _with_units(op, args)
+
+
+def _with_units(op: NumericOp, args: list[Numeric]) -> Numeric:
+    """An operation on plain numbers that yields one, with the units that it asks for between."""
+    rule = op.entry.unit
+    if rule is UnitRule.BITS:
+        args = [arg if isinstance(arg, Literal) else SignalValue(NUMBERS[1]) for arg in args]
+    if rule in (UnitRule.OF_ANGLE, UnitRule.TURN, UnitRule.PLACES):
+        args = [Arithmetic(NumericOp.MUL, (arg, _RADIAN)) for arg in args]
+    if rule is UnitRule.TURN:
+        args.append(Literal(math.tau, "rad"))
+    found = Arithmetic(op, tuple(args))
+    unit = _UNITS.get(rule)
+    return found if unit is None else Arithmetic(NumericOp.DIV, (found, unit))
 
 
 def field_value(rng: Rng) -> Numeric:
