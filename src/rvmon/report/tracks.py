@@ -9,7 +9,7 @@ from itertools import groupby, pairwise
 
 from rvmon.readers.coalesce import updates_in
 from rvmon.report.view import View
-from rvmon.spec.checked.formula import Binary, Compare, Literal, SignalValue, Unary
+from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.spec.checked.tense import subformulas
@@ -32,7 +32,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
     """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
     parts = subformulas(requirement.consequent)
-    owed = [part for part in parts if not isinstance(part, Unary | Binary)]
+    owed = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
         atom
         for atom in owed

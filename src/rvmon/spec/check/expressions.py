@@ -12,7 +12,16 @@ from rvmon.spec.check.comparisons import closed_interval, compared, ticks_of
 from rvmon.spec.check.functions import applied
 from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.table import Table, close_name, close_unit
-from rvmon.spec.check.values import EVERYWHERE, Age, Chosen, Closure, Quantity, Scope, Value
+from rvmon.spec.check.values import (
+    EVERYWHERE,
+    Age,
+    AmountOf,
+    Chosen,
+    Closure,
+    Quantity,
+    Scope,
+    Value,
+)
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Binary,
@@ -78,6 +87,8 @@ def formula_of(value: Value, span: Span) -> Formula:
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
         case Age():
             raise Refusal(rules.age_alone(span))
+        case AmountOf():
+            raise Refusal(rules.amount_alone(span))
         case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
             return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
         case _:
@@ -97,6 +108,8 @@ def number_of(value: Value, span: Span) -> Quantity:
             raise Refusal(rules.label_use(span))
         case Age():
             raise Refusal(rules.age_alone(span))
+        case AmountOf():
+            raise Refusal(rules.amount_alone(span))
         case Chosen():
             raise Refusal(rules.choice_alone(span))
         case _:

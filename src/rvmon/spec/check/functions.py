@@ -6,10 +6,11 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.values import Age, Quantity, Scope, Value
+from rvmon.spec.check.values import Age, AmountOf, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Interval,
+    Measured,
     Probe,
     ProbeAtom,
     Unary,
@@ -18,7 +19,10 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.checked.tense import future_part, is_pulse
 from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import Call, Name
@@ -55,8 +59,24 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
             return _of_updates(operands, of_updates, _named(operands, call, scope, function))
         case NumericOp() as op:
             return operands.calculated(op, call.args, scope, call.span)
+        case Measured() as measured:
+            return _amount(operands, measured, call, scope)
         case None:
             return Age(_named(operands, call, scope, function)[0])
+
+
+def _amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> AmountOf:
+    """How much of a formula there was, which has to be known at once."""
+    formula = operands.formula(call.args[0], scope)
+    if (ahead := future_part(formula)) is not None:
+        raise Refusal(rules.amount_of_future(ahead.span or call.span, call.function.text))
+    held = operands.table.time is TimeModel.HELD
+    if measured is Measured.COUNT and held and not is_pulse(formula):
+        raise Refusal(rules.count_of_state(call.args[0].span))
+    window = operands.duration(call.args[1], scope)
+    if window == 0:
+        raise Refusal(time_rules.empty(call.args[1].span))
+    return AmountOf(measured, formula, window, call.function.text == "share")
 
 
 def _check_count(call: Call, function: Function) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from rvmon.spec.checked.formula import Formula, Numeric
+from rvmon.spec.checked.formula import Formula, Measured, Numeric
 from rvmon.spec.checked.specification import Event, Signal, Type
 from rvmon.spec.syntax.expressions import Expression
 from rvmon.spec.syntax.items import ConstItem, DefineItem
@@ -50,7 +50,24 @@ class Chosen:
     otherwise: Value
 
 
-Value = Formula | Quantity | Age | Chosen
+@dataclass(frozen=True, slots=True)
+class AmountOf:
+    """`count(φ, D)`, `duration(φ, D)`, `share(φ, D)`; only compared with constants.
+
+    Attributes:
+        measured: a share is the duration, divided by D.
+        operand: φ.
+        window: D, ticks.
+        share: whether it is one.
+    """
+
+    measured: Measured
+    operand: Formula
+    window: int
+    share: bool = False
+
+
+Value = Formula | Quantity | Age | AmountOf | Chosen
 
 
 @dataclass(frozen=True, slots=True)

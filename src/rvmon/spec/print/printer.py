@@ -7,6 +7,7 @@ from typing import assert_never
 
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
+    Amount,
     Arithmetic,
     Binary,
     BinaryOp,
@@ -19,6 +20,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Interval,
     Literal,
+    Measured,
     Numeric,
     ProbeAtom,
     SignalAtom,
@@ -91,6 +93,9 @@ def _formula(formula: Formula, level: int) -> str:
             return f"{format_numeric(left)} {op} {format_numeric(right)}"
         case Unary():
             return _unary(formula)
+        case Amount(measured=measured, operand=operand, window=window, least=least):
+            enough = str(least) if measured is Measured.COUNT else format_duration(least)
+            return f"{measured}({_formula(operand, 0)}, {format_duration(window)}) >= {enough}"
         case Binary(op=op):
             text = _binary(formula)
             return f"({text})" if op.entry.level < level else text

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
 from rvmon.spec.checked.formula import (
+    Amount,
     Arithmetic,
     Binary,
     BinaryOp,
@@ -21,6 +22,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Interval,
     Literal,
+    Measured,
     Numeric,
     Probe,
     ProbeAtom,
@@ -61,6 +63,7 @@ class Shape:
         captured: names of captured numbers that may be read.
         wide: whether whole numbers lie at the ends of 64 bits; nothing is computed with them then.
         longest: the greatest bound of an interval, ticks.
+        amounts: how often counts and durations come, beside about 120 of all others.
     """
 
     step: bool = False
@@ -72,6 +75,7 @@ class Shape:
     captured: tuple[str, ...] = ()
     wide: bool = False
     longest: int = 6
+    amounts: int = 0
 
 
 _RADIAN = Literal(1, "rad")
@@ -241,6 +245,7 @@ def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
             (17 if shape.past else 0, "past unary"),
             (6 if shape.past else 0, "since"),
             (4 if shape.past and shape.step else 0, "previous"),
+            (shape.amounts if shape.past else 0, "amount"),
         ),
     )
     below = shape if shape.mixed else replace(shape, future=False)
@@ -259,6 +264,10 @@ def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
             return Unary(UnaryOp.NEXT, formula(rng, shape, depth - 1))
         case "past unary":
             return past_unary(rng, below, depth)
+        case "amount":
+            measured = pick(rng, tuple(Measured))
+            counted = formula(rng, replace(shape, future=False), depth - 1)
+            return Amount(measured, counted, rng.randint(1, shape.longest), rng.randint(1, 4))
         case "since":
             return _binary(rng, below, depth, Tense.PAST)
         case _:
