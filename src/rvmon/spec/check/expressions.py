@@ -18,6 +18,7 @@ from rvmon.spec.check.values import (
     AmountOf,
     Chosen,
     Closure,
+    Extreme,
     Quantity,
     Scope,
     Value,
@@ -89,6 +90,8 @@ def formula_of(value: Value, span: Span) -> Formula:
             raise Refusal(rules.age_alone(span))
         case AmountOf():
             raise Refusal(rules.amount_alone(span))
+        case Extreme():
+            raise Refusal(rules.extreme_alone(span))
         case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
             return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
         case _:
@@ -110,6 +113,8 @@ def number_of(value: Value, span: Span) -> Quantity:
             raise Refusal(rules.age_alone(span))
         case AmountOf():
             raise Refusal(rules.amount_alone(span))
+        case Extreme():
+            raise Refusal(rules.extreme_alone(span))
         case Chosen():
             raise Refusal(rules.choice_alone(span))
         case _:

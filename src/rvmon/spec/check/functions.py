@@ -6,7 +6,7 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.values import Age, AmountOf, Quantity, Scope, Value
+from rvmon.spec.check.values import Age, AmountOf, Extreme, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Interval,
@@ -31,6 +31,21 @@ from rvmon.trace.schema import Kind
 from rvmon.units.table import parse_unit, quotient
 from rvmon.units.unit import PLAIN
 
+_INSTEAD = {
+    **dict.fromkeys(
+        ("mean", "average", "avg", "median", "percentile"),
+        "bound the share that is off: `share(x > 2, 10 s) <= 10 %`, or all: `max(x, 10 s) <= 2`",
+    ),
+    **dict.fromkeys(
+        ("sum", "integral"),
+        "bound what adds up, `count(e, D)`, `duration(φ, D)`, or publish the sum as a signal",
+    ),
+    **dict.fromkeys(
+        ("variance", "stddev"), "bound the spread: `max(x, D) <= 2 and min(x, D) >= 1`"
+    ),
+}
+"""What says nearly the same as functions that there are not."""
+_EXTREMES = (NumericOp.MIN, NumericOp.MAX)
 _COUNTS = ("no argument", "one argument", "two arguments")
 
 
@@ -57,6 +72,9 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
             return ProbeAtom(probe, _named(operands, call, scope, function)[0], call.span)
         case UpdateFunction() as of_updates:
             return _of_updates(operands, of_updates, _named(operands, call, scope, function))
+        case NumericOp() as op if op in _EXTREMES and len(call.args) == 2:
+            extreme = _extreme(operands, op, call, scope)
+            return extreme or operands.calculated(op, call.args, scope, call.span)
         case NumericOp() as op:
             return operands.calculated(op, call.args, scope, call.span)
         case Measured() as measured:
@@ -75,8 +93,21 @@ def _amount(operands: Operands, measured: Measured, call: Call, scope: Scope) ->
         raise Refusal(rules.count_of_state(call.args[0].span))
     window = operands.duration(call.args[1], scope)
     if window == 0:
-        raise Refusal(time_rules.empty(call.args[1].span))
+        raise Refusal(time_rules.no_duration(call.args[1].span))
     return AmountOf(measured, formula, window, call.function.text == "share")
+
+
+def _extreme(operands: Operands, op: NumericOp, call: Call, scope: Scope) -> Extreme | None:
+    """That of a window, if the second argument is a duration and the first is no time."""
+    first, second = operands.values(call.args, scope)
+    if not isinstance(first, Quantity) or not isinstance(second, Quantity):
+        return None
+    time = parse_unit("s").dimension
+    is_window = second.constant is not None and second.unit.dimension == time
+    if first.constant is not None or not is_window or first.unit.dimension == time:
+        return None
+    window = operands.duration(call.args[1], scope)
+    return Extreme(op is NumericOp.MAX, first, call.args[0].span, window)
 
 
 def _check_count(call: Call, function: Function) -> None:
@@ -124,5 +155,5 @@ def _unknown(operands: Operands, call: Call) -> Diagnostic:
             call.function.span, name, f"put a space before the bracket: `{name} {rest[:20]}`"
         )
     fix = did_you_mean(name, [*FUNCTIONS, *operands.table.declared])
-    fix = NEVER if name == "never" else fix
+    fix = NEVER if name == "never" else _INSTEAD.get(name, fix)
     return name_rules.unknown_function(call.function.span, name, fix)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from rvmon.diagnostics.span import Span
 from rvmon.spec.checked.formula import Formula, Measured, Numeric
 from rvmon.spec.checked.specification import Event, Signal, Type
 from rvmon.spec.syntax.expressions import Expression
@@ -67,7 +68,24 @@ class AmountOf:
     share: bool = False
 
 
-Value = Formula | Quantity | Age | AmountOf | Chosen
+@dataclass(frozen=True, slots=True)
+class Extreme:
+    """`min(x, D)`, `max(x, D)`; only compared with what stays as it is.
+
+    Attributes:
+        greatest: whether it is the greatest value of the last D, and not the least.
+        quantity: x.
+        span: of x.
+        window: D, ticks.
+    """
+
+    greatest: bool
+    quantity: Quantity
+    span: Span
+    window: int
+
+
+Value = Formula | Quantity | Age | AmountOf | Extreme | Chosen
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,6 +83,13 @@ amount_alone = Breach(
 )
 
 
+extreme_alone = Breach(
+    WRONG_TYPE,
+    "`{}` can only be compared with a constant, or with a captured value",
+    "write `max(x, 5 s) <= 1`, or capture the other side: `let v = y`",
+)
+
+
 def count_of_state(span: Span) -> Diagnostic:
     """A count of what holds for a while, at each tick."""
     text = short(span.text)
