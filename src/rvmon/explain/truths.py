@@ -14,7 +14,7 @@ from rvmon.formula.factory import Factory
 from rvmon.monitor.core.watching import TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.held import HeldRecording
-from rvmon.spec.checked.formula import Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.gaps import is_unknown
@@ -304,7 +304,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
     """The formula, then what it is made of; a negation of an atom is not taken apart."""
     yield depth, formula
     match formula:
-        case Unary(operand=Unary() | Binary() as operand):
+        case Amount(operand=operand) | Unary(operand=Unary() | Binary() | Amount() as operand):
             yield from subformulas(operand, depth + 1)
         case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
             yield from subformulas(operand, depth + 1)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.readers.coalesce import updates_in
 from rvmon.readers.held import HeldRecording
 from rvmon.report.view import View
-from rvmon.spec.checked.formula import Binary, Compare, Literal, SignalValue, Unary
+from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.spec.checked.tense import subformulas
@@ -39,7 +39,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
     """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
     parts = subformulas(requirement.consequent)
-    owed = [part for part in parts if not isinstance(part, Unary | Binary)]
+    owed = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
         atom
         for atom in owed
