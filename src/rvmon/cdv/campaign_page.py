@@ -43,7 +43,7 @@ def campaign_page(
     """
     body: list[Child] = [_header(summary, presentation)]
     body.extend(
-        _verdicts(robot, figures, tables[robot], examples)
+        _verdicts(robot, figures, tables[robot], examples, tests)
         for robot, figures in summary.robots.items()
         if figures.requirements and figures.strategies
     )
@@ -119,15 +119,24 @@ def _list(requirements: Sequence[tuple[str, str]]) -> ET.Element:
 
 
 def _verdicts(
-    robot: str, figures: RobotSummary, tables: RobotTables, examples: Mapping[Cell, str]
+    robot: str,
+    figures: RobotSummary,
+    tables: RobotTables,
+    examples: Mapping[Cell, str],
+    tests: Mapping[tuple[str, str], str],
 ) -> ET.Element:
     def link(strategy: str, requirement: str, verdict: Verdict) -> str | None:
         return examples.get((robot, strategy, requirement, verdict))
 
+    witnesses = {
+        name: tests[robot, test]
+        for name, test in tables.witnesses.items()
+        if (robot, test) in tests
+    }
     parts: list[Child] = [
         e("h2", None, figures.title),
         e("p", {"class": "soft"}, "checked against ", e("code", None, figures.spec)),
-        table_html(tables.own, beside=tables.beside, link=link),
+        table_html(tables.own, beside=tables.beside, link=link, witnesses=witnesses),
     ]
     remarks = (*tables.own.notes, *tables.sources, tables.remark)
     parts.extend(e("p", {"class": "soft"}, remark) for remark in remarks if remark)

@@ -19,6 +19,7 @@ def table_html(
     *,
     beside: Mapping[str, VerdictTable] | None = None,
     link: Link | None = None,
+    witnesses: Mapping[str, str] | None = None,
 ) -> ET.Element:
     """A table with a thin bar per row and group that shows the shares of the verdicts.
 
@@ -26,6 +27,7 @@ def table_html(
         table: the counts.
         beside: by label, tables whose counts stand in further lines of each row.
         link: where a count leads to.
+        witnesses: by requirement, the address of a run that shows what model checking says.
     """
     others = beside or {}
     has_checked = any(one.checked for one in (table, *others.values()))
@@ -33,6 +35,8 @@ def table_html(
     for name, text in table.requirements.items():
         heading = e("th", {"scope": "row", "title": text}, name)
         rows = [_row(table, name, heading, link, has_checked=has_checked)]
+        if name in table.checked and name in (witnesses or {}):
+            _lead(rows[0][1], (witnesses or {})[name], f"the witness of {name}, played")
         for label, other in others.items():
             heading = e("th", {"scope": "row"}, label)
             rows.append(_row(other, name, heading, None, has_checked=has_checked, like=table))
@@ -41,6 +45,12 @@ def table_html(
         body.append(e("tbody", None, *rows))
     grid = e("table", {"class": "counts"}, _head(table, has_checked=has_checked), *body)
     return scroll(grid)
+
+
+def _lead(cell: ET.Element, address: str, title: str) -> None:
+    """Make a link of what a cell says."""
+    text, cell.text = cell.text, None
+    cell.append(e("a", {"href": address, "title": title}, text))
 
 
 def legend(of: str = "Number of tests") -> ET.Element:
