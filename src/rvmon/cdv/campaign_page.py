@@ -14,7 +14,8 @@ from rvmon.report.coverage_summary import counted, share_text
 from rvmon.report.markup import Child, e, page, scroll
 from rvmon.report.percent import percent_text
 from rvmon.report.style import MARKS
-from rvmon.report.table_html import legend, table_html
+from rvmon.report.table import VerdictTable
+from rvmon.report.table_html import Link, legend, table_html
 from rvmon.verdict.verdict import Verdict
 
 
@@ -138,6 +139,8 @@ def _verdicts(
         e("p", {"class": "soft"}, "checked against ", e("code", None, figures.spec)),
         table_html(tables.own, beside=tables.beside, link=link, witnesses=witnesses),
     ]
+    if silent := [name for name in figures.requirements if _is_silent(name, tables.own)]:
+        parts.append(_silent(silent, tables.own, link))
     remarks = (*tables.own.notes, *tables.sources, tables.remark)
     parts.extend(e("p", {"class": "soft"}, remark) for remark in remarks if remark)
     if tables.control is not None and tables.control_label:
@@ -145,6 +148,26 @@ def _verdicts(
         table = table_html(tables.control, beside=tables.beside)
         parts.append(e("details", None, summary_line, table))
     return e("section", None, *parts)
+
+
+def _is_silent(requirement: str, table: VerdictTable) -> bool:
+    """Whether no test triggered a requirement."""
+    counts = [group.counts[requirement] for group in table.groups if requirement in group.counts]
+    tests = sum(sum(one.values()) for one in counts)
+    return tests > 0 and sum(one.get(Verdict.NOT_TRIGGERED, 0) for one in counts) == tests
+
+
+def _silent(requirements: Sequence[str], table: VerdictTable, link: Link) -> ET.Element:
+    """Requirements that nothing was found out about, each with a run that says what it lacked."""
+    parts: list[Child] = []
+    for name in requirements:
+        found = (link(group.name, name, Verdict.NOT_TRIGGERED) for group in table.groups)
+        address = next((one for one in found if one is not None), None)
+        title = f"what the trigger of {name} lacked"
+        shown: Child = name if address is None else e("a", {"href": address, "title": title}, name)
+        parts += [", " if parts else "", shown]
+    count = counted(len(requirements), "requirement")
+    return e("p", {"class": "partial"}, f"{count} triggered by no test, and so untested: ", *parts)
 
 
 def _covered(summary: CampaignSummary, coverage: Mapping[str, CoverageFigures]) -> ET.Element:

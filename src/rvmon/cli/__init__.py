@@ -34,7 +34,7 @@ COMMANDS = {
     "explain": "a requirement, or a diagnostic's code, in plain words",
     "why": "an attempt taken apart: why it passed, failed or stayed open",
     "clip": "a recording cut around an attempt; a file that reproduces it",
-    "init": "a starter specification from a recording",
+    "init": "a starter specification from a recording, or a starter campaign of tests",
     "bind": "which topics of a recording feed a specification: a proposal",
     "compile": "a specification as C that runs alone, or as automata",
     "compare": "what has changed between two files of verdicts",
