@@ -23,8 +23,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Show every signal and event of a recording over time: kind, unit, rate, "
         "longest gap, range, and what was lost. With a specification, what feeds its requirements "
         "comes first.",
-        epilog="examples: rvmon look examples/base.csv; rvmon look examples/base.csv examples/base.rv "
-        "-o look.html",
+        epilog="examples: rvmon look examples/base.csv; rvmon look examples/base.csv "
+        "examples/base.rv -o look.html",
     )
     parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     parser.add_argument("spec", metavar="SPEC", nargs="?", help="a .rv file")

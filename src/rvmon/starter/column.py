@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 
 from rvmon.starter.course import Course
 from rvmon.trace.sample import Outage
@@ -78,8 +79,10 @@ class Column:
 
     @property
     def changes(self) -> bool:
-        """Whether it is a number that is not always the same."""
-        return self.low is not None and self.low != self.high
+        """Whether it is a number that is not always the same, and nowhere infinite."""
+        if self.low is None or self.high is None:
+            return False
+        return isfinite(self.low) and isfinite(self.high) and self.low != self.high
 
     @property
     def is_event(self) -> bool:

@@ -17,7 +17,7 @@ from rvmon.units.unit import PLAIN, Unit
 _ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==", "!="})
 """Operations whose arguments are in one unit."""
 
-_TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not"})
+_TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not", "any", "all"})
 
 
 @dataclass(frozen=True, slots=True)
