@@ -78,11 +78,14 @@ class Column:
     course: Course = field(default_factory=lambda: Course(0))
 
     @property
+    def is_finite(self) -> bool:
+        """Whether it is a number, and nowhere an infinite one."""
+        return self.low is not None and self.high is not None and isfinite(self.high - self.low)
+
+    @property
     def changes(self) -> bool:
-        """Whether it is a number that is not always the same, and nowhere infinite."""
-        if self.low is None or self.high is None:
-            return False
-        return isfinite(self.low) and isfinite(self.high) and self.low != self.high
+        """Whether it is such a number, and not always the same."""
+        return self.is_finite and self.low != self.high
 
     @property
     def is_event(self) -> bool:
