@@ -101,6 +101,7 @@ EXTRAS = {
     "asammdf": "mdf",
     "backports.zstd": "zstd",
     "cantools": "can",
+    "cbor2": "mcap",
     "coverage": "cdv",
     "cyclonedds": "dds",
     "distributed": "dask",

@@ -42,7 +42,7 @@ class On(StrEnum):
     CHANGE = "change"
 
 
-_TOP = ("clock", "definitions", "bind")
+_TOP = ("clock", "definitions", "robot", "bind")
 _SIGNAL = ("topic", "type", "value", "unit", "labels", "on", "clock")
 _EVENT = ("topic", "type", "value", "fields", "on", "clock")
 
@@ -83,8 +83,11 @@ def _binding(content: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Bin
     listed = content.get("definitions", [])
     if not isinstance(listed, list) or not all(isinstance(one, str) for one in listed):
         raise RvmonError('`definitions` is a list of files: ["shop_msgs/msg/Pick.msg"]')
+    robot = content.get("robot", "")
+    if not isinstance(robot, str):
+        raise RvmonError('`robot` stands for `*` in topics: robot = "robot_1"')
     clock = _choice(content, "clock", Clock) or Clock.LOG
-    return Binding(bounds, clock, dict(_definition(folder / one) for one in listed))
+    return Binding(bounds, clock, dict(_definition(folder / one) for one in listed), robot)
 
 
 def _tables(content: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:

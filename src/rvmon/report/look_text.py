@@ -20,6 +20,9 @@ _LONG = 3
 """Between two updates usual times so much is a gap."""
 
 _MOST_LABELS = 4
+_LONGEST = 16
+"""Characters of a label."""
+
 _FEW = 3
 
 
@@ -100,7 +103,8 @@ def values(column: Column) -> str:
     labels = list(column.course.labels)
     if labels:
         more = f", {len(labels) - _MOST_LABELS} more" if len(labels) > _MOST_LABELS else ""
-        return f"{', '.join(labels[:_MOST_LABELS])}{more}"
+        shown = [one if len(one) <= _LONGEST else f"{one[:_LONGEST]}…" for one in labels]
+        return f"{', '.join(shown[:_MOST_LABELS])}{more}"
     if column.is_event:
         return f"{column.updates:,} times"
     if column.shape.kind is Kind.BOOL:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 
 from rvmon.starter.course import Course
 from rvmon.trace.sample import Outage
@@ -77,9 +78,14 @@ class Column:
     course: Course = field(default_factory=lambda: Course(0))
 
     @property
+    def is_finite(self) -> bool:
+        """Whether it is a number, and nowhere an infinite one."""
+        return self.low is not None and self.high is not None and isfinite(self.high - self.low)
+
+    @property
     def changes(self) -> bool:
-        """Whether it is a number that is not always the same."""
-        return self.low is not None and self.low != self.high
+        """Whether it is such a number, and not always the same."""
+        return self.is_finite and self.low != self.high
 
     @property
     def is_event(self) -> bool:

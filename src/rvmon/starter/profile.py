@@ -151,7 +151,7 @@ class _Followed:
         match value:
             case bool():
                 self._truth(t, value)
-            case int() | float() if math.isfinite(value):
+            case int() | float() if value == value:
                 self.low, self.high = min(self.low, value), max(self.high, value)
             case None | float():
                 self.unknown = True

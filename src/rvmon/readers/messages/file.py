@@ -13,6 +13,7 @@ from rvmon.readers.messages.match import matched
 from rvmon.readers.messages.rows import message_rows
 from rvmon.readers.messages.skew import Skew
 from rvmon.readers.messages.topic import Message, Messages
+from rvmon.readers.messages.transforms import WithTransforms, pairs_asked, sends_transforms
 from rvmon.readers.places import local_path
 from rvmon.readers.rows import Row
 from rvmon.trace.binding import Clock
@@ -148,7 +149,13 @@ class MessageFile:
 
     def _opened(self) -> Messages:
         path, form = self._place
-        return open_messages(local_path(path), form, self._schema)
+        source = open_messages(local_path(path), form, self._schema)
+        schema = self._schema
+        bound = [one.topic for one in schema.binding.bounds.values()]
+        pairs = pairs_asked([*bound, *schema.columns.values(), *schema.signals])
+        if pairs and sends_transforms(source.topics):
+            return WithTransforms(source, pairs)
+        return source
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, as they were recorded.

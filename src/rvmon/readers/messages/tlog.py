@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import struct
 from array import array
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -42,10 +43,11 @@ class TelemetryMessages:
 
     def __init__(self, path: Path) -> None:
         try:
+            from pymavlink.dialects.v10 import ardupilotmega as first
             from pymavlink.dialects.v20 import ardupilotmega
         except ImportError:
             raise not_installed("telemetry of MAVLink", "pymavlink") from None
-        self._dialect = ardupilotmega
+        self._dialect, self._first = ardupilotmega, first
         self._data = path.read_bytes()
         self.outages: list[Outage] = []
         self._times, self._places, self._senders = array("q"), array("q"), array("q")
@@ -146,12 +148,45 @@ class TelemetryMessages:
         times, senders = np.asarray(self._times), np.asarray(self._senders)
         chosen = np.flatnonzero(np.isin(senders, wanted))
         chosen = chosen[np.argsort(times[chosen], kind="stable")]
-        decode = self._dialect.MAVLink(None).decode
+        keys = list(self._keys)
+        readers: dict[int, Callable[[int], Mapping[str, Any]]] = {}
         for one in chosen.tolist():
-            place = self._places[one]
-            size, _ = self._packet_at(place - _STAMP) or (0, None)
-            message = decode(bytearray(self._data[place : place + size]))
-            yield self._names[self._senders[one]], self._times[one], message
+            sender = self._senders[one]
+            if sender not in readers:
+                readers[sender] = self._reader(keys[sender][0])
+            yield self._names[sender], self._times[one], readers[sender](self._places[one])
+
+    def _reader(self, number: int) -> Callable[[int], Mapping[str, Any]]:
+        """What gives the fields of the packet at a place, whose checksum fits.
+
+        Zeros at the end of a packet are not sent. Version 1 of MAVLink knows no extensions.
+        """
+        known = self._dialect.mavlink_map[number]
+        first = self._first.mavlink_map.get(number, known)
+        size, unpack, data = known.unpacker.size, known.unpacker.unpack, self._data
+        slots: list[tuple[str, int, int, bool]] = []
+        place = 0
+        for field, length in zip(known.ordered_fieldnames, known.array_lengths, strict=True):
+            is_text = known.fieldtypes[known.fieldnames.index(field)] == "char"
+            slots.append((field, place, length, is_text))
+            place += 1 if is_text or not length else length
+        plain = [slot for slot in slots if slot[0] in first.fieldnames]
+
+        def read(start: int) -> Mapping[str, Any]:
+            is_first = data[start] == _MAGIC_1
+            begin = start + (6 if is_first else 10)
+            payload = data[begin : begin + data[start + 1]][:size].ljust(size, b"\0")
+            parts = unpack(payload)
+            return {
+                field: parts[place].partition(b"\0")[0].decode("ascii", "replace")
+                if is_text
+                else list(parts[place : place + length])
+                if length
+                else parts[place]
+                for field, place, length, is_text in (plain if is_first else slots)
+            }
+
+        return read
 
     def close(self) -> None:
         """Nothing is open."""
