@@ -8,7 +8,7 @@ from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import normal_form
-from rvmon.timed.model.network import LeadsToFormula, Network
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
 from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
 from tests.tools.timed_generate import random_model
@@ -45,5 +45,5 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
 
 def _formula(network: Network, text: str) -> Expression:
     formula = query_on(network, text).formula
-    assert not isinstance(formula, LeadsToFormula)
+    assert not isinstance(formula, LeadsToFormula | Chance | Mean)
     return formula

@@ -13,7 +13,7 @@ from xml.sax.saxutils import escape
 
 from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.names import Names, Thing
-from rvmon.timed.model.expressions import TRUE, Expression, PathFormula
+from rvmon.timed.model.expressions import TRUE, PathFormula
 from rvmon.timed.model.network import (
     Automaton,
     Edge,
@@ -21,6 +21,7 @@ from rvmon.timed.model.network import (
     LeadsToFormula,
     Network,
     Query,
+    QueryFormula,
     Reset,
     Update,
     Variable,
@@ -168,7 +169,7 @@ def _query(names: Names, query: Query) -> Iterator[str]:
     yield "    </query>"
 
 
-def _formula(names: Names, formula: Expression | LeadsToFormula) -> str:
+def _formula(names: Names, formula: QueryFormula) -> str:
     """The formula; empty if UPPAAL has none for it."""
     match formula:
         case LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):

@@ -14,8 +14,8 @@ _STATEMENTS: Reason = (
 _GAMES: Reason = ("games and strategies are not supported", "ask for a run with E<>")
 _EXTREMES: Reason = ("extreme values are not computed", "ask whether A[] x <= bound holds")
 _STATISTICS: Reason = (
-    "statistical queries are not decided",
-    "--simulate counts the runs that E<>, A<>, A[] or E[] speak of",
+    "this form of a statistical query is not supported",
+    "write Pr[<=T](<> p), with >= or <= a number for a test, or E[<=T; n](max: e)",
 )
 _UNTIL: Reason = (
     "until takes brackets",

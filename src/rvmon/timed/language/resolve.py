@@ -135,6 +135,8 @@ class Resolver:
             case syntax.LeadsTo(_, _, _, span):
                 fix = "write A[] (p imply A<> q)"
                 raise model_error("TA020", "`-->` can only stand outermost", span, fix)
+            case syntax.Chance() | syntax.Mean():
+                raise model_error("TA020", "statistics can only stand outermost", written.span)
             case syntax.Assuming(_, _, span):
                 raise model_error("TA020", "`assuming` can only stand outermost", span)
             case _:

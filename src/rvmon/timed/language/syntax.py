@@ -126,6 +126,30 @@ class Assuming:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """`Pr[<=T; n](<> p)`, or with `[]`; compared with a `level` by `op` if it is a test."""
+
+    op: PathOp
+    body: Expression
+    within: Expression
+    runs: Expression | None
+    sign: BinaryOp | None
+    level: float
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """`E[<=T; n](max: e)`, or with `min`."""
+
+    largest: bool
+    value: Expression
+    within: Expression
+    runs: Expression | None
+    span: Span
+
+
 Expression = (
     Number
     | Name
@@ -139,6 +163,8 @@ Expression = (
     | Path
     | LeadsTo
     | Assuming
+    | Chance
+    | Mean
 )
 
 

@@ -354,6 +354,28 @@ class SyntaxBuilder(Transformer[Token, Any]):
         name, *parts = items
         return syntax.Call(str(name), (self.linear_until(meta, parts),), self._span(meta))
 
+    def within(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, Any]:
+        return items[0], items[1] if len(items) > 1 else None
+
+    def chance(self, meta: Meta, items: Sequence[Any]) -> syntax.Chance:
+        name, (within, runs), word, body, *test = items
+        span = self._span(meta)
+        sign, level = (BinaryOp(test[0]), float(test[1])) if test else (None, 0.0)
+        if not isinstance(name, syntax.Name) or name.name != "Pr":
+            raise model_error("TA001", "a bound in runs", span, "write Pr[<=T](<> p)")
+        if test and (sign not in (BinaryOp.GE, BinaryOp.LE) or not 0 < level < 1):
+            fix = "a probability is >= or <= a number above 0 and below 1"
+            raise model_error("TA020", "this is no test", span, fix)
+        return syntax.Chance(_CTL[word], body, within, runs, sign, level, span)
+
+    def mean(self, meta: Meta, items: Sequence[Any]) -> syntax.Mean:
+        name, (within, runs), which, value = items
+        span = self._span(meta)
+        if not isinstance(name, syntax.Name) or name.name != "E" or which not in ("max", "min"):
+            fix = "write E[<=T; n](max: e) or (min: e)"
+            raise model_error("TA001", "this is no expected value", span, fix)
+        return syntax.Mean(which == "max", value, within, runs, span)
+
     def assuming(self, meta: Meta, items: Sequence[Any]) -> syntax.Assuming:
         return syntax.Assuming(items[0], items[1], self._span(meta))
 

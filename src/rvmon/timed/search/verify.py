@@ -13,7 +13,7 @@ from rvmon.timed.model.expressions import (
     PathFormula,
 )
 from rvmon.timed.model.guards import is_linear, normal_form, with_deadlock
-from rvmon.timed.model.network import LeadsToFormula, Network, Query
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
@@ -113,6 +113,9 @@ def _search(question: _Question, query: Query) -> _Found:
             check_linear(PathFormula(PathOp.EVENTUALLY, left), query.span)
         case LeadsToFormula():
             pass
+        case Chance() | Mean():
+            fix = "simulate it: `rvmon verify` does, as does `sample`"
+            raise model_error("TA020", "statistics are no decision", query.span, fix)
         case formula if is_linear(formula):
             return _on_runs(question, query, formula)
     match query.formula:
