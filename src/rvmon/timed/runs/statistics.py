@@ -30,8 +30,8 @@ RUNS = 1_000
 """Runs of an estimate that does not say how many."""
 
 MARGIN = 0.01
-"""A test need not tell a probability from the level that is nearer to it; near 0 and 1 it is half
-of what is left."""
+"""A test need not tell a probability from the level that is nearer to it; near 0 and 1 half of what
+is left is the margin."""
 
 ERROR = 0.05
 """How often a test may be wrong, either way; estimates have bounds with the rest as confidence."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf, log, prod
@@ -16,6 +16,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    InLocation,
     PathFormula,
     UnaryOperation,
 )
@@ -26,9 +27,8 @@ from rvmon.timed.model.rules import model_error
 from rvmon.timed.search.linear import Ways, WayState
 from rvmon.timed.search.nested import together
 from rvmon.timed.search.programs import Programs
-from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
+from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds, location_bounds
 from rvmon.timed.zones.zone_unions import (
-    formula_bounds,
     has_bounds,
     has_paths,
     speaks_of_deadlock,
@@ -147,7 +147,12 @@ class Plan:
         due: tuple[ClockCompare, ...] = ()
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             due = (ClockCompare(timer, ClockOp.LE, Constant(sought.bound)),)
-        automata, locations, edges = self._automata()
+        self._sets = [
+            {u.clock for edge in a.edges for u in edge.updates if isinstance(u, Reset)}
+            for a in network.automata
+        ]
+        # What a query compares clocks with, by automaton and location, or with None everywhere.
+        self._asked: dict[int | None, dict[int, list[ClockCompare]]] = {}
         self.goal = alternatives_of(sought.goal, due)
         self.inside = alternatives_of(sought.inside, due)
         states = () if sought.ways is None else sought.ways.states
@@ -156,6 +161,7 @@ class Plan:
         inside = self._alternatives(self.inside)
         if sought.nested is not None:
             self._grow(sought.nested)
+        automata, locations, edges = self._automata()
         self._refuse_too_large(len(self.inside))
         sections = [
             (4, [x for v in network.variables for x in (v.low, v.high, v.initial, v.is_bool)]),
@@ -197,7 +203,7 @@ class Plan:
         edges: list[int] = []
         for index, automaton in enumerate(self._network.automata):
             automata += [len(locations) // 8, len(automaton.locations), automaton.initial]
-            bounds = location_bounds(self._network, automaton)
+            bounds = location_bounds(self._network, automaton, self._asked.get(index))
             for number, place in enumerate(automaton.locations):
                 first, limit = len(self.edges), len(self._limits) // 3
                 for k, edge in enumerate(automaton.edges):
@@ -250,6 +256,15 @@ class Plan:
         return first, len(self._atoms) // 4 - first
 
     def _alternatives(self, alternatives: Sequence[Alternative]) -> list[int]:
+        for one in alternatives:
+            places = list(_places_of(one.condition))
+            for compare in one.compares:
+                if compare.clock == len(self._network.clocks):
+                    continue  # the timer
+                # Best the place of an automaton that sets the clock: its edges forget the number.
+                chosen = [p for p in places if compare.clock in self._sets[p[0]]] or places
+                automaton, place = chosen[0] if chosen else (None, 0)
+                self._asked.setdefault(automaton, {}).setdefault(place, []).append(compare)
         return [
             number
             for one in alternatives
@@ -257,14 +272,9 @@ class Plan:
         ]
 
     def _extra(self, sought: Sought, timer: int) -> list[int]:
-        """What the query compares clocks with, in every location."""
-        bounds = no_bounds(len(self._network.clocks))
-        states = () if sought.ways is None else sought.ways.states
-        labels = [part for state in states for part in state.label]
-        for formula in (sought.goal, sought.inside, sought.nested, *labels):
-            if formula is not None:
-                bounds = bounds.joined([formula_bounds(formula, self._network)])
-        rows = _limit_rows(bounds)
+        """What the query compares clocks with, wherever the automata are."""
+        everywhere = self._asked.get(None, {}).get(0, [])
+        rows = _limit_rows(compared_bounds(self._network, everywhere))
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             rows += [timer, 0, sought.bound]
         return rows
@@ -328,6 +338,16 @@ def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) 
     for _, section in sections:
         numbers += section
     return array("i", numbers).tobytes()
+
+
+def _places_of(condition: Expression) -> Iterator[tuple[int, int]]:
+    """Automata and the locations in which they are wherever a condition holds."""
+    match condition:
+        case InLocation(automaton, location):
+            yield automaton, location
+        case BinaryOperation(BinaryOp.AND, left, right):
+            yield from _places_of(left)
+            yield from _places_of(right)
 
 
 def _way_rows(states: Iterable[WayState]) -> list[int]:
