@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import PathFormula
+from rvmon.timed.model.expressions import LeadsToFormula, PathFormula
 from rvmon.timed.model.guards import normal_form
 from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
 from tests.tools.timed_generate import random_model
+
+_NESTS = "AG (EF[<=2] P0.l1 or A[not P0.l0 U[<=3] deadlock] or EX AF x > 1)"
 
 
 def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
@@ -18,6 +21,8 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
         formulas = [network.queries[k].formula for k in (0, 1, 10)]
         some, other, nested = (f.body for f in formulas if isinstance(f, PathFormula))
         some, other, nested = normal_form(some), normal_form(other), normal_form(nested, False)
+        of_states = query_on(network, _NESTS).formula
+        assert not isinstance(of_states, LeadsToFormula)
         for sought in (
             *(Sought(Seek.GOAL, some, choose=choose) for choose in Choose),
             Sought(Seek.GOAL, some, bound=3),
@@ -27,5 +32,6 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
             Sought(Seek.LATE, None, other, bound=2),
             Sought(Seek.LATE_AFTER, some, other, bound=2),
             Sought(Seek.NESTED, nested=nested),
+            Sought(Seek.START, nested=normal_form(of_states)),
         ):
             yield Plan(network, sought)

@@ -33,6 +33,7 @@ class Options:
         allow_missing: the names that recordings in columns may lack; `True`: all.
         coverage: whether all that the coverage model has is watched; default: coverpoints and
             crosses alone.
+        explains: whether anybody is told why there is no attempt, and what came late.
     """
 
     only: tuple[str, ...] | None = None
@@ -41,6 +42,7 @@ class Options:
     robustness: bool = False
     allow_missing: bool | tuple[str, ...] = False
     coverage: bool = False
+    explains: bool = True
 
 
 def spec_and_options(
@@ -61,7 +63,15 @@ def spec_and_options(
         arguments.robustness,
         allowed_names(arguments.allow_missing),
         arguments.coverage is not None,
+        not _shows_counts_alone(arguments),
     )
+
+
+def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
+    """Whether all that is shown of reports is how many verdicts there are."""
+    files = ("out", "report", "junit", "mcap", "evidence")
+    is_kept = any(getattr(arguments, name) for name in files)
+    return bool(arguments.quiet and arguments.format == "text" and not is_kept)
 
 
 class Beside:

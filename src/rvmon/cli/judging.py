@@ -127,7 +127,9 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(shown_path(trace), None, tuple(before), place + message)
-    report = post_analysis(spec, recording, report, goals=options.only is None)
+    report = post_analysis(
+        spec, recording, report, goals=options.only is None, explains=options.explains
+    )
     trace = shown_path(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
     report = replace(report, trace=trace, health=health)

@@ -167,9 +167,9 @@ bool home_reserve(home *h, int32_t attempts)
     return true;
 }
 
-void home_lack(home *h, bool event, int32_t local)
+void home_mark_absent(home *h, bool event, int32_t local)
 {
-    lack(h->root, event, local);
+    mark_absent(h->root, event, local);
     if (event && (h->part->plan->each != 0) && (local == h->part->plan->each_event)) {
         h->root->opens_at = -LIMIT; /* whatever occurs is unknown, from the first position on */
     }

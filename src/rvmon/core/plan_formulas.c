@@ -70,18 +70,11 @@ static bool check_program(const plan *p, const part_plan *x, int64_t place)
             }
             depth++;
             break;
-        case CODE_NEG:
-        case CODE_ABS:
-        case CODE_SQRT:
-            if (depth < 1) {
-                return false;
-            }
-            break;
         default:
-            if (!is_within(op, CODE_ADD, CODES) || (depth < 2)) {
+            if (!is_within(op, CODE_ADD, CODES) || (depth < arguments_of(op))) {
                 return false;
             }
-            depth--;
+            depth -= arguments_of(op) - 1;
             break;
         }
         if (depth >= PROGRAM_DEPTH) {

@@ -13,7 +13,7 @@ from xml.sax.saxutils import escape
 
 from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.names import Names, Thing
-from rvmon.timed.model.expressions import Expression, PathFormula
+from rvmon.timed.model.expressions import TRUE, Expression, PathFormula
 from rvmon.timed.model.network import (
     Automaton,
     Edge,
@@ -25,7 +25,7 @@ from rvmon.timed.model.network import (
     Update,
     Variable,
 )
-from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.model.operators import LocationKind, PathOp
 from rvmon.timed.zones.zone_unions import has_paths
 from rvmon.trace.time import TICKS_PER_UNIT
 
@@ -34,6 +34,7 @@ _HEAD = """<?xml version="1.0" encoding="utf-8"?>
 'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
 <nta>
 """
+_NEXT = (PathOp.SOME_NEXT, PathOp.EVERY_NEXT)
 _GRID = (200, 150)
 """Distance of locations in a drawing, right and down."""
 
@@ -172,7 +173,9 @@ def _formula(names: Names, formula: Expression | LeadsToFormula) -> str:
     match formula:
         case LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
             return f"{names.expression(left)} --> {names.expression(right)}"
-        case PathFormula(_, body, None) if not has_paths(body):
+        case PathFormula(op, body, None, left) if (
+            left == TRUE and op not in _NEXT and not has_paths(body)
+        ):
             return names.expression(formula)
         case _:
             return ""

@@ -6,12 +6,13 @@ import os
 import sys
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from errno import ENOENT
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
+from stat import S_ISFIFO
 from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.diagnostics.nearest import cannot_read
@@ -41,9 +42,6 @@ FORMATS = {
     **MESSAGE_FORMATS,
 }
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
-
-TINY = 1 << 10
-"""Bytes of text that are sooner read line by line than as columns."""
 
 
 class FileRecording:
@@ -88,6 +86,7 @@ class FileRecording:
         self.names: frozenset[str] | None = None
         self.end: int | None = None
         self._messages: MessageFile | None = None
+        self._known: Layout | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
                 layout = self._layout(split_lines(bounded_lines(text)))
@@ -153,7 +152,7 @@ class FileRecording:
             TraceError: with file and line.
         """
         of_columns = self._messages is None and can_be_read_again(self.path)
-        if not (of_columns and self._ordered) or self._has_less_than(TINY):
+        if not (of_columns and self._ordered):
             yield from self
             return
         with self._named_errors():
@@ -168,11 +167,10 @@ class FileRecording:
             yield from parquet_batches_of(local_path(self.path), self._schema)
             return
         with opened(self.path) as (plain, self._open_file):
-            size = os.fstat(self._open_file.fileno()).st_size
             if self._format == "csv":
                 from rvmon.readers.csv_batch import csv_batches
 
-                yield from csv_batches(plain, size, self._layout)
+                yield from csv_batches(plain, self._layout)
             else:
                 from rvmon.readers.jsonl_batch import jsonl_batches
 
@@ -187,13 +185,6 @@ class FileRecording:
             if number == 0 and self._schema.stamps is None and '"t_ns"' in line:
                 self._stamps = stamps_of("t_ns")
             yield line
-
-    def _has_less_than(self, size: int) -> bool:
-        """Whether it is a file of less text than so many bytes."""
-        with suppress(OSError):
-            is_text = self._format in ("csv", "jsonl") and can_be_read_again(self.path)
-            return is_text and Path(self.path).stat().st_size < size
-        return False
 
     def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
         yield from self.rows.samples(rows)
@@ -254,7 +245,9 @@ class FileRecording:
             _, header = next(rows)
         except StopIteration:
             raise TraceError("is empty: expected a header with a time column `t`") from None
-        return read_layout(header, self._schema)
+        if self._known is None or list(self._known.header) != header:
+            self._known = read_layout(header, self._schema)
+        return self._known
 
     @contextmanager
     def _text(self) -> Iterator[TextIO]:
@@ -307,7 +300,12 @@ def topics_of(path: str) -> Mapping[str, Topic]:
 
 def can_be_read_again(path: str) -> bool:
     """Whether a recording is a file, and not a stream that is gone when it was read."""
-    return path != "-" and (is_address(path) or not Path(path).is_fifo())
+    if path == "-" or is_address(path):
+        return path != "-"
+    try:
+        return not S_ISFIFO(os.stat(path).st_mode)
+    except OSError:
+        return True
 
 
 def format_of(path: str) -> str:

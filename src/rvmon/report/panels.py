@@ -10,13 +10,13 @@ from typing import TypeGuard
 
 from rvmon.errors import RvmonError
 from rvmon.explain.dissect import Strand, strands_of
-from rvmon.explain.late import late_arrivals
-from rvmon.explain.not_triggered import why_not_triggered
-from rvmon.explain.truths import Eye
+from rvmon.explain.late import late_in, waits_of
+from rvmon.explain.not_triggered import miss_in, parts_asked
+from rvmon.explain.truths import Eye, Question, Seen, look_through, parts_of
 from rvmon.report.markup import Child
 from rvmon.report.scene import Scene
 from rvmon.report.timeline import Ghost
-from rvmon.report.tracks import Track, TrackKind, tracks_of
+from rvmon.report.tracks import Track, TrackKind, Updates, tracks_of, updates_of
 from rvmon.report.view import View, view_of, whole_run
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
@@ -198,80 +198,103 @@ MOST_DISSECTED = 50_000
 
 def panels_of(content: RunPage) -> list[Panel]:
     """A panel for each attempt that is shown, and for each requirement without any."""
-    return [
-        panel
-        for name, attempts in shown_attempts(content.run.report).items()
-        for panel in _of_requirement(content, name, attempts)
-    ]
+    shown = shown_attempts(content.run.report)
+    made = _Panels(content, shown)
+    return [panel for name, attempts in shown.items() for panel in made.of(name, attempts)]
 
 
-def _of_requirement(content: RunPage, name: str, attempts: Sequence[Attempt]) -> Iterator[Panel]:
-    report, samples = content.run.report, content.run.samples
+class _Panels:
+    """Makes the panels of a page, whose run is looked through once for all of them."""
 
-    def tracks_in(run: JudgedRun) -> tuple[Track, ...]:
+    def __init__(self, content: RunPage, shown: Mapping[str, Sequence[Attempt]]) -> None:
+        self._content = content
+        report = content.run.report
+        self._updates: dict[int, Updates] = {}
+        self._waits = {
+            name: waits_of(content.spec.requirements[name], attempts)
+            for name, attempts in shown.items()
+            if name not in report.late
+        }
+        self._seen: Seen | None = None
+        if content.run.samples and report.end is not None:
+            questions = self._questions(shown)
+            samples, names = content.run.samples, _sources(content)
+            self._seen = look_through(content.spec, questions, samples, report.end, names)
+
+    def _questions(self, shown: Mapping[str, Sequence[Attempt]]) -> Iterator[Question]:
+        for name, attempts in shown.items():
+            requirement = self._content.spec.requirements[name]
+            yield from self._waits.get(name, {}).values()
+            if not attempts and name not in self._content.run.report.misses:
+                yield parts_asked(requirement)
+            if len(self._content.run.samples) <= MOST_DISSECTED:
+                yield from (parts_of(requirement, attempt) for attempt in attempts)
+
+    def of(self, name: str, attempts: Sequence[Attempt]) -> Iterator[Panel]:
+        """The panels of a requirement."""
+        run = self._content.run
+        report, samples = run.report, run.samples
+        tracks = self._tracks(run, name)
+        if not attempts:
+            view = whole_run(report, samples[0].t if samples else report.origin)
+            verdict, miss = report.verdicts[name], self._miss(name)
+            yield Panel(panel_id(name, None), name, None, verdict, view, tracks, None, miss=miss)
+        candidates: list[Candidate] = []
+        if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
+            candidates.append(Candidate(run, tracks))
+            others = (other for other in self._content.others if other.samples)
+            candidates.extend(Candidate(other, self._tracks(other, name)) for other in others)
+        late = self._late(name, attempts)
+        for attempt in attempts:
+            came = None if attempt.in_doubt else late.get(attempt.number)
+            view = view_of(attempt, report, came)
+            ghost = None
+            if attempt.verdict is Verdict.FAIL:
+                ghost = nearest_passing(attempt, tracks, view, candidates)
+            yield Panel(
+                panel_id(name, attempt),
+                name,
+                attempt,
+                attempt.verdict,
+                view,
+                tracks,
+                ghost,
+                self._strands(attempt, view),
+                came,
+            )
+
+    def _tracks(self, run: JudgedRun, name: str) -> tuple[Track, ...]:
         if not run.samples:
             return ()
-        requirement = content.spec.requirements[name]
-        return tracks_of(content.spec, requirement, run.samples, run.report.health)
+        spec = self._content.spec
+        if id(run) not in self._updates:
+            self._updates[id(run)] = updates_of(spec, run.samples)
+        updates = self._updates[id(run)]
+        return tracks_of(spec, spec.requirements[name], updates, run.report.health)
 
-    tracks = tracks_in(content.run)
-    if not attempts:
-        view = whole_run(report, samples[0].t if samples else report.origin)
-        miss = _miss(content, name)
-        yield Panel(
-            panel_id(name, None), name, None, report.verdicts[name], view, tracks, None, miss=miss
-        )
-    candidates: list[Candidate] = []
-    if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
-        candidates.append(Candidate(content.run, tracks))
-        others = (other for other in content.others if other.samples)
-        candidates.extend(Candidate(other, tracks_in(other)) for other in others)
-    dissected = _Dissected(content, name)
-    late = _late(content, name, attempts)
-    for attempt in attempts:
-        came = None if attempt.in_doubt else late.get(attempt.number)
-        view = view_of(attempt, report, came)
-        ghost = None
-        if attempt.verdict is Verdict.FAIL:
-            ghost = nearest_passing(attempt, tracks, view, candidates)
-        strands = dissected.strands(attempt, view)
-        yield Panel(
-            panel_id(name, attempt),
-            name,
-            attempt,
-            attempt.verdict,
-            view,
-            tracks,
-            ghost,
-            strands,
-            came,
-        )
-
-
-class _Dissected:
-    """A requirement on a run, whose attempts are taken apart."""
-
-    def __init__(self, content: RunPage, name: str) -> None:
-        self.spec = content.spec
-        self.requirement = content.spec.requirements[name]
-        self.samples = content.run.samples
-        self.end = content.run.report.end
-        self.names = _sources(content)
-        self._eye: Eye | None = None
-
-    def strands(self, attempt: Attempt, view: View) -> tuple[Strand, ...]:
+    def _strands(self, attempt: Attempt, view: View) -> tuple[Strand, ...]:
         """The truth of each part over a view, as far as the run reaches."""
-        if not self.samples or self.end is None or len(self.samples) > MOST_DISSECTED:
+        samples = self._content.run.samples
+        if self._seen is None or len(samples) > MOST_DISSECTED:
             return ()
-        start, stop = max(view.start, self.samples[0].t), min(view.end, self.end)
-        return strands_of(self._seen(attempt, self.end), start, stop) if start <= stop else ()
+        start, stop = max(view.start, samples[0].t), min(view.end, self._seen.end)
+        if start > stop:
+            return ()
+        requirement = self._content.spec.requirements[attempt.requirement]
+        return strands_of(Eye(requirement, attempt, self._seen), start, stop)
 
-    def _seen(self, attempt: Attempt, end: int) -> Eye:
-        """What an attempt captured changes what is seen; without that, one look is enough."""
-        own = self.requirement.captures or self.requirement.for_each
-        if self._eye is None or own:
-            self._eye = Eye(self.spec, self.requirement, self.samples, end, attempt, self.names)
-        return self._eye
+    def _miss(self, name: str) -> str:
+        """What the trigger lacked: as was found when the run was judged, or by looking now."""
+        found = self._content.run.report.misses.get(name)
+        if found is not None or self._seen is None:
+            return found or ""
+        return miss_in(self._content.spec, self._content.spec.requirements[name], self._seen)
+
+    def _late(self, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
+        """What came after its deadline: as was found when the run was judged, or now."""
+        if name not in self._waits or self._seen is None:
+            return self._content.run.report.late.get(name, {})
+        return late_in(attempts, self._waits[name], self._seen)
 
 
 def _sources(content: RunPage) -> frozenset[str]:
@@ -279,26 +302,6 @@ def _sources(content: RunPage) -> frozenset[str]:
     health = content.run.report.health
     absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
     return frozenset({*content.spec.signals, *content.spec.events} - absent)
-
-
-def _miss(content: RunPage, name: str) -> str:
-    """What the trigger lacked: as was found when the run was judged, or by looking now."""
-    run = content.run
-    if name in run.report.misses or not run.samples:
-        return run.report.misses.get(name, "")
-    requirement, end = content.spec.requirements[name], run.report.end
-    if end is None:
-        return ""
-    return why_not_triggered(content.spec, requirement, run.samples, end, _sources(content))
-
-
-def _late(content: RunPage, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
-    """What came after its deadline: as was found when the run was judged, or by looking now."""
-    run = content.run
-    if name in run.report.late or not run.samples or run.report.end is None:
-        return run.report.late.get(name, {})
-    requirement, end = content.spec.requirements[name], run.report.end
-    return late_arrivals(content.spec, requirement, attempts, run.samples, end, _sources(content))
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:

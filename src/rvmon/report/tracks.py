@@ -213,32 +213,36 @@ _KINDS = {
 }
 
 
+Updates = Mapping[str, Sequence[tuple[int, Value]]]
+"""By name of a signal or event, its instants in ticks and values, in order."""
+
+
+def updates_of(spec: CheckedSpec, samples: Iterable[Sample]) -> Updates:
+    """What a run reports of each signal and event, whichever requirements read it."""
+    updates: dict[str, list[tuple[int, Value]]] = {}
+    ignoring = spec.ignoring
+    for sample in samples:
+        for name, value in updates_in(sample.values, ignoring).items():
+            updates.setdefault(name, []).append((sample.t, value))
+    return updates
+
+
 def tracks_of(
-    spec: CheckedSpec,
-    requirement: Requirement,
-    samples: Sequence[Sample],
-    health: Sequence[Health] = (),
+    spec: CheckedSpec, requirement: Requirement, updates: Updates, health: Sequence[Health] = ()
 ) -> tuple[Track, ...]:
     """The tracks of the signals and events that a requirement reads, in its order."""
-    updates = _updates(spec, samples, concerned_names(requirement))
     absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
     return tuple(
-        _signal_track(spec.signals[name], requirement, seen)
+        _signal_track(spec.signals[name], requirement, updates.get(name, ()))
         if name in spec.signals
-        else Track(name, TrackKind.EVENT, tuple(_occurrences(seen)), absent=name in absent)
-        for name, seen in updates.items()
+        else Track(
+            name,
+            TrackKind.EVENT,
+            tuple(_occurrences(updates.get(name, ()))),
+            absent=name in absent,
+        )
+        for name in concerned_names(requirement)
     )
-
-
-def _updates(
-    spec: CheckedSpec, samples: Iterable[Sample], names: Sequence[str]
-) -> Mapping[str, list[tuple[int, Value]]]:
-    updates: dict[str, list[tuple[int, Value]]] = {name: [] for name in names}
-    for sample in samples:
-        for name, value in updates_in(sample.values, spec.ignoring).items():
-            if name in updates:
-                updates[name].append((sample.t, value))
-    return updates
 
 
 def _occurrences(updates: Iterable[tuple[int, Value]]) -> Iterator[tuple[int, Scalar]]:

@@ -87,7 +87,7 @@ def _others(profile: Profile) -> Iterator[Skeleton]:
 
 
 def _responses(columns: Sequence[Column]) -> Iterator[Skeleton]:
-    """The pair of which the second follows the first always, and soonest."""
+    """The pair of which the second follows the first always, and earliest."""
     candidates = [column for column in columns if column.instants][:MOST_CANDIDATES]
     found = []
     for trigger in candidates:

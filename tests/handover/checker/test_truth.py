@@ -14,7 +14,7 @@ from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot import mutants
 from handover.robot.handover import END, HandoverRobot
-from handover.world.measures import contact_force
+from handover.world.measures import contact_forces
 from rvmon.cdv.checker import Checker
 
 pytestmark = pytest.mark.campaign
@@ -245,7 +245,7 @@ def test_a_clamped_hand_bears_what_one_finger_presses():
     world = begun(TESTS["hand-hidden-by-noise"]).world
     world.run(17_200_000_000)
     scene = world.scene
-    by_finger = [contact_force(scene.hand, finger) for finger in scene.fingers]
+    by_finger = [contact_forces(scene.hand)[finger] for finger in scene.fingers]
     assert min(by_finger) > 140
     assert world.human.hand_force() == max(by_finger) < sum(by_finger)
 

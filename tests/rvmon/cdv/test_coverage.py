@@ -76,6 +76,18 @@ def test_all_models_are_gathered(campaign):
     assert old.keys() == {"states", "transitions", "pairs of transitions"}
 
 
+def test_states_give_transitions_by_themselves(campaign):
+    """From each to each other one; where some are listed, none but these, and the pairs of them."""
+    three = replace(campaign, states=("stands", "moves", "waits"), transitions=None)
+    groups = coverage_model(three, "new").groups
+    assert len(groups["transitions"].items) == 6
+    assert "moves → moves" not in groups["transitions"].items
+    assert not groups["pairs of transitions"].items
+    listed = coverage_model(campaign, "new").groups
+    assert list(listed["transitions"].items) == ["stands → moves", "moves → stands"]
+    assert not coverage_model(replace(three, transitions=()), "new").groups["transitions"].items
+
+
 def test_a_database_and_a_page_each(campaign, tmp_path):
     """The page leads to the pages of runs; the same campaign again is the same database."""
     results = execute(plan(campaign, tests=3), jobs=1)

@@ -5,8 +5,7 @@ from contextlib import redirect_stderr
 
 import pytest
 
-from rvmon.cli import main
-from rvmon.cli import output
+from rvmon.cli import main, output
 
 
 class Screen(io.StringIO):

@@ -19,6 +19,7 @@ from rvmon.report.tracks import (
     stretches,
     thresholds,
     tracks_of,
+    updates_of,
 )
 from rvmon.report.view import View, round_instants, view_of
 from rvmon.trace.health import Health, HealthKind
@@ -47,7 +48,7 @@ R1, R2 = SPEC.requirements.values()
 
 def track(name, samples, requirement=R1, health=()):
     """The track of one name."""
-    tracks = tracks_of(SPEC, requirement, samples, health)
+    tracks = tracks_of(SPEC, requirement, updates_of(SPEC, samples), health)
     return next(one for one in tracks if one.name == name)
 
 

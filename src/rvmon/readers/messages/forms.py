@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import os
 
 MESSAGE_FORMATS = {".bag": "ros1", ".db3": "ros2", ".mcap": "mcap"}
 """File name endings and the formats of messages they stand for; a bag of ROS 2 is a folder."""
@@ -19,4 +19,7 @@ MESSAGE_FORMS = frozenset({*MESSAGE_FORMATS.values(), *_FOLDERS.values()})
 
 def form_of_folder(path: str) -> str:
     """The format of a folder that is one recording; empty of other folders, and of files."""
-    return next((form for name, form in _FOLDERS.items() if Path(path, name).is_file()), "")
+    if not os.path.isdir(path):
+        return ""
+    found = (form for name, form in _FOLDERS.items() if os.path.isfile(os.path.join(path, name)))
+    return next(found, "")

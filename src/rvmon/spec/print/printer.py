@@ -197,7 +197,8 @@ def _arithmetic(numeric: Arithmetic) -> str:
         case NumericOp.NEG:
             return f"-{_numeric(numeric.args[0], _NEGATIVE)}"
         case op:
-            return f"{op}({', '.join(_numeric(arg, _SUM) for arg in numeric.args)})"
+            written = numeric.args[: op.entry.most]  # a turn is behind those of an angle
+            return f"{op}({', '.join(_numeric(arg, _SUM) for arg in written)})"
 
 
 def _literal(literal: Literal, level: int) -> str:

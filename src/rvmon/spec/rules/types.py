@@ -96,6 +96,33 @@ def argument_kind(span: Span, name: str, needed: str) -> Diagnostic:
     return finding(WRONG_ARGUMENTS, f"`{name}` needs {needed}, `{short(span.text)}` is none", span)
 
 
+def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
+    """An argument of another unit than a function takes; `needed` is empty for a plain number."""
+    text = short(span.text)
+    shown = f"comes in [{unit}]" if unit else "has no unit"
+    fix = (
+        f"divide it by 1 {unit}"
+        if unit
+        else "declare it in `[rad]` or `[deg]`: an angle is no plain number"
+    )
+    return finding(
+        UNIT_MISMATCH,
+        f"`{name}` takes {'an angle' if needed else 'a plain number'}, `{text}` {shown}",
+        span,
+        fix=fix,
+    )
+
+
+def power_of_unit(span: Span, unit: str) -> Diagnostic:
+    """A power of something with a unit that is not known beforehand."""
+    return finding(
+        UNIT_MISMATCH,
+        f"`{short(span.text)}` leaves open which power of [{unit}] comes out",
+        span,
+        fix="write a whole number up to 9, or divide the base by one of its units",
+    )
+
+
 def mismatch(span: Span, left: str, right: str, doing: str) -> Diagnostic:
     """Units of different kinds; `doing` is `compared with` and the like."""
     return finding(

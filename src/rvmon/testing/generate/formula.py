@@ -143,11 +143,13 @@ def arithmetic(rng: Rng, shape: Shape) -> Numeric:
         functions = (UpdateFunction.PREV,) if shape.wide else tuple(UpdateFunction)
         return UpdateValue(pick(rng, functions), pick(rng, NUMBERS))
     op = pick(rng, _CHOOSING if shape.wide else tuple(NumericOp))
-    first = _input(rng, shape)
-    if op.entry.most == 1:
-        return Arithmetic(op, (first,))
-    second = Literal(rng.randint(0, 2)) if chance(rng, 40) else _input(rng, shape)
-    return Arithmetic(op, (second, first) if chance(rng, 40) else (first, second))
+    args = [_input(rng, shape)]
+    while len(args) < op.entry.least:
+        further = Literal(rng.randint(0, 2)) if chance(rng, 40) else _input(rng, shape)
+        args.insert(rng.randint(0, len(args)), further)
+    if op is NumericOp.ANGLE_BETWEEN:
+        args.append(Literal(pick(rng, (2.5, 4))))
+    return Arithmetic(op, tuple(args))
 
 
 def field_value(rng: Rng) -> Numeric:

@@ -17,7 +17,7 @@ _STATISTICS: Reason = (
     "statistical queries are not decided",
     "--simulate counts the runs that E<>, A<>, A[] or E[] speak of",
 )
-_UNTIL: Reason = ("until and next are not decided", "use E<>, A[], A<>, E[] or -->")
+_UNTIL: Reason = ("until takes square brackets", "write A[p U q], E[p U q], A[p W q] or E[p W q]")
 _HOOKS: Reason = ("updates around every step are not supported", "write them on the edges")
 _OUTSIDE: Reason = ("functions from outside are not supported", "write their body out")
 _DYNAMIC: Reason = (
@@ -62,7 +62,7 @@ _ASKING: dict[str, Reason] = {
     **dict.fromkeys(("Pr", "simulate"), _STATISTICS),
     **dict.fromkeys(("sup", "inf", "bounds"), _EXTREMES),
     **dict.fromkeys(("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"), _GAMES),
-    **dict.fromkeys(("U", "W", "AX", "EX", "AU", "EU"), _UNTIL),
+    **dict.fromkeys(("U", "W", "AU", "EU"), _UNTIL),
 }
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _OLD_CONSTANT = re.compile(r"\bconst\s+(\w+)\s+(-?\d+)$")

@@ -117,10 +117,12 @@ class Resolver:
                     for value in values
                 ]
                 return _joined(BinaryOp.AND if universal else BinaryOp.OR, parts, span)
-            case syntax.Path(op, body, bound, span):
+            case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
-                return PathFormula(op, self.expression(body, scope), self.limit(bound, scope))
+                until = TRUE if left is None else self.expression(left, scope)
+                holds = self.expression(body, scope)
+                return PathFormula(op, holds, self.limit(bound, scope), until)
             case syntax.LeadsTo(_, _, _, span):
                 fix = "write A[] (p imply A<> q)"
                 raise model_error("TA020", "`-->` can only stand outermost", span, fix)

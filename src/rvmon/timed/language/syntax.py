@@ -98,12 +98,13 @@ class Quantified:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """A path operator on a formula; `bound` is the T of `[<=T]`."""
+    """A path operator on a formula; `bound` is the T of `[<=T]`, `left` the p of `[p U q]`."""
 
     op: PathOp
     body: Expression
     bound: Expression | None
     span: Span
+    left: Expression | None = None
 
 
 @dataclass(frozen=True, slots=True)

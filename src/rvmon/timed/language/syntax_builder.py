@@ -25,6 +25,8 @@ _CTL = {
     "AG": PathOp.INVARIANTLY,
     "AF": PathOp.EVENTUALLY,
     "EG": PathOp.POTENTIALLY_ALWAYS,
+    "EX": PathOp.SOME_NEXT,
+    "AX": PathOp.EVERY_NEXT,
 }
 
 
@@ -329,6 +331,21 @@ class SyntaxBuilder(Transformer[Token, Any]):
     def path_prefix(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
         word, *bound, body = items
         return syntax.Path(_CTL[word], body, bound[0] if bound else None, self._span(meta))
+
+    def until(self, meta: Meta, items: Sequence[Any]) -> syntax.Path | syntax.Binary:
+        quantifier, left, word, *bound, right = items
+        span = self._span(meta)
+        ops = {"A": PathOp.EVENTUALLY, "E": PathOp.POSSIBLY}
+        if not isinstance(quantifier, syntax.Name) or quantifier.name not in ops:
+            raise model_error("TA001", "`U` without A or E", span, "write A[p U q] or E[p U q]")
+        limit = bound[0] if bound else None
+        if word == "U":
+            return syntax.Path(ops[quantifier.name], right, limit, span, left)
+        # p W q: never both of them false before q.
+        weak = PathOp.INVARIANTLY if quantifier.name == "A" else PathOp.POTENTIALLY_ALWAYS
+        stays = syntax.Binary(BinaryOp.OR, left, right, span)
+        freed = syntax.Unary(UnaryOp.NOT, right, span)
+        return syntax.Path(weak, stays, limit, span, freed)
 
     def leads_to(self, meta: Meta, items: Sequence[Any]) -> syntax.LeadsTo:
         left, *bound, right = items

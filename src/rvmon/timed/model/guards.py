@@ -33,6 +33,8 @@ _NEGATED_PATH = {
     PathOp.INVARIANTLY: PathOp.POSSIBLY,
     PathOp.EVENTUALLY: PathOp.POTENTIALLY_ALWAYS,
     PathOp.POTENTIALLY_ALWAYS: PathOp.EVENTUALLY,
+    PathOp.SOME_NEXT: PathOp.EVERY_NEXT,
+    PathOp.EVERY_NEXT: PathOp.SOME_NEXT,
 }
 
 
@@ -49,8 +51,8 @@ def parts_of(expression: Expression) -> Iterator[Expression]:
                 waiting += (right, left)
             case Choice(condition, then, otherwise):
                 waiting += (otherwise, then, condition)
-            case PathFormula(_, body, _):
-                waiting.append(body)
+            case PathFormula(_, body, _, left):
+                waiting += (body, left)
             case _:
                 pass
 
@@ -70,10 +72,9 @@ def normal_form(expression: Expression, positive: bool = True) -> Expression:
             return expression if positive else ClockCompare(clock, _NEGATED_CLOCK[op], bound)
         case Deadlock():
             return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
-        case PathFormula(op, body, bound):
-            if positive:
-                return PathFormula(op, normal_form(body), bound)
-            return PathFormula(_NEGATED_PATH[op], normal_form(body, positive), bound)
+        case PathFormula(op, body, bound, left):
+            op = op if positive else _NEGATED_PATH[op]
+            return PathFormula(op, normal_form(body, positive), bound, normal_form(left))
         case UnaryOperation(UnaryOp.NOT, operand):
             return normal_form(operand, not positive)
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):

@@ -38,6 +38,8 @@ class PathOp(StrEnum):
     INVARIANTLY = "A[]"
     EVENTUALLY = "A<>"
     POTENTIALLY_ALWAYS = "E[]"
+    SOME_NEXT = "EX"
+    EVERY_NEXT = "AX"
 
 
 class BaseType(StrEnum):

@@ -50,10 +50,10 @@ typedef struct {
     int32_t low;
 } field;
 
-/* A move into a state: where from, the next one into it, its resets in a pool; its guard stands in a
- * federation at the same place. */
+/* A move between states: the next one into the same, its resets in a pool; its guard stands in a
+ * federation at the same place. The moves out of a state stand together. */
 typedef struct {
-    uint32_t from, next, resets;
+    uint32_t from, to, next, resets;
 } arrow;
 
 /* A frame of a search in depth: a node, the link by which it was entered, its next successor, the end
@@ -133,12 +133,12 @@ typedef struct {
     uint32_t stem, resume, resume_end;
     /* nested formulas */
     arrow *arrows;
-    uint32_t arrow_count, arrow_room, *into, into_room;
+    uint32_t arrow_count, arrow_room, *into, into_room, *out_of, out_of_room;
     int32_t *pool;
     uint32_t pool_count, pool_room;
     federation guards;
-    federation **reaching;
-    uint32_t *reaching_room;
+    federation **tables; /* by row and state, and two more */
+    uint32_t *table_rooms;
     federation pending;
     uint32_t *whose, whose_count, whose_room;
 } engine;

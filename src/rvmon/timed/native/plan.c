@@ -6,7 +6,7 @@
 
 const uint8_t plan_widths[SECTIONS] = {
     4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, UPDATE_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
-    LIMIT_SIZE, 3, ROW_SIZE,
+    LIMIT_SIZE, TREE_SIZE, ROW_SIZE,
 };
 
 /* Operands of each op, and how it changes the depth of the stack where it goes on behind itself. */
@@ -274,11 +274,19 @@ static bool tree_fits(const checker *c)
 {
     const int32_t *row = plan_rows(c->plan, AT_TREE);
     int32_t i;
-    for (i = 0; i < rows(c, AT_TREE); i++, row += 3) {
-        const bool two = (row[0] == TREE_AND) || (row[0] == TREE_OR);
-        if ((row[0] < 0) || (row[0] >= TREE_KINDS)
-            || ((row[0] == TREE_PLAIN) ? !within(row[1], row[2], rows(c, AT_PIECES))
-                                       : !within(row[1], 1, i) || (two && !within(row[2], 1, i)))) {
+    for (i = 0; i < rows(c, AT_TREE); i++, row += TREE_SIZE) {
+        const int32_t kind = row[TREE_KIND];
+        const bool open = (kind == TREE_UNTIL) || (kind == TREE_NEXT);
+        const bool two = (kind == TREE_AND) || (kind == TREE_OR) || (kind == TREE_UNTIL);
+        if ((kind < 0) || (kind >= TREE_KINDS) || (row[TREE_BOUND] < -1)
+            || (row[TREE_BOUND] == INT32_MAX)
+            || ((row[TREE_BOUND] >= 0) && (c->plan[HEAD_TIMER] == 0))) {
+            return false;
+        }
+        if ((kind == TREE_PLAIN)
+                ? !within(row[TREE_LEFT], row[TREE_RIGHT], rows(c, AT_PIECES))
+                : (!(open && (row[TREE_LEFT] == -1)) && !within(row[TREE_LEFT], 1, i))
+                      || (two && !within(row[TREE_RIGHT], 1, i))) {
             return false;
         }
     }
@@ -300,7 +308,7 @@ static bool head_fits(const int32_t *plan)
         || ((late || (plan[HEAD_POLICY] == POLICY_FASTEST)) && (plan[HEAD_TIMER] == 0))
         || (plan_count(plan, AT_TREE) > MOST_TREE_ROWS)
         || (plan_count(plan, AT_INSIDE) > MOST_PIECES)
-        || ((kind == SEEK_NESTED) && (plan_count(plan, AT_TREE) == 0))) {
+        || (((kind == SEEK_NESTED) || (kind == SEEK_START)) && (plan_count(plan, AT_TREE) == 0))) {
         return false;
     }
     for (i = 0; i < plan_count(plan, AT_VARIABLES); i++, variable += 4) {

@@ -26,9 +26,9 @@ enum {
 
 /* What is sought: a run to a goal; to a goal that speaks of deadlock; one that stays inside for ever
  * from the start, or from a goal; one that stays inside longer than the bound, from the start or from
- * a goal; a run to a goal that speaks of runs. */
+ * a goal; a run to a goal that speaks of runs; whether that holds at the start. */
 enum { SEEK_GOAL, SEEK_DEADLOCK, SEEK_STAY, SEEK_STAY_AFTER, SEEK_LATE, SEEK_LATE_AFTER, SEEK_NESTED,
-       SEEK_KINDS };
+       SEEK_START,       SEEK_KINDS };
 enum { POLICY_SHORTEST, POLICY_FASTEST, POLICY_LIKELY, POLICIES };
 
 enum {
@@ -45,7 +45,7 @@ enum {
     AT_GOAL,      /* alternatives: condition or -1, first atom, number of atoms */
     AT_INSIDE,    /* the same for where runs stay, or for the goal where there is a deadlock */
     AT_EXTRA,     /* limits that hold in every location */
-    AT_TREE,      /* nested formula: a kind, two numbers; the last row is the whole */
+    AT_TREE,      /* nested formula, as below; the last row is the whole */
     AT_PIECES,    /* alternatives of plain rows of the tree */
     SECTIONS
 };
@@ -62,7 +62,11 @@ enum { ROW_CONDITION, ROW_ATOM, ROW_ATOMS, ROW_SIZE };
 enum { UPDATE_CLOCK, UPDATE_OFFSET, UPDATE_FIRST, UPDATE_COUNT, UPDATE_VALUE, UPDATE_SIZE };
 enum { ATOM_CLOCK, ATOM_OP, ATOM_CODE, ATOM_NUMBER, ATOM_SIZE };
 enum { LIMIT_CLOCK, LIMIT_LOWER, LIMIT_NUMBER, LIMIT_SIZE };
-enum { TREE_PLAIN, TREE_AND, TREE_OR, TREE_CAN, TREE_CANNOT, TREE_KINDS };
+enum { TREE_KIND, TREE_LEFT, TREE_RIGHT, TREE_BOUND, TREE_SIZE };
+/* Alternatives; both rows; one of them; not the left one; some run has left until right (left -1:
+ * anything); some stays in left; some next move leads to left (-1: anywhere). The bound is -1 where
+ * there is none. */
+enum { TREE_PLAIN, TREE_AND, TREE_OR, TREE_NOT, TREE_UNTIL, TREE_STAY, TREE_NEXT, TREE_KINDS };
 
 enum {
     OP_END, OP_CONST, OP_VARIABLE,

@@ -32,7 +32,7 @@ static bool find_stuck(engine *h, const bound *z, int k, bool delays)
         if (cut_invariant(h, h->copy, w->places, w->values)
             && constrain(h->copy, h->dim, y, x, negated(b))) {
             before(h->copy, h->dim);
-            if (!subtract(h, h->copy)) {
+            if (!subtract(h, &h->dead, h->copy)) {
                 return false;
             }
         }

@@ -133,8 +133,8 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     h->been = block(h, (size_t)h->inside_count, sizeof *h->been);
     h->step_edges = block(h, (size_t)h->automaton_count, sizeof *h->step_edges);
     h->failed_edges = block(h, (size_t)h->automaton_count, sizeof *h->failed_edges);
-    h->reaching = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching);
-    h->reaching_room = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching_room);
+    h->tables = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->tables);
+    h->table_rooms = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->table_rooms);
     return runs(h);
 }
 
@@ -148,11 +148,12 @@ static void free_engine(engine *h)
     for (s = 0; s < h->chunk_count; s++) {
         free(h->chunks[s]);
     }
-    for (k = 0; (h->reaching != NULL) && (k < plan_count(h->plan, AT_TREE)); k++) {
-        for (s = 0; (h->reaching[k] != NULL) && (s < h->reaching_room[k]); s++) {
-            free(h->reaching[k][s].zones);
+    for (k = 0; (h->tables != NULL) && (h->table_rooms != NULL)
+                && (k < plan_count(h->plan, AT_TREE) + 2); k++) {
+        for (s = 0; (h->tables[k] != NULL) && (s < h->table_rooms[k]); s++) {
+            free(h->tables[k][s].zones);
         }
-        free(h->reaching[k]);
+        free(h->tables[k]);
     }
     free_walk(&h->out);
     free_walk(&h->look);
@@ -173,10 +174,11 @@ static void free_engine(engine *h)
     free(h->frames);
     free(h->arrows);
     free(h->into);
+    free(h->out_of);
     free(h->pool);
     free(h->whose);
-    free(h->reaching);
-    free(h->reaching_room);
+    free(h->tables);
+    free(h->table_rooms);
     all[n++] = h->lower;
     all[n++] = h->upper;
     all[n++] = h->lowers;
@@ -241,6 +243,11 @@ static bool limits_fit(const engine *h)
             }
         }
     }
+    for (s = 0; s < plan_count(h->plan, AT_TREE); s++) {
+        if (tree_row(h, s)[TREE_BOUND] > h->most_time) {
+            return false;
+        }
+    }
     return h->plan[HEAD_BOUND] <= h->most_time;
 }
 
@@ -255,12 +262,19 @@ static void run(engine *h)
     if (!runs(h) || !invariant_data_holds(h, w->target, w->changed)) {
         return;
     }
-    if (h->kind == SEEK_NESTED) {
+    if ((h->kind == SEEK_NESTED) || (h->kind == SEEK_START)) {
         find_moves(h);
+        solve(h);
         if (!runs(h) || h->failed) {
             return;
         }
         begin(h);
+    }
+    if (h->kind == SEEK_START) {
+        if (in_nested(h, w->zone, w->target, w->changed)) {
+            h->state = SEARCH_FOUND;
+        }
+        return;
     }
     if (h->kind == SEEK_STAY) {
         stay_from(h, NONE, 0);

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf, log, prod
+from typing import assert_never
 
 from rvmon.timed.model.expressions import (
     TRUE,
@@ -14,16 +15,23 @@ from rvmon.timed.model.expressions import (
     ClockCompare,
     ClockOp,
     Constant,
+    Deadlock,
     Expression,
     PathFormula,
+    UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete, normal_form
+from rvmon.timed.model.guards import is_discrete
 from rvmon.timed.model.network import Assignment, Edge, Network, Reset
-from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
+from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.search.programs import Programs
 from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
-from rvmon.timed.zones.zone_unions import formula_bounds, has_paths
+from rvmon.timed.zones.zone_unions import (
+    formula_bounds,
+    has_bounds,
+    has_paths,
+    speaks_of_deadlock,
+)
 
 MAGIC = 0x5A4E3031
 MOST_CLOCKS = 1000
@@ -32,7 +40,7 @@ MOST_TREE_ROWS = 1000
 LARGEST = (1 << 31) - 2
 _OPS = {ClockOp.LT: 0, ClockOp.LE: 1, ClockOp.GE: 2, ClockOp.GT: 3}
 _KINDS = {LocationKind.NORMAL: 0, LocationKind.URGENT: 1, LocationKind.COMMITTED: 2}
-_AND, _OR, _CAN, _CANNOT = 1, 2, 3, 4
+_PLAIN, _AND, _OR, _NOT, _UNTIL, _STAY, _NEXT = range(7)
 
 
 class Seek(IntEnum):
@@ -45,6 +53,7 @@ class Seek(IntEnum):
     LATE = 4
     LATE_AFTER = 5
     NESTED = 6
+    START = 7
 
 
 class Choose(IntEnum):
@@ -72,7 +81,7 @@ class Sought:
         goal: normalised; where runs lead, or from where they are watched, or what holds where
             there is no deadlock.
         inside: normalised; where runs stay, or what holds where there is a deadlock.
-        nested: normalised; where runs lead, if that speaks of runs.
+        nested: normalised; where runs lead, or what holds at the start, if that speaks of runs.
         choose: among several runs.
         bound: units of time, if there is one.
     """
@@ -87,12 +96,16 @@ class Sought:
     @property
     def has_timer(self) -> bool:
         """Whether one more clock belongs to the query."""
-        return self.bound is not None or self.choose is Choose.FASTEST
+        return (
+            self.bound is not None
+            or self.choose is Choose.FASTEST
+            or (self.nested is not None and has_bounds(self.nested))
+        )
 
     @property
     def is_levelled(self) -> bool:
         """Whether only states that can do the same stand for each other, not those that do more."""
-        return self.kind in (Seek.DEADLOCK, Seek.STAY, Seek.STAY_AFTER, Seek.NESTED)
+        return self.kind in (Seek.DEADLOCK, Seek.STAY, Seek.STAY_AFTER, Seek.NESTED, Seek.START)
 
 
 class Plan:
@@ -141,7 +154,7 @@ class Plan:
             (3, goal),
             (3, inside),
             (3, self._extra(sought, timer + 1)),
-            (3, self._tree),
+            (4, self._tree),
             (3, self._pieces),
         ]
         late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else 0
@@ -154,7 +167,7 @@ class Plan:
         if (
             len(self._network.clocks) >= MOST_CLOCKS
             or pieces > MOST_PIECES
-            or len(self._tree) > 3 * MOST_TREE_ROWS
+            or len(self._tree) > 4 * MOST_TREE_ROWS
         ):
             raise model_error("TA019", "the query has too many alternatives, or clocks", None)
 
@@ -236,23 +249,53 @@ class Plan:
         return rows
 
     def _grow(self, formula: Expression) -> int:
-        """Add a row of the tree for a normalised formula; its number."""
+        """Add rows of the tree for a normalised formula; the number of the last."""
         match formula:
+            case Deadlock():
+                return self._row(_NOT, self._row(_NEXT, -1))
+            case UnaryOperation(UnaryOp.NOT, Deadlock()):
+                return self._row(_NEXT, -1)
             case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right) if has_paths(
                 formula
-            ):
+            ) or speaks_of_deadlock(formula):
                 kind = _AND if op is BinaryOp.AND else _OR
-                row = [kind, self._grow(left), self._grow(right)]
-            case PathFormula(PathOp.POSSIBLY, body, None):
-                row = [_CAN, self._grow(body), 0]
-            case PathFormula(PathOp.INVARIANTLY, body, None):
-                row = [_CANNOT, self._grow(normal_form(body, positive=False)), 0]
+                return self._row(kind, self._grow(left), self._grow(right))
+            case PathFormula(op, body, bound, left):
+                return self._path(op, self._grow(body), left, -1 if bound is None else bound)
             case _:
                 first = len(self._pieces) // 3
                 self._pieces += self._alternatives(alternatives_of(formula))
-                row = [0, first, len(self._pieces) // 3 - first]
-        self._tree += row
-        return len(self._tree) // 3 - 1
+                return self._row(_PLAIN, first, len(self._pieces) // 3 - first)
+
+    def _path(self, op: PathOp, body: int, until: Expression, bound: int) -> int:
+        left = -1 if until == TRUE else self._grow(until)
+        match op:
+            case PathOp.POSSIBLY:
+                return self._row(_UNTIL, left, body, bound)
+            case PathOp.INVARIANTLY:
+                return self._row(_NOT, self._row(_UNTIL, left, self._row(_NOT, body), bound))
+            case PathOp.POTENTIALLY_ALWAYS:
+                return self._stay(body, left, bound)
+            case PathOp.EVENTUALLY:
+                return self._row(_NOT, self._stay(self._row(_NOT, body), left, bound))
+            case PathOp.SOME_NEXT:
+                return self._row(_NEXT, body)
+            case PathOp.EVERY_NEXT:
+                return self._row(_NOT, self._row(_NEXT, self._row(_NOT, body)))
+            case _:
+                assert_never(op)
+
+    def _stay(self, body: int, left: int, bound: int) -> int:
+        """A run on which the body holds for ever, or until both it and `left` end at once."""
+        stay = self._row(_STAY, body, 0, bound)
+        if left < 0:
+            return stay
+        ends = self._row(_AND, self._row(_NOT, left), body)
+        return self._row(_OR, stay, self._row(_UNTIL, body, ends, bound))
+
+    def _row(self, kind: int, left: int, right: int = 0, bound: int = -1) -> int:
+        self._tree += (kind, left, right, bound)
+        return len(self._tree) // 4 - 1
 
 
 def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) -> bytes:

@@ -67,7 +67,7 @@ def test_what_is_not_supported_is_called_by_its_name(parts, message):
         ("sup: T.A", "extreme values"),
         ("control: A<> T.A", "games"),
         ("E<> T.A under s", "games"),
-        ("A[ T.A U T.A ]", "until"),
+        ("A (T.A U T.A)", "square brackets"),
     ],
 )
 def test_foreign_queries_are_called_by_their_name(formula, message):
