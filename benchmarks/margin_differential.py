@@ -14,9 +14,9 @@ import time
 from collections import Counter
 
 from benchmarks.differential import FEATURES, MODELS, profile_of
+from benchmarks.margin_ways import WAYS, Way
 from tests.tools.differential import cases_of
 from tests.tools.judgement import Judgement
-from tests.tools.margin_ways import WAYS, Way
 from tests.tools.shrink import shrink
 
 from rvmon.errors import RvmonError

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from tests.tools.pages import OWN_TESTS, PAGES, ROOT, Runner, blocks, own_test
+from tests.docs.pages import OWN_TESTS, PAGES, ROOT, Runner, blocks, own_test
 
 import rvmon
 

@@ -5,10 +5,10 @@ import random
 
 import numpy as np
 import pytest
+from tests.rvmon.core.tables import planned_for, random_table, rows_differ
 from tests.tools.compare import differences
 from tests.tools.forms import Compiler
 from tests.tools.law import judge
-from tests.tools.tables import planned_for, random_table, rows_differ
 
 import rvmon
 from rvmon.testing.case import Case

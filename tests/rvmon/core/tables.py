@@ -10,6 +10,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from tests.tools.core_forms import column_of
+from tests.tools.forms import Compiler
 
 from rvmon import native
 from rvmon.monitor.core.planned import DECISIONS, PlannedCore, planned_core
@@ -19,8 +21,6 @@ from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt, Decision
-from tests.tools.core_forms import column_of
-from tests.tools.forms import Compiler
 
 TRACES = 4
 """So many random traces of a specification say which values and steps of time matter to it."""

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from tests.tools.compare import Key
+from tests.tools.doors import content_of, whole
 
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.monitor.robustness.values import Measured, Robustness
 from rvmon.session import Spec
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample
-from tests.tools.compare import Key
-from tests.tools.doors import content_of, whole
 
 Figures = tuple[float, float, float]
 """The least that robustness can be, the greatest, and what is kept up to the end."""

@@ -3,7 +3,7 @@
 Behind the language of a fence stand marks: `file=NAME` writes the block to the page's folder,
 `excerpt-of=PATH` says in which file of the project each of its lines stands, `wrong` that it has
 errors, `elided` that `…` stands for anything in its output, `not-run="why"` that it is not run.
-`python -m tests.tools.pages` counts.
+`python -m tests.docs.pages` counts.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 
-DRIVER = Path(__file__).parents[1] / "rvmon" / "export" / "judge.c"
+DRIVER = Path(__file__).parent / "judge.c"
 HEAP = -1
 _NO_TIME = -(1 << 63)
 _SAYS_NO, _SAYS_UNKNOWN, _SAYS_YES = range(3)
