@@ -14,6 +14,8 @@ from rvmon.spec.checked.formula import (
     Amount,
     Binary,
     BinaryOp,
+    Bound,
+    BoundAtom,
     Compare,
     CompareOp,
     Constant,
@@ -207,7 +209,10 @@ def _quantities(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compa
 
 
 def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:
-    """`age(x) > D` is: no update within the last D. In whole ticks, `>= D` is `> D - 1 tick`."""
+    """`age(x) > D` is: neither an update within the last D, nor the beginning of the trace.
+
+    In whole ticks, `>= D` is `> D - 1 tick`.
+    """
     if op in _EQUALITY:
         raise Refusal(rules.age_alone(span))
     ticks = ticks_of(*limit)
@@ -216,5 +221,6 @@ def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:
     if window < 0:
         return Constant(older, span)
     updated = ProbeAtom(Probe.UPDATED, age.name, span)
-    recent = Unary(UnaryOp.ONCE, updated, Interval(0, window), span)
+    begun = Binary(BinaryOp.OR, updated, BoundAtom(Bound.START, span), None, span)
+    recent = Unary(UnaryOp.ONCE, begun, Interval(0, window), span)
     return Unary(UnaryOp.NOT, recent, None, span) if older else recent
