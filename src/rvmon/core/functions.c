@@ -81,10 +81,10 @@ static double modulo(double a, double b)
     return ((rest != 0.0) && ((rest < 0.0) != (b < 0.0))) ? rest + b : rest;
 }
 
-static double angle_between(double a, double b, double turn)
+static double angle_between(double a, double b, double whole_turn)
 {
-    const double between = remainder(b - a, turn);
-    return (2.0 * between == -turn) ? -between : between;
+    const double between = remainder(b - a, whole_turn);
+    return (2.0 * between == -whole_turn) ? -between : between;
 }
 
 /* On a sphere. Source: Sinnott, Virtues of the Haversine, 1984. */

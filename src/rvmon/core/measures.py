@@ -25,7 +25,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.formula import Literal as Number
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.schema import Kind
-from rvmon.units.table import parse_unit
+from rvmon.units import parse_unit
 
 
 class Measure(IntEnum):

@@ -165,7 +165,7 @@ static void come_next(telling *s, const machine *a, int32_t location, int64_t *c
 static void put_attempt(telling *s, const run *r, int32_t index, attempt *x)
 {
     const int32_t width = r->part->plan->clocks;
-    put_word(s, (x->sure ? 1 : 0) + (x->clouded ? 2 : 0) + (x->hollow ? 4 : 0) + (x->parted ? 8 : 0));
+    put_word(s, (x->sure ? 1 : 0) + (x->trigger_unknown ? 2 : 0) + (x->cannot_pass ? 4 : 0) + (x->parted ? 8 : 0));
     if (is_networked(r, index)) {
         put_word(s, x->location);
         put_word(s, x->parted ? x->better : x->location);
@@ -287,7 +287,7 @@ static void put_judge(telling *s, run *r, int32_t index)
     const int64_t width = networked ? 4 : 1 + 2 * (1 + (int64_t)r->part->machines[index].clocks);
     int64_t start;
     int32_t at;
-    put_word(s, j->before + (j->running ? 4 : 0) + ((j->failed_at < NEVER) ? 8 : 0) + ((j->moot >= 0) ? 16 : 0)
+    put_word(s, j->before + (j->running ? 4 : 0) + ((j->failed_at < NEVER) ? 8 : 0) + ((j->undecidable >= 0) ? 16 : 0)
                + (j->blind ? 32 : 0) + ((j->failed > 0U) ? 64 : 0) + ((j->passed > 0U) ? 128 : 0));
     if (networked && (j->net != NULL) && j->net->begun && ((j->first >= 0) || watches(r, index))) {
         judging g;
@@ -300,7 +300,7 @@ static void put_judge(telling *s, run *r, int32_t index)
         learn_all(&g, s->now, last_at(&g, s->now));
         hear_news(&g, s->now);
         put_networks(s, r, index);
-        s->next = least(s->next, (j->first >= 0) ? soonest(&g, s->now + 1) : NEVER);
+        s->next = least(s->next, (j->first >= 0) ? earliest(&g, s->now + 1) : NEVER);
     }
     start = s->count;
     for (at = j->first; at >= 0; at = attempt_at(r->home, at)->next) {

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from tests.tools.plan_reader import (
+from tests.rvmon.core.plan_reader import (
     HEADER,
     SECTIONS,
     Plan,

@@ -70,8 +70,7 @@ from rvmon.spec.syntax.expressions import (
 from rvmon.spec.syntax.expressions import Window as WindowSyntax
 from rvmon.spec.syntax.items import ConstItem, DefineItem
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
 NOW = "now"
 """What is said of the time since the first instant; a name that is declared goes before."""

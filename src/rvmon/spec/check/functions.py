@@ -28,8 +28,7 @@ from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import Call, Name
 from rvmon.spec.syntax.fixes import NEVER
 from rvmon.trace.schema import Kind
-from rvmon.units.table import parse_unit, quotient
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN, parse_unit, quotient
 
 _INSTEAD = {
     **dict.fromkeys(

@@ -13,8 +13,7 @@ from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
 from rvmon.spec.checked.formula import Arithmetic, Compare, CompareOp, Constant, Literal, Numeric
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
-from rvmon.units.table import base_unit, parse_unit, product, quotient, root
-from rvmon.units.unit import PLAIN, Unit
+from rvmon.units import PLAIN, Unit, base_unit, parse_unit, product, quotient, root
 
 Placed = tuple[Quantity, Span]
 """A quantity with the place of its expression."""

@@ -11,7 +11,7 @@ from rvmon.spec.checked.formula import Formula, Measured, Numeric
 from rvmon.spec.checked.specification import Event, Signal, Type
 from rvmon.spec.syntax.expressions import Expression
 from rvmon.spec.syntax.items import ConstItem, DefineItem
-from rvmon.units.unit import PLAIN, Unit
+from rvmon.units import PLAIN, Unit
 
 
 @dataclass(frozen=True, slots=True)

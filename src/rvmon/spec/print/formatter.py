@@ -59,6 +59,7 @@ def _row(pieces: Sequence[Piece]) -> Row:
 _CLAUSES = frozenset(
     {
         *("UPON", "WHENEVER", "THEN", "MONITOR_AS_RESPONSE", "MONITOR_AS_WRITTEN"),
+        "MONITOR_AS_COVER",
         *("TEXT_CLAUSE", "SEVERITY", "TAGS"),
         *(
             "LET",

@@ -22,6 +22,7 @@ from rvmon.spec.syntax.items import (
     BinSyntax,
     ConstItem,
     CoverItem,
+    CoverMonitor,
     CoverpointItem,
     CrossItem,
     DefineItem,
@@ -167,6 +168,9 @@ class Builder(ExpressionBuilder):
 
     def written(self, meta: Meta, children: Children) -> tuple[WrittenMonitor, Children]:
         return WrittenMonitor(self.span(meta)), []
+
+    def shown(self, meta: Meta, children: Children) -> CoverMonitor:
+        return CoverMonitor(self.span(meta))
 
     def text_clause(self, meta: Meta, children: Children) -> TextClause:
         return TextClause(str(children[0]), _string(children[1]), self.span(meta))

@@ -14,7 +14,7 @@ from rvmon.spec.rules import names, syntax, types
 from rvmon.spec.rules.rule import short
 from rvmon.spec.syntax.fixes import NAMELESS, fix_of, if_fix
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
-from rvmon.units.table import unit_table
+from rvmon.units import unit_table
 
 _OPERAND = {"NUMBER", "NAME", "NOT", "TEMPORAL", "MINUS"}
 _OPERAND_ALL = _OPERAND | {
@@ -56,6 +56,7 @@ _WORDS = {
     "IGNORE_NAN": "`ignore NaN`",
     "MONITOR_AS_RESPONSE": "`monitor as response`",
     "MONITOR_AS_WRITTEN": "`monitor as written`",
+    "MONITOR_AS_COVER": "`monitor as cover`",
     "MAX_DELAY": "`max delay`",
     "COMPARE": "a comparison",
     "MINUS": "`-`",

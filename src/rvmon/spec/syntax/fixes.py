@@ -9,7 +9,7 @@ import lark
 from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Span
 from rvmon.spec.syntax.words import ITEM_WORDS, RESERVED
-from rvmon.units.table import SPOKEN, unit_table
+from rvmon.units import SPOKEN, unit_table
 
 _FIX = {
     "≤": "write `<=`",

@@ -34,8 +34,7 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.spec.checked.operators import Tense, Window
-from rvmon.testing.generate.rng import Rng, chance, pick, weighted
-from rvmon.testing.generate.vocabulary import (
+from rvmon.testing.generate.choices import (
     BOOLS,
     CARRIER,
     EVENTS,
@@ -46,6 +45,10 @@ from rvmon.testing.generate.vocabulary import (
     NUMBERS,
     SIZE,
     WIDE,
+    Rng,
+    chance,
+    pick,
+    weighted,
 )
 
 

@@ -30,6 +30,20 @@ from rvmon.spec.checked.specification import (
     Requirement,
     TimeModel,
 )
+from rvmon.testing.generate.choices import (
+    BOOLS,
+    CARRIER,
+    EVENTS,
+    FIELD,
+    LABEL,
+    NUMBERS,
+    Rng,
+    chance,
+    events,
+    pick,
+    signals,
+    weighted,
+)
 from rvmon.testing.generate.formula import (
     Shape,
     arithmetic,
@@ -38,18 +52,7 @@ from rvmon.testing.generate.formula import (
     formula,
     past_unary,
 )
-from rvmon.testing.generate.rng import Rng, chance, pick, weighted
-from rvmon.testing.generate.vocabulary import (
-    BOOLS,
-    CARRIER,
-    EVENTS,
-    FIELD,
-    LABEL,
-    NUMBERS,
-    events,
-    signals,
-)
-from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.attempts import is_pulse
 
 
 @dataclass(frozen=True, slots=True)

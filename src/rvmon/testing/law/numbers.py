@@ -20,9 +20,8 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.testing.law.kleene import Truth, conjunction, disjunction, truth_of
 from rvmon.testing.law.walk import parts_of
-from rvmon.testing.law.word import Letter
+from rvmon.testing.law.word import Letter, Truth, conjunction, disjunction, truth_of
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from rvmon.spec.checked.formula import Amount, Interval, Measured
-from rvmon.testing.law.kleene import (
+from rvmon.testing.law.word import (
+    Letter,
     Truth,
     born_or_false,
     born_or_true,
@@ -15,7 +16,6 @@ from rvmon.testing.law.kleene import (
     either,
     negation,
 )
-from rvmon.testing.law.word import Letter
 
 Operand = Callable[[int], Truth]
 """The truth of an operand at a position."""

@@ -27,17 +27,6 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.kleene import (
-    Truth,
-    born_or_false,
-    born_or_true,
-    both,
-    conjunction,
-    disjunction,
-    either,
-    negation,
-    truth_of,
-)
 from rvmon.testing.law.numbers import compare
 from rvmon.testing.law.past import (
     Operand,
@@ -50,7 +39,19 @@ from rvmon.testing.law.past import (
     since,
 )
 from rvmon.testing.law.walk import constant_value, is_proposition, speaks_of_future
-from rvmon.testing.law.word import Letter, Word
+from rvmon.testing.law.word import (
+    Letter,
+    Truth,
+    Word,
+    born_or_false,
+    born_or_true,
+    both,
+    conjunction,
+    disjunction,
+    either,
+    negation,
+    truth_of,
+)
 from rvmon.trace.sample import Scalar
 
 EVER = Interval(0, None)

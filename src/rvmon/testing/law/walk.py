@@ -17,7 +17,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.kleene import Truth, conjunction, disjunction, negation, truth_of
+from rvmon.testing.law.word import Truth, conjunction, disjunction, negation, truth_of
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:

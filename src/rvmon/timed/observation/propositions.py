@@ -25,6 +25,11 @@ class NotExpressibleError(Exception):
     """A requirement speaks of what the network does not have; the message says of what."""
 
 
+def speaks_of_events(proposition: Proposition) -> bool:
+    """Whether an event occurs in a proposition."""
+    return isinstance(proposition.leaf, EventAtom) or any(map(speaks_of_events, proposition.args))
+
+
 class Labelling:
     """Values of propositions.
 
