@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_budget, add_format, budget_of
-from rvmon.cli.say import rendered, say, say_json, warn
+from rvmon.cli.output import rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -28,7 +28,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "verify",
-        help="model-check a network of timed automata",
         description="Decide queries on a network of timed automata (.ta, or UPPAAL's .xml), each "
         "with a timed run that shows why. Exit code 0: all hold; 1: some do not, or the budget "
         "ended first.",
@@ -285,7 +284,7 @@ def check_spec(
     network: Network, arguments: argparse.Namespace, budget: Budget, watch: Watch | None
 ) -> int:
     """Decide, show, and return the exit code."""
-    from rvmon.loading import load
+    from rvmon.session import load
     from rvmon.timed.describe import observation_data
     from rvmon.timed.observation.observe import observe
 

@@ -63,7 +63,7 @@ from rvmon.spec.syntax.items import (
     WrittenMonitor,
 )
 from rvmon.trace.schema import Kind
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN
 
 _C = TypeVar("_C", bound=Clause)
 

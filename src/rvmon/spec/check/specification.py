@@ -30,8 +30,7 @@ from rvmon.spec.syntax.expressions import Expression, Name
 from rvmon.spec.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
 from rvmon.spec.syntax.walk import expressions_in
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
-from rvmon.units.unit import Unit
+from rvmon.units import Unit, UnknownUnitError, parse_unit
 
 
 def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:

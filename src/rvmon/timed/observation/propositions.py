@@ -51,7 +51,7 @@ class Labelling:
         for argument in proposition.args:
             self.require(argument)
         match proposition.op, proposition.leaf:
-            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT, _:
+            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT, _:
                 raise NotExpressibleError("it speaks of the past")
             case StateOp.LEAF, SignalAtom(name=name):
                 self._require_signal(name)
@@ -92,7 +92,7 @@ class Labelling:
                 return self._leaf(proposition, state, labels)
             case StateOp.SURE:  # nothing is unknown
                 return self.truth(proposition.args[0], state, labels)
-            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT:
+            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT:
                 raise AssertionError("refused before")
             case _:
                 assert_never(proposition.op)

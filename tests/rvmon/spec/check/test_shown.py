@@ -45,7 +45,7 @@ def test_what_no_run_shows_is_refused(text, message):
 
 
 def test_a_run_shows_it_or_not(capsys, tmp_path):
-    """A run that shows the goal passes it, no run fails it; a property alone is told as unjudged."""
+    """A run that shows the goal passes it, none fails it; a property alone is told as unjudged."""
     spec = tmp_path / "s.rv"
     spec.write_text(f"{HEAD}  property E<> (a and b)\nproperty ALONE: E<> c", "utf-8")
     for last, answer in (("1,1", "R1  P"), ("1,0", "R1  I")):
