@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
-from rvmon.explain.spans import FOREVER, Spans, both, outside, union
+from rvmon.explain.intervals import FOREVER, Spans, both, outside, union
 from rvmon.formula.core import Core
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
@@ -314,7 +314,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
             pass
 
 
-class Eye:
+class TruthRecorder:
     """Sees the truth of what a requirement is made of over a recording.
 
     Args:

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.analysis.possible import Possible, possible
+from rvmon.analysis.vacuity import Possible, possible
 from rvmon.explain.analysed import Analysis
 from rvmon.explain.example import Budget, Example, Found
 from rvmon.explain.graph import graph_lines, graph_of

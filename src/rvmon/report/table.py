@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.shown import shown_line
-from rvmon.report.proportion import interval, interval_text
+from rvmon.report.confidence import interval, interval_text
 from rvmon.report.style import MARKS
 from rvmon.verdict.verdict import Verdict
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 from itertools import groupby, pairwise
 
 from rvmon.readers.coalesce import updates_in
-from rvmon.report.view import View
+from rvmon.report.time_axis import View
 from rvmon.spec.checked.formula import Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rvmon
+from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (
     PLACES,
     Threshold,
@@ -21,7 +22,6 @@ from rvmon.report.tracks import (
     tracks_of,
     updates_of,
 )
-from rvmon.report.view import View, round_instants, view_of
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Blame

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
-from rvmon.analysis.subject import Regions
+from rvmon.analysis.requirement import Regions
 from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.state import FALSE, TRUE, State

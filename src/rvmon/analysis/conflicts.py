@@ -6,8 +6,8 @@ import time
 from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations
 
-from rvmon.analysis.subject import Conflict, Member, Subject
-from rvmon.analysis.together import Aim, Together
+from rvmon.analysis.product import Aim, Together
+from rvmon.analysis.requirement import Conflict, Member, Subject
 
 MOST_OFFSETS = 12
 """Of two requirements so many distances between their triggers are looked at."""
