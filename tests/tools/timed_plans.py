@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import LeadsToFormula, PathFormula
+from rvmon.timed.model.expressions import PathFormula
 from rvmon.timed.model.guards import normal_form
+from rvmon.timed.model.network import LeadsToFormula
 from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
 from tests.tools.timed_generate import random_model
 
