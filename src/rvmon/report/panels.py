@@ -74,7 +74,7 @@ class Panel:
         attempt: `None` if there is none.
         verdict: of the attempt, or of a requirement without any.
         view: the stretch of time that is shown.
-        tracks: of the signals and events concerned.
+        tracks: of the signals and events that the requirement reads.
         reference: the nearest passing attempt, for a failed one.
         part_truths: when each part of the requirement was true in the view; empty if that would
             take too long.

@@ -1,4 +1,4 @@
-"""The timeline of one attempt as HTML: obligation, axis, and a track per signal concerned."""
+"""The timeline of one attempt as HTML: obligation, axis, and a track per signal that is read."""
 
 from __future__ import annotations
 
@@ -237,7 +237,7 @@ def timeline(
 
     Args:
         attempt: the one that it is about; `None` if there was none.
-        tracks: of the signals and events concerned.
+        tracks: of the signals and events that the requirement reads.
         view: what is shown.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the run, ticks.
@@ -309,11 +309,13 @@ def _labels(
         sign = "◆" if late <= view.end else "→"
         word = with_moments(f"came {duration_text(late - deadline)} late", view)
         wanted.append((late, "late", sign, word))
+    # By importance, each into the topmost row where its share of the width is free: the page is
+    # laid out without a browser, so the share is that of the narrowest screen.
     taken: list[list[tuple[float, float]]] = []
     labels = []
     for instant, kind, sign, word in wanted:
         place = min(max(view.fraction(instant), 0.0), 1.0)
-        to_left = place > 1 - LABEL
+        to_left = place > 1 - LABEL  # else the page's edge would cut its words off
         left, right = (place - LABEL, place) if to_left else (place, place + LABEL)
         row = next(
             (i for i, used in enumerate(taken) if all(right <= a or left >= b for a, b in used)),
