@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
+from rvmon.confidence import interval_text
 from rvmon.diagnostics.shown import shown
-from rvmon.report.confidence import interval_text
 from rvmon.report.markup import to_html
 from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.style import MARKS, verdict_colours
