@@ -27,14 +27,17 @@ def payloads_of(value: Value) -> tuple[Payload | None, ...]:
 
 
 def calculated(operation: Callable[..., float], *values: Scalar) -> float | None:
-    """What an operation on numbers gives; unknown if one is, or if it is no finite number."""
+    """What an operation on numbers gives; unknown if one is, or if it is no finite number.
+
+    So is what bits a number has that is not whole.
+    """
     for value in values:
         if value is None or isinstance(value, str):
             return None
     try:
         result = operation(*values)
         return result if math.isfinite(result) else None
-    except (ValueError, OverflowError, ZeroDivisionError):
+    except (TypeError, ValueError, OverflowError, ZeroDivisionError):
         return None
 
 

@@ -48,7 +48,7 @@ def stamps_of(text: str) -> Stamps:
     Two columns, `SECONDS+NANOSECONDS`, are one in nanoseconds; a unit may be a pattern of dates.
 
     >>> stamps_of("stamp:ms")
-    Stamps(column='stamp', unit='ms', is_stated=True)
+    Stamps(column='stamp', unit='ms', is_stated=True, pattern='')
     >>> stamps_of("t_ns")
     Stamps(column='t_ns', unit='ns', is_stated=False)
     """

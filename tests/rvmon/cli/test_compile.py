@@ -62,7 +62,7 @@ def test_c_wants_a_folder(spec, tmp_path, capsys):
         assert main(["compile", spec, "--to", "c", *output]) == 2
         assert "C is several files: name a folder with -o DIR" in capsys.readouterr().err
     refused = tmp_path / "refused.rv"
-    refused.write_text(SPEC.replace("upon knock\n", "upon knock\n  let c = closed\n", 1))
+    refused.write_text(SPEC.replace("upon knock\n", "upon knock\n  let c = nothing\n", 1))
     assert main(["compile", str(refused), "--to", "c", "-o", str(tmp_path / "made")]) == 2
     assert not (tmp_path / "made").exists()
 

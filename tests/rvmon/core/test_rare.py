@@ -35,7 +35,7 @@ ENDS = [
 CASES = {
     "what can hold nowhere, were its window open at once": case_of(
         "held",
-        "whenever true then e xor true R[1 ns, 1 ns] false",
+        "whenever true then e xor (true R[1 ns, 1 ns] false)",
         (0, {"e": True}),
         (5, {}),
         (9, {"e": True}),

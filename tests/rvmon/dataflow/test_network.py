@@ -144,7 +144,7 @@ def test_what_time_alone_decides_is_known_beforehand():
 def test_reasons_are_the_same_later(time):
     """What is said of a decision does not depend on when someone asks."""
     said = 0
-    for seed in range(20):
+    for seed in range(30):
         case = case_of(f"asked {seed}", Profile(time=time), TraceProfile())
         found = []
         for at_once in (True, False):

@@ -10,10 +10,10 @@ from rvmon.dataflow.piecewise import (
     all_of_window,
     append,
     clip,
+    earliest,
     latest,
     shift,
     some_of_window,
-    soonest,
     stamp,
     up_to,
 )
@@ -52,7 +52,7 @@ def test_points(seed):
     offset, first, last = rng.randint(-5, 5), rng.randint(0, 10), rng.randint(4, 20)
     assert all(left <= right for left, right, _, _ in clip(one, first, last))
     for i in range(-8, LAST + 9):
-        assert at(soonest(one, other), i) == min(at(one, i), at(other, i))
+        assert at(earliest(one, other), i) == min(at(one, i), at(other, i))
         assert at(latest(one, other), i) == max(at(one, i), at(other, i))
         assert at(shift(one, offset), i) == at(one, i + offset)
         assert at(clip(one, first, last), i) == (at(one, i) if first <= i <= last else NEVER)

@@ -57,7 +57,7 @@ def test_interruptions_change_nothing():
 def test_another_process_could_take_over():
     """A specification that was compiled anew takes the snapshot, and gives the same bytes again."""
     taken = 0
-    for number in range(6):
+    for number in range(16):
         case = case_of(f"anew/{number}", Profile(), TraceProfile())
         monitor = Spec(case.spec).monitor(sources=case.names)
         rng = random.Random(number)

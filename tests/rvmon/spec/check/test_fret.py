@@ -11,7 +11,7 @@ from rvmon.spec.compile import compile_text
 from rvmon.testing import oracle
 from rvmon.trace.sample import Sample
 
-PAGE = Path(__file__).parents[4] / "docs" / "reference" / "fret.md"
+PAGE = Path(__file__).parents[4] / "docs" / "how-to" / "write-a-requirement.md"
 SCOPES = {
     "null": "",
     "in": "scope after (m) until (not m)",

@@ -77,7 +77,7 @@ def test_everything_occurs() -> None:
 def test_operators_meet_everything() -> None:
     """Each operator with each kind of window meets every time, trigger, end, `let`, `for each`."""
     found: Counter[Feature] = Counter()
-    for seed in range(9_000):
+    for seed in range(11_000):
         found.update(features(random_spec(random.Random(f"met/{seed}"), Profile())))
     assert not set(found) - set(possible())
 
