@@ -202,11 +202,7 @@ class Driver:
         self._tell(Told.FOUND, names, robot, "")
 
     def miss(
-        self,
-        names: Iterable[str] | None = None,
-        *,
-        robot: str | None = None,
-        why: str = "lost",
+        self, names: Iterable[str] | None = None, *, robot: str | None = None, why: str = "lost"
     ) -> None:
         """Say that something was lost between a robot's last sample and its next one."""
         self._tell(Told.MISSED, names, robot, why)
