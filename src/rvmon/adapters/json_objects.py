@@ -53,6 +53,7 @@ class JsonObjects:
         self._clock = clock
         self._last: dict[str, int | None] = {}
         self._told = 0
+        self._is_any_lost = False  # may have been the first of a robot that was not heard of yet
 
     def take(self, fields: Any, robot: str = "", *, wait: bool = False) -> None:
         """Offer what an object says.
@@ -72,6 +73,8 @@ class JsonObjects:
             now = self._clock.now_ns()
             if t_ns > now or t_ns < now - _JUMP_NS:
                 self._clock.set_ns(t_ns)
+        if self._is_any_lost and robot not in self._last:
+            self.driver.miss(robot=robot, why=_UNREADABLE)
         took = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
         # Of robots that are one too many nothing is kept.
         if took or robot in self._last or len(self._last) < self.driver.most_robots:
@@ -99,6 +102,7 @@ class JsonObjects:
             robot: whose it was; `None`: of any.
         """
         self.unread += 1
+        self._is_any_lost = self._is_any_lost or robot is None
         _log.warning("%s is not taken: %s", where, why)
         for one in self._last if robot is None else [robot]:
             if self._last.get(one) is None:  # what has no time is stamped as it comes

@@ -137,6 +137,18 @@ def test_a_field_names_the_robot():
     }
 
 
+def test_a_line_of_nobody_may_have_been_the_first_of_a_robot_that_comes_later():
+    """Whose it was cannot be read; who was heard before has lost it as well."""
+    spec = loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n")
+    for lines, expected in ((["torn {"], "I"), ([], "P")):
+        driver = Driver(spec, clock=SimulatedClock())
+        stamped = [b'{"t": 1, "id": "left", "x": 1}', b'{"t": 2, "id": "left", "x": 1}']
+        objects = JsonObjects(driver, spec.schema, clock=driver._clock)
+        feed_lines(objects, [*(one.encode() for one in lines), *stamped], "id")
+        (report,) = driver.close()["left"]
+        assert report.verdicts["R"] == expected
+
+
 def test_lines_are_read_as_they_come():
     """A pipe gives them in pieces; the last one may lack its end."""
     read, write = os.pipe()
