@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     BoundAtom,
@@ -20,7 +21,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.reading import Formulas, read
-from rvmon.testing.law.walk import numerics, subformulas
+from rvmon.testing.law.syntax import numerics, subformulas
 
 EVER = Interval(0, None)
 _KEPT = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY)
@@ -69,3 +70,5 @@ def to_core(formula: Formula) -> Formula:
             return replace(formula, operand=to_core(formula.operand))
         case Unary() | Binary():
             return read(formula, to_core, Formulas())
+        case Amount():
+            raise ValueError("it counts")

@@ -17,7 +17,7 @@ import numpy as np
 from rvmon.readers import line_chunks, parquet
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.generate.rng import Rng, chance
+from rvmon.testing.generate.choices import Rng, chance
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind

@@ -176,13 +176,19 @@ def _join(
     part: _Part[T],
     later: set[Source],
 ) -> tuple[tuple[Source, ...], dict[tuple[int, ...], set[tuple[T, ...]]]]:
-    """One group more, joined on the sources it shares; only those used later are kept."""
+    """One group more, joined on the sources it shares; only those used later are kept.
+
+    A hash join with projection, as in bucket elimination. To drop a source that no later group
+    reads loses nothing: what can be joined later does not depend on which of its values was chosen.
+    If all were kept, the rows would multiply with every group.
+    """
     ours = [place for place, source in enumerate(live) if source in part.sources]
     theirs = [part.sources.index(live[place]) for place in ours]
     kept = [place for place, source in enumerate(live) if source in later]
     fresh = [
         place for place, source in enumerate(part.sources) if source in later and source not in live
     ]
+    # The group's rows by what they share with the relation: the table that is probed below.
     matches: dict[tuple[int, ...], dict[tuple[int, ...], set[T]]] = {}
     for chosen, views in part.rows.items():
         rests = matches.setdefault(tuple(chosen[place] for place in theirs), {})
@@ -223,7 +229,7 @@ def _nodes(states: Iterable[State]) -> list[State]:
 
 def _is_free(node: State) -> bool:
     """Whether a node is a leaf or remembers."""
-    return node.op in (StateOp.LEAF, StateOp.PREVIOUS, StateOp.SINCE)
+    return node.op in (StateOp.LEAF, StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT)
 
 
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
@@ -261,7 +267,7 @@ def _value(node: State, values: Mapping[State, bool]) -> bool:
             return values[node.args[0]]
         case StateOp.OR:
             return any(values[arg] for arg in node.args)
-        case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT:
+        case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT:
             raise AssertionError("leaves and what remembers have a value already")
         case _:
             assert_never(node.op)

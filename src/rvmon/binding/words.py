@@ -5,15 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from rvmon.units.table import parse_unit
+from rvmon.units import parse_unit
 
 Dimension = tuple[tuple[str, int], ...]
 
 _SAME = {
     "speed": "velocity vel velocities groundspd spd",
     "acceleration": "acc accel accelerometer accelerations",
-    "command": "cmd commanded commands setpoint desired target goal reference ref teleop",
+    "command": "cmd commanded commands setpoint desired des target goal reference ref teleop",
     "distance": "dist range ranges",
+    "current": "curr",
+    "vibration": "vibe",
     "temperature": "temp temperatures thermistor",
     "voltage": "volt volts",
     "latitude": "lat",

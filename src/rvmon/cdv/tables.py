@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from rvmon.cdv.run_share import errors_text
 from rvmon.cdv.summary import CampaignSummary, RobotSummary
-from rvmon.report.proportion import CONFIDENCE
+from rvmon.confidence import CONFIDENCE
 from rvmon.report.table import Counts, RunGroup, VerdictTable
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."
@@ -30,6 +30,7 @@ class RobotTables:
         control_title: heads that table of the page.
         sources: remarks of the page on what stands beside.
         remark: below the tables.
+        witnesses: by requirement, the test that follows the run by which model checking shows it.
     """
 
     own: VerdictTable
@@ -39,6 +40,7 @@ class RobotTables:
     control_title: str = ""
     sources: tuple[str, ...] = ()
     remark: str = ""
+    witnesses: Mapping[str, str] = field(default_factory=dict)
 
 
 def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:

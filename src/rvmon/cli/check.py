@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, add_max_memory, constants_of
-from rvmon.cli.progress import busy
+from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.reading import add_binding
-from rvmon.cli.say import rendered, say, say_json, warn
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
+from rvmon.report.percent import counted
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
@@ -25,7 +25,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "check",
-        help="find what is wrong in specifications",
         description="Find what is wrong in specifications: all errors and warnings of each file.",
         epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
     )
@@ -159,9 +158,6 @@ def _show(form: str, findings: list[Diagnostic]) -> None:
 
 
 def _summary(files: int, findings: list[Diagnostic]) -> str:
-    def counted(count: int, noun: str) -> str:
-        return f"{count} {noun}{'' if count == 1 else 's'}"
-
     errors = sum(finding.severity == "error" for finding in findings)
     counts = ((errors, "error"), (len(findings) - errors, "warning"))
     found = ", ".join(counted(count, noun) for count, noun in counts if count)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
-from rvmon.cli.say import say, warn
+from rvmon.cli.output import say, warn
 from rvmon.diagnostics.shown import shown_json, shown_line
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.costs import CompileReport
@@ -28,7 +28,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compile",
-        help="a specification as C that runs alone, or as automata",
         description="Write a monitor that needs nothing of rvmon: C99 (the core that judges, the "
         "plan that it judges by, a header for C++) that runs in one block of memory. Or the "
         "automata: dot for Graphviz, json, hoa (the least LTL3 monitors of requirements without "
@@ -48,7 +47,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Generate and write, and return the exit code."""
-    from rvmon.loading import load
+    from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = asked_ids(arguments, spec)

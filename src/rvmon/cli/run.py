@@ -18,14 +18,14 @@ from rvmon.cli.options import (
     ids_of,
     refuse_over,
 )
+from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
     reading_words,
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
-from rvmon.cli.run_files import write_files, write_results
-from rvmon.cli.say import rendered, say_json, warn
+from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
@@ -33,12 +33,11 @@ from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.cli.beside import Options
-    from rvmon.cli.judging import Judged
+    from rvmon.cli.judging import Judged, Options
     from rvmon.reproducer import Case
-    from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.known_failures import KnownFailures
     from rvmon.verdict.report import Report
 
 
@@ -46,7 +45,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "run",
-        help="check recordings against a specification",
         description="Check recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
         "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
         "I inconclusive.",
@@ -123,7 +121,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--evidence",
         metavar="FILE",
         help="keep recordings, specification and verdicts in one archive; "
-        "`rvmon evidence verify FILE` sees whether it holds",
+        "`rvmon evidence FILE` sees whether it holds",
     )
     parser.add_argument(
         "--strict", action="store_true", help="exit with 1 also if a requirement is I or NT"
@@ -154,7 +152,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
-    from rvmon.cli.beside import spec_and_options
+    from rvmon.cli.judging import spec_and_options
     from rvmon.readers.found import found_recordings
 
     spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
@@ -165,7 +163,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _refuse_places(arguments, traces, spec)
     before = None
     if arguments.evidence is not None:
-        from rvmon.cli.evidence_write import begun, write_run
+        from rvmon.cli.run_output import begun, write_run
 
         before = begun(arguments, traces)
     must_trigger = ids_of(arguments.require_triggered or None, spec)
@@ -192,7 +190,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
 
 
 def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
-    from rvmon.results.known import NONE_KNOWN, KnownFailures, read_known
+    from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures, read_known
 
     if arguments.known is None:
         return NONE_KNOWN
@@ -274,7 +272,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.resume and arguments.out is None:
         raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
     if arguments.out is not None:
-        from rvmon.results.write import refuse_format
+        from rvmon.verdict.write_rows import refuse_format
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
@@ -306,6 +304,11 @@ def _show_warnings(spec: Spec) -> None:
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
         warn(f"{spec.checked.name} has no requirement: there is nothing to check")
+    alone = [f"`{name}`" for name in checked.properties
+             if name not in spec.requirements and name not in checked.covers]  # fmt: skip
+    if alone:
+        by = "a requirement with `monitor as written` or `monitor as cover` is"
+        warn(f"properties are not judged on runs: {', '.join(alone)}; {by}")
 
 
 def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:

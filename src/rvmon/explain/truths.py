@@ -5,17 +5,16 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
-from rvmon.explain.spans import FOREVER, Spans, both, outside, union
+from rvmon.explain.intervals import FOREVER, Spans, both, outside, union
 from rvmon.formula.core import Core
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor.core.watching import TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.held import HeldRecording
-from rvmon.spec.checked.formula import Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
+from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.gaps import is_unknown
@@ -65,14 +64,14 @@ class Seen:
         begin: the instant of the first sample, ticks; `None`: there is none.
         end: the last instant.
         positions: of the recording; `None` where every tick is one.
-        unborn: the signals that never had a value.
+        valueless: the signals that never had a value.
     """
 
     names: frozenset[str] | None
     begin: int | None
     end: int
     positions: Sequence[int] | None
-    unborn: frozenset[str]
+    valueless: frozenset[str]
     _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
 
     def truths(self, question: Question) -> list[Truth]:
@@ -108,21 +107,21 @@ def look_through(
     runs = [run for one in groups.values() if (run := one.begun(names)) is not None]
     begin: int | None = None
     instants = array("q")
-    unborn = set(spec.signals)
+    valueless = set(spec.signals)
     for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
         times = (piece.t,) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])
         if spec.time is TimeModel.SAMPLED:
             instants.extend(times if isinstance(times, tuple) else _unlike(times.tolist()))
-        if unborn:
-            unborn -= _born(piece, unborn)
+        if valueless:
+            valueless -= _born(piece, valueless)
         for run in runs:
             run.take(piece)
     positions = None if begin is None else _positions(spec, begin, end, instants)
     ticks = _Ticks(positions, begin or 0, end)
     truths = {whose: one.truths(ticks) for whose, one in groups.items()}
-    return Seen(names, begin, end, positions, frozenset(unborn), truths)
+    return Seen(names, begin, end, positions, frozenset(valueless), truths)
 
 
 def truths_of(
@@ -204,12 +203,12 @@ class _Group:
         return {text: found[core] for text, core in self._cores.items()}
 
 
-def _born(piece: Batch | Sample, unborn: Set[str]) -> set[str]:
+def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:
     """The signals that have a value in a piece and had none before."""
     if isinstance(piece, Sample):
         values = piece.values
-        return {name for name in unborn & values.keys() if not is_unknown(values[name])}
-    return {name for name in unborn & piece.signals.keys() if piece.signals[name].holds_value}
+        return {name for name in valueless & values.keys() if not is_unknown(values[name])}
+    return {name for name in valueless & piece.signals.keys() if piece.signals[name].holds_value}
 
 
 def _unlike(instants: Iterable[int]) -> Iterator[int]:
@@ -305,7 +304,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
     """The formula, then what it is made of; a negation of an atom is not taken apart."""
     yield depth, formula
     match formula:
-        case Unary(operand=Unary() | Binary() as operand):
+        case Amount(operand=operand) | Unary(operand=Unary() | Binary() | Amount() as operand):
             yield from subformulas(operand, depth + 1)
         case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
             yield from subformulas(operand, depth + 1)
@@ -316,41 +315,28 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
             pass
 
 
-class Eye:
-    """Sees the truth of what a requirement is made of over a recording."""
+class TruthRecorder:
+    """Sees the truth of what a requirement is made of over a recording.
 
-    def __init__(
-        self,
-        spec: CheckedSpec,
-        requirement: Requirement,
-        samples: Sequence[Sample],
-        end: int,
-        attempt: Attempt,
-        names: frozenset[str] | None,
-    ) -> None:
+    Args:
+        requirement: that is taken apart.
+        attempt: of it.
+        seen: of the recording, which was looked through for `parts_of` both.
+    """
+
+    def __init__(self, requirement: Requirement, attempt: Attempt, seen: Seen) -> None:
         self.requirement = requirement
-        self._spec = spec
-        self._samples = samples
-        self._end = end
-        self._captured = attempt.captured
-        self._names = names
-
-    @cached_property
-    def _truths(self) -> dict[int, Truth]:
-        requirement = self.requirement
-        wholes = (requirement.trigger, requirement.consequent)
-        formulas = [one for whole in wholes for _, one in subformulas(whole, 0)]
-        found = truths_of(
-            self._spec,
-            formulas,
-            self._samples,
-            self._end,
-            self._names,
-            for_each=requirement.for_each,
-            captured=self._captured,
-        )
-        return {id(formula): truth for formula, truth in zip(formulas, found, strict=True)}
+        question = parts_of(requirement, attempt)
+        found = zip(question.formulas, seen.truths(question), strict=True)
+        self._truths = {id(formula): truth for formula, truth in found}
 
     def truth(self, formula: Formula) -> Truth:
         """Where the trigger, what is owed, or a part of them, is true."""
         return self._truths[id(formula)]
+
+
+def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
+    """The trigger, what is owed, and all that they are made of."""
+    wholes = (requirement.trigger, requirement.consequent)
+    formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
+    return Question(formulas, requirement.for_each, attempt.captured)

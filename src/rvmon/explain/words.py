@@ -10,6 +10,7 @@ from rvmon.formula.state import StateOp
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import graph_of
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Bound,
@@ -19,6 +20,7 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
+    Measured,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -111,9 +113,13 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return f"it is {'' if positive else 'not '}{what}"
         case Unary(op=UnaryOp.NOT, operand=operand):
             return in_words(operand, positive=not positive)
-        case Unary(op=UnaryOp.ONCE, operand=ProbeAtom(probe=Probe.UPDATED, name=name)) if (
-            length := _age(formula.interval)
-        ):
+        case Unary(
+            op=UnaryOp.ONCE,
+            operand=Binary(
+                left=ProbeAtom(probe=Probe.UPDATED, name=name),
+                right=BoundAtom(bound=Bound.START),
+            ),
+        ) if length := _age(formula.interval):
             verb = "was updated in the last" if positive else "has not been updated for"
             return f"{name} {verb} {length}"
         case Binary(op=BinaryOp.AND | BinaryOp.OR as op):
@@ -121,6 +127,12 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return _listed([_clause(part, positive) for part in _chain(formula, op)], word)
         case Unary() | Binary():
             return _by_entry(formula, positive)
+        case Amount(measured=measured, operand=operand, window=window, least=least):
+            known = "" if positive else "not "
+            back = f"in the last {format_duration(window)}"
+            if measured is Measured.COUNT:
+                return f"{known}{least} times or more {back}, {_clause(operand, True)}"
+            return f"for {known}{format_duration(least)} or more {back}, {_clause(operand, True)}"
         case _:
             assert_never(formula)
 

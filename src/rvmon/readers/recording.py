@@ -6,7 +6,7 @@ import os
 import sys
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from errno import ENOENT
 from io import TextIOWrapper
@@ -17,15 +17,21 @@ from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
+from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.forms import MESSAGE_FORMATS, MESSAGE_FORMS, form_of_folder
+from rvmon.readers.messages.forms import (
+    ARRAYS,
+    MESSAGE_FORMATS,
+    MESSAGE_FORMS,
+    form_of_folder,
+)
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Outage, Sample
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
@@ -74,7 +80,8 @@ class FileRecording:
         self._ordered = ordered
         self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
-        if self.is_of_messages and schema.stamps is not None:
+        brings_stamps = self.is_of_messages and self._format not in ARRAYS
+        if brings_stamps and schema.stamps is not None:
             raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
         if not self.is_of_messages and schema.binding != BY_NAME:
             message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
@@ -86,7 +93,7 @@ class FileRecording:
         self.names: frozenset[str] | None = None
         self.end: int | None = None
         self._messages: MessageFile | None = None
-        self._known: Layout | None = None
+        self._known: tuple[list[str], Layout] | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
                 layout = self._layout(split_lines(bounded_lines(text)))
@@ -112,6 +119,11 @@ class FileRecording:
     def unread(self) -> Sequence[str]:
         """The columns, or topics and fields, that nothing is declared for."""
         return list(self.ignored) if self._messages is None else self._messages.unread
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost, in order; text is whole, or an error."""
+        return () if self._messages is None else self._messages.outages
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
@@ -163,7 +175,7 @@ class FileRecording:
 
             yield from parquet_batches_of(local_path(self.path), self._schema)
             return
-        with opened(self.path) as (plain, self._open_file):
+        with self._opened() as (plain, self._open_file):
             if self._format == "csv":
                 from rvmon.readers.csv_batch import csv_batches
 
@@ -237,9 +249,15 @@ class FileRecording:
             _, header = next(rows)
         except StopIteration:
             raise TraceError("is empty: expected a header with a time column `t`") from None
-        if self._known is None or list(self._known.header) != header:
-            self._known = read_layout(header, self._schema)
-        return self._known
+        if self._known is None or self._known[0] != header:
+            self._known = header, read_layout(*bare_names(header, self._schema))
+        return self._known[1]
+
+    def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:
+        """The text, and the file as it lies there."""
+        if self._format == "csv":
+            return opened_as_csv(self.path, self._schema.stamps)
+        return opened(self.path)
 
     @contextmanager
     def _text(self) -> Iterator[TextIO]:
@@ -250,7 +268,7 @@ class FileRecording:
             else:
                 # The mark that some editors begin a text with would make its first cell odd.
                 with (
-                    opened(self.path) as (plain, self._open_file),
+                    self._opened() as (plain, self._open_file),
                     TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
                 ):
                     yield text

@@ -8,16 +8,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.coverage.answers import Comparison
 from rvmon.coverage.model import Group, combination
-from rvmon.report.coverage_summary import (
-    Summary,
-    cell_text,
-    counted,
-    is_grid,
-    name_of,
-    not_fine,
-    share_text,
-)
-from rvmon.report.percent import percent_text
+from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
+from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict.verdict import Verdict
@@ -142,10 +134,10 @@ def _groups(summary: Summary, console: Console) -> Table:
     if wide:
         table.add_column("what")
     table.add_column("covered", justify="right")
-    total = "–" if summary.is_void else share_text(summary.share)
+    total = "–" if summary.is_empty else share_text(summary.share)
     table.add_column("share", total, justify="right", no_wrap=True)
     if wide:
-        table.add_column("", "" if summary.is_void else _bar(summary.share, console), no_wrap=True)
+        table.add_column("", "" if summary.is_empty else _bar(summary.share, console), no_wrap=True)
     for group in summary.coverage.model.groups.values():
         score = summary.scores[group.name]
         name = group.name if group.weight else f"{group.name} (not in the total)"

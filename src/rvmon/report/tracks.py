@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby, pairwise
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.readers.coalesce import updates_in
 from rvmon.readers.held import HeldRecording
-from rvmon.report.view import View
-from rvmon.spec.checked.formula import Binary, Compare, Literal, SignalValue, Unary
+from rvmon.report.time_axis import View
+from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.spec.checked.tense import subformulas
@@ -39,7 +39,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
     """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
     parts = subformulas(requirement.consequent)
-    owed = [part for part in parts if not isinstance(part, Unary | Binary)]
+    owed = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
         atom
         for atom in owed
@@ -220,38 +220,50 @@ _KINDS = {
 }
 
 
+def changes_of(
+    spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
+) -> Mapping[str, Changes]:
+    """By name what each signal and event of a run changed to, whichever requirements read it."""
+    found = {name: Changes(signal.stale_after) for name, signal in spec.signals.items()}
+    found |= {name: Changes(None) for name in spec.events}
+    ignoring = spec.ignoring
+    for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
+        if isinstance(piece, Sample):
+            for name, value in updates_in(piece.values, ignoring).items():
+                if name in found:
+                    found[name].add(piece.t, value, is_signal=name in spec.signals)
+        else:
+            for name, cells in piece.signals.items():
+                found[name].add_cells(piece, cells)
+            for name, events in piece.events.items():
+                found[name].add_occurrences(piece.times, events.says)
+    return found
+
+
 def tracks_of(
     spec: CheckedSpec,
     requirement: Requirement,
-    samples: Sequence[Sample],
+    found: Mapping[str, Changes],
     health: Sequence[Health] = (),
 ) -> tuple[Track, ...]:
-    """The tracks of the signals and events that a requirement reads, in its order."""
-    found = {
-        name: _Changes(spec.signals[name].stale_after if name in spec.signals else None)
-        for name in concerned_names(requirement)
-    }
-    ignoring = spec.ignoring
-    for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
-        for name, changes in found.items():
-            if isinstance(piece, Sample):
-                updates = updates_in(piece.values, ignoring)
-                if name in updates:
-                    changes.add(piece.t, updates[name], is_signal=name in spec.signals)
-            elif name in piece.signals:
-                changes.add_cells(piece, piece.signals[name])
-            elif name in piece.events:
-                changes.add_occurrences(piece.times, piece.events[name].says)
+    """The tracks of the signals and events that a requirement reads, in its order.
+
+    Args:
+        spec: its specification.
+        requirement: whose names are shown.
+        found: from `changes_of`.
+        health: of the run.
+    """
     absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
     return tuple(
-        _signal_track(spec.signals[name], requirement, changes)
+        _signal_track(spec.signals[name], requirement, found[name])
         if name in spec.signals
-        else Track(name, TrackKind.EVENT, tuple(changes.found), absent=name in absent)
-        for name, changes in found.items()
+        else Track(name, TrackKind.EVENT, tuple(found[name].found), absent=name in absent)
+        for name in concerned_names(requirement)
     )
 
 
-class _Changes:
+class Changes:
     """What a name changed to, and when.
 
     Args:
@@ -325,7 +337,7 @@ class _Changes:
         return tuple(self.found)
 
 
-def _signal_track(signal: Signal, requirement: Requirement, changes: _Changes) -> Track:
+def _signal_track(signal: Signal, requirement: Requirement, changes: Changes) -> Track:
     return Track(
         signal.name,
         _KINDS[signal.type.kind],

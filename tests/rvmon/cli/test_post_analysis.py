@@ -8,7 +8,7 @@ import pytest
 import rvmon
 from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
-from rvmon.explain.not_triggered import why_not_triggered
+from rvmon.explain.near_miss import why_not_triggered
 from rvmon.readers import recording
 
 HEAD = """

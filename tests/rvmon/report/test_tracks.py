@@ -10,12 +10,14 @@ from hypothesis import strategies as st
 import rvmon
 from rvmon.readers import line_chunks
 from rvmon.readers.held import HeldRecording
+from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (
     PLACES,
     Threshold,
     Track,
     TrackKind,
     blamed_names,
+    changes_of,
     concerned_names,
     occurrences,
     polylines,
@@ -24,7 +26,6 @@ from rvmon.report.tracks import (
     thresholds,
     tracks_of,
 )
-from rvmon.report.view import View, round_instants, view_of
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Blame
@@ -52,7 +53,7 @@ R1, R2 = SPEC.requirements.values()
 
 def track(name, samples, requirement=R1, health=()):
     """The track of one name."""
-    tracks = tracks_of(SPEC, requirement, samples, health)
+    tracks = tracks_of(SPEC, requirement, changes_of(SPEC, samples), health)
     return next(one for one in tracks if one.name == name)
 
 
@@ -200,4 +201,6 @@ def test_held_columns_give_the_tracks_of_samples(seed, tmp_path, monkeypatch):
     held = HeldRecording(recording.pieces(), SPEC.events)
     assert repr(list(held)) == repr(list(recording))
     for requirement in (R1, R2):
-        assert tracks_of(SPEC, requirement, held) == tracks_of(SPEC, requirement, list(recording))
+        assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks_of(
+            SPEC, requirement, changes_of(SPEC, list(recording))
+        )

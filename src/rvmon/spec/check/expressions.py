@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import assert_never
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
-from rvmon.spec.check.comparisons import closed_interval, compared, ticks_of
+from rvmon.spec.check.choices import either, spread
+from rvmon.spec.check.comparisons import alone, closed_interval, compared, ticks_of
 from rvmon.spec.check.functions import applied
 from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.table import Table, close_name, close_unit
-from rvmon.spec.check.values import EVERYWHERE, Age, Closure, Quantity, Scope, Value
+from rvmon.spec.check.values import (
+    EVERYWHERE,
+    Age,
+    AmountOf,
+    Chosen,
+    Closure,
+    Extreme,
+    Now,
+    Quantity,
+    Scope,
+    Value,
+)
+from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Binary,
     BoundAtom,
@@ -37,6 +51,7 @@ from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.effort import Cost, Effort
 from rvmon.spec.syntax.expressions import (
     Call,
+    Choice,
     Comparison,
     Edge,
     Expression,
@@ -55,8 +70,10 @@ from rvmon.spec.syntax.expressions import (
 from rvmon.spec.syntax.expressions import Window as WindowSyntax
 from rvmon.spec.syntax.items import ConstItem, DefineItem
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN, UnknownUnitError, parse_unit
+
+NOW = "now"
+"""What is said of the time since the first instant; a name that is declared goes before."""
 
 
 def formula_of(value: Value, span: Span) -> Formula:
@@ -72,8 +89,10 @@ def formula_of(value: Value, span: Span) -> Formula:
             return Compare(CompareOp.EQ, node, Literal(True), span)
         case Quantity(labels=labels):
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
-        case Age():
-            raise Refusal(rules.age_alone(span))
+        case Age() | Now() | AmountOf() | Extreme():
+            raise Refusal(alone(value, span))
+        case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
+            return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
         case _:
             return value
 
@@ -89,8 +108,10 @@ def number_of(value: Value, span: Span) -> Quantity:
             return value
         case Quantity(truth=False):
             raise Refusal(rules.label_use(span))
-        case Age():
-            raise Refusal(rules.age_alone(span))
+        case Age() | Now() | AmountOf() | Extreme():
+            raise Refusal(alone(value, span))
+        case Chosen():
+            raise Refusal(rules.choice_alone(span))
         case _:
             raise Refusal(rules.needs_number(span))
 
@@ -150,6 +171,17 @@ class Checker:
         values = self.values(expressions, scope)
         return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
+    def calculated(
+        self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
+    ) -> Value:
+        """An operation on numbers, or on choices between them."""
+
+        def made(values: Sequence[Value]) -> Quantity:
+            pairs = zip(values, args, strict=True)
+            return arithmetic(op, [(number_of(v, e.span), e.span) for v, e in pairs], span)
+
+        return spread(self.values(args, scope), span, made)
+
     def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
         """What the expressions stand for.
 
@@ -206,10 +238,11 @@ class Checker:
                 return self._infix(expression, scope)
             case Comparison():
                 return compared(self, expression, scope)
+            case Choice(condition=condition, chosen=chosen, otherwise=otherwise):
+                sides = self.values((chosen, otherwise), scope)
+                return Chosen(self.formula(condition, scope), *sides)
             case Operation(op=op, args=args, span=span):
-                spans = [arg.span for arg in args]
-                quantities = self.quantities(args, scope)
-                return arithmetic(op, list(zip(quantities, spans, strict=True)), span)
+                return self.calculated(op, args, scope, span)
             case Path() | Quantified() | LeadsTo():
                 raise Refusal(property_rules.path_outside(expression.span))
             case _:
@@ -230,7 +263,12 @@ class Checker:
     def known(self, name: str, scope: Scope) -> bool:
         """Whether the name stands for anything but a label."""
         table = self.table
-        return name in scope.names or name in table.declared or table.field(name) is not None
+        return (
+            name == NOW
+            or name in scope.names
+            or name in table.declared
+            or table.field(name) is not None
+        )
 
     def _name(self, name: Name, scope: Scope) -> Value:
         local = scope.names.get(name.text)
@@ -255,6 +293,8 @@ class Checker:
             return self._typed(value, field.type.kind, field.type.labels, name)
         if name.text in table.declared or name.text in table.doubtful:
             raise Reported  # its declaration is wrong, and that is recorded
+        if name.text == NOW:
+            return Now()
         close = close_name(table, name.text, tuple(scope.names))
         raise Refusal(name_rules.unknown(name.span, name.text, close))
 

@@ -11,6 +11,7 @@ from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
 from rvmon.timed.language.foreign import type_reason
+from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
 from rvmon.timed.language.symbols import clock_of, element_of, value_of
 from rvmon.timed.model.evaluate import apply_binary, apply_unary
 from rvmon.timed.model.expressions import (
@@ -90,6 +91,8 @@ class Resolver:
                 return Constant(value)
             case syntax.Name("deadlock", _) if self.automata and not scope.find("deadlock"):
                 return Deadlock()
+            case syntax.Call(name, (body,), span) if name in LINEAR_WORDS and self.automata:
+                return linear_of(name, self.expression(body, scope), span)
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
                 if (location := self._location(written, scope)) is not None:
                     return location
@@ -117,13 +120,18 @@ class Resolver:
                     for value in values
                 ]
                 return _joined(BinaryOp.AND if universal else BinaryOp.OR, parts, span)
-            case syntax.Path(op, body, bound, span):
+            case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
-                return PathFormula(op, self.expression(body, scope), self.limit(bound, scope))
+                until = TRUE if left is None else self.expression(left, scope)
+                return PathFormula(
+                    op, self.expression(body, scope), self.limit(bound, scope), until
+                )
             case syntax.LeadsTo(_, _, _, span):
                 fix = "write A[] (p imply A<> q)"
                 raise model_error("TA020", "`-->` can only stand outermost", span, fix)
+            case syntax.Assuming() | syntax.Chance() | syntax.Mean():
+                raise model_error("TA020", "this can only stand outermost", written.span)
             case _:
                 assert_never(written)
 

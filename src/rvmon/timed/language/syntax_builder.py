@@ -4,43 +4,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-from lark import Token, Transformer, Tree, v_args
+from lark import Token, Tree, v_args
 from lark.tree import Meta
 
-from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
+from rvmon.timed.language.query_builder import QueryBuilder
 from rvmon.timed.language.syntax import TypeText
-from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, PathOp, UnaryOp
+from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 
 LARGEST = (1 << 31) - 1
 """The largest number that a model may contain, as in UPPAAL."""
 
-_CTL = {
-    "EF": PathOp.POSSIBLY,
-    "AG": PathOp.INVARIANTLY,
-    "AF": PathOp.EVENTUALLY,
-    "EG": PathOp.POTENTIALLY_ALWAYS,
-}
-
 
 @v_args(meta=True)
-class SyntaxBuilder(Transformer[Token, Any]):
+class SyntaxBuilder(QueryBuilder):
     """One method per rule of the grammar; `place` maps offsets of the text to spans."""
-
-    def __init__(self, place: Callable[[int, int], Span]) -> None:
-        super().__init__()
-        self._place = place
-
-    def _span(self, meta: Meta) -> Span:
-        return self._place(0, 0) if meta.empty else self._place(meta.start_pos, meta.end_pos)
-
-    def _token_span(self, token: Token) -> Span:
-        return self._place(token.start_pos or 0, token.end_pos or 0)
 
     def _name(self, token: Token) -> syntax.Name:
         return syntax.Name(str(token), self._token_span(token))
@@ -319,20 +302,6 @@ class SyntaxBuilder(Transformer[Token, Any]):
 
     def call(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
         return syntax.Call(str(items[0]), items[1], self._span(meta))
-
-    # Queries.
-
-    def path(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        word, *bound, body = items
-        return syntax.Path(PathOp(word), body, bound[0] if bound else None, self._span(meta))
-
-    def path_prefix(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        word, *bound, body = items
-        return syntax.Path(_CTL[word], body, bound[0] if bound else None, self._span(meta))
-
-    def leads_to(self, meta: Meta, items: Sequence[Any]) -> syntax.LeadsTo:
-        left, *bound, right = items
-        return syntax.LeadsTo(left, right, bound[0] if bound else None, self._span(meta))
 
 
 def _is(item: object, rule: str) -> bool:

@@ -33,6 +33,12 @@ _NEGATED_PATH = {
     PathOp.INVARIANTLY: PathOp.POSSIBLY,
     PathOp.EVENTUALLY: PathOp.POTENTIALLY_ALWAYS,
     PathOp.POTENTIALLY_ALWAYS: PathOp.EVENTUALLY,
+    PathOp.SOME_NEXT: PathOp.EVERY_NEXT,
+    PathOp.EVERY_NEXT: PathOp.SOME_NEXT,
+    PathOp.FINALLY: PathOp.GLOBALLY,
+    PathOp.GLOBALLY: PathOp.FINALLY,
+    PathOp.EVERY_RUN: PathOp.SOME_RUN,
+    PathOp.SOME_RUN: PathOp.EVERY_RUN,
 }
 
 
@@ -49,8 +55,8 @@ def parts_of(expression: Expression) -> Iterator[Expression]:
                 waiting += (right, left)
             case Choice(condition, then, otherwise):
                 waiting += (otherwise, then, condition)
-            case PathFormula(_, body, _):
-                waiting.append(body)
+            case PathFormula(_, body, _, left):
+                waiting += (body, left)
             case _:
                 pass
 
@@ -59,6 +65,13 @@ def is_discrete(expression: Expression) -> bool:
     """Whether locations and variables alone give the expression a value."""
     of_runs = ClockCompare | Deadlock | PathFormula
     return not any(isinstance(part, of_runs) for part in parts_of(expression))
+
+
+def is_linear(expression: Expression) -> bool:
+    """Whether operators occur that speak of one run, not of all that begin in a state."""
+    linear = (PathOp.FINALLY, PathOp.GLOBALLY, PathOp.EVERY_RUN, PathOp.SOME_RUN)
+    parts = parts_of(expression)
+    return any(isinstance(part, PathFormula) and part.op in linear for part in parts)
 
 
 def normal_form(expression: Expression, positive: bool = True) -> Expression:
@@ -70,10 +83,9 @@ def normal_form(expression: Expression, positive: bool = True) -> Expression:
             return expression if positive else ClockCompare(clock, _NEGATED_CLOCK[op], bound)
         case Deadlock():
             return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
-        case PathFormula(op, body, bound):
-            if positive:
-                return PathFormula(op, normal_form(body), bound)
-            return PathFormula(_NEGATED_PATH[op], normal_form(body, positive), bound)
+        case PathFormula(op, body, bound, left):
+            op = op if positive else _NEGATED_PATH[op]
+            return PathFormula(op, normal_form(body, positive), bound, normal_form(left))
         case UnaryOperation(UnaryOp.NOT, operand):
             return normal_form(operand, not positive)
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):

@@ -3,7 +3,7 @@
 #define RVMON_ZONES_WHOLE_H
 
 #include "nested.h"
-#include "stay.h"
+#include "linear.h"
 
 /* The bits that locations and variables take in a packed state. */
 static bool lay_out(engine *h)
@@ -131,77 +131,46 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     h->copy = block(h, d * d, sizeof *h->copy);
     h->between = block(h, d * d * (size_t)h->inside_count + d * d, sizeof *h->between);
     h->been = block(h, (size_t)h->inside_count, sizeof *h->been);
+    h->allowed = block(h, (size_t)h->inside_count, 1);
+    h->rest_allowed = block(h, (size_t)h->inside_count, 1);
+    h->rest_good = block(h, (size_t)h->inside_count, 1);
+    h->rest_on = block(h, (size_t)h->inside_count, 1);
+    h->rest_back = block(h, (size_t)h->inside_count, 1);
     h->step_edges = block(h, (size_t)h->automaton_count, sizeof *h->step_edges);
     h->failed_edges = block(h, (size_t)h->automaton_count, sizeof *h->failed_edges);
-    h->reaching = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching);
-    h->reaching_room = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching_room);
+    h->tables = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->tables);
+    h->table_rooms = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->table_rooms);
     return runs(h);
 }
 
 static void free_engine(engine *h)
 {
-    void *all[32];
-    size_t n = 0;
+    void *all[] = {
+        h->fields, h->bits, h->heads, h->table, h->delays, h->packed, h->nodes, h->chunks,
+        h->queue, h->heap, h->triggers, h->colours, h->exact, h->successors, h->frames, h->arrows,
+        h->into, h->out_of, h->pool, h->whose, h->tables, h->table_rooms, h->lower, h->upper,
+        h->lowers, h->uppers, h->test_entries, h->test_least, h->tightest, h->tightest_bound,
+        h->top, h->spare, h->inside, h->copy, h->between, h->been, h->allowed, h->rest_allowed,
+        h->rest_good, h->rest_on, h->rest_back, h->rank, h->open, h->roots, h->trail,
+        h->step_edges, h->failed_edges, h->crossings.at, h->last_crossings.at, h->alive.zones,
+        h->dead.zones, h->rest.zones, h->parts.zones, h->guards.zones, h->pending.zones,
+    };
     size_t i;
     uint32_t s;
     int32_t k;
     for (s = 0; s < h->chunk_count; s++) {
         free(h->chunks[s]);
     }
-    for (k = 0; (h->reaching != NULL) && (k < plan_count(h->plan, AT_TREE)); k++) {
-        for (s = 0; (h->reaching[k] != NULL) && (s < h->reaching_room[k]); s++) {
-            free(h->reaching[k][s].zones);
+    for (k = 0; (h->tables != NULL) && (h->table_rooms != NULL)
+                && (k < plan_count(h->plan, AT_TREE) + 2); k++) {
+        for (s = 0; (h->tables[k] != NULL) && (s < h->table_rooms[k]); s++) {
+            free(h->tables[k][s].zones);
         }
-        free(h->reaching[k]);
+        free(h->tables[k]);
     }
     free_walk(&h->out);
     free_walk(&h->look);
-    free(h->fields);
-    free(h->bits);
-    free(h->heads);
-    free(h->table);
-    free(h->delays);
-    free(h->packed);
-    free(h->nodes);
-    free(h->chunks);
-    free(h->queue);
-    free(h->heap);
-    free(h->triggers);
-    free(h->colours);
-    free(h->exact);
-    free(h->successors);
-    free(h->frames);
-    free(h->arrows);
-    free(h->into);
-    free(h->pool);
-    free(h->whose);
-    free(h->reaching);
-    free(h->reaching_room);
-    all[n++] = h->lower;
-    all[n++] = h->upper;
-    all[n++] = h->lowers;
-    all[n++] = h->uppers;
-    all[n++] = h->test_entries;
-    all[n++] = h->test_least;
-    all[n++] = h->tightest;
-    all[n++] = h->tightest_bound;
-    all[n++] = h->top;
-    all[n++] = h->spare;
-    all[n++] = h->inside;
-    all[n++] = h->copy;
-    all[n++] = h->between;
-    all[n++] = h->been;
-    all[n++] = h->step_edges;
-    all[n++] = h->failed_edges;
-    all[n++] = h->crossings.at;
-    all[n++] = h->last_crossings.at;
-    all[n++] = h->alive.zones;
-    all[n++] = h->dead.zones;
-    all[n++] = h->rest.zones;
-    all[n++] = h->parts.zones;
-    all[n++] = h->guards.zones;
-    all[n++] = h->pending.zones;
-    for (i = 0; i < n; i++) {
+    for (i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
 }
@@ -241,6 +210,11 @@ static bool limits_fit(const engine *h)
             }
         }
     }
+    for (s = 0; s < plan_count(h->plan, AT_TREE); s++) {
+        if (tree_row(h, s)[TREE_BOUND] > h->most_time) {
+            return false;
+        }
+    }
     return h->plan[HEAD_BOUND] <= h->most_time;
 }
 
@@ -255,12 +229,23 @@ static void run(engine *h)
     if (!runs(h) || !invariant_data_holds(h, w->target, w->changed)) {
         return;
     }
-    if (h->kind == SEEK_NESTED) {
+    if ((h->kind == SEEK_NESTED) || (h->kind == SEEK_START)) {
         find_moves(h);
+        solve(h);
         if (!runs(h) || h->failed) {
             return;
         }
         begin(h);
+    }
+    if (h->kind == SEEK_START) {
+        if (in_nested(h, w->zone, w->target, w->changed)) {
+            h->state = SEARCH_FOUND;
+        }
+        return;
+    }
+    if (h->kind == SEEK_RUN) {
+        look_for_run(h);
+        return;
     }
     if (h->kind == SEEK_STAY) {
         stay_from(h, NONE, 0);
@@ -299,7 +284,8 @@ static void tell_end(engine *h)
 {
     const search_state ended = h->failed ? SEARCH_FAILED : h->state;
     const int32_t failed = h->step_edge_count;
-    const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER);
+    const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER)
+                            || (h->kind == SEEK_RUN);
     if (h->failed) {
         (void)memcpy(h->failed_edges, h->step_edges, (size_t)failed * sizeof *h->step_edges);
     }

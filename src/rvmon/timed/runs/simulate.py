@@ -12,10 +12,12 @@ Systems, CAV 2011 (races between components; weights among the moves of one).
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import ceil, exp, fsum, inf, lgamma, log, log1p, prod
+from math import ceil, inf, prod
 from random import Random
 
+from rvmon.confidence import interval
 from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Network, Query
@@ -88,20 +90,23 @@ def estimate(
 
     Raises:
         ModelError: the query cannot be judged on one run, or the network cannot start.
-
-    Source: Clopper and Pearson, The Use of Confidence or Fiducial Limits, 1934.
     """
     check_start(network)
     sought, meets, horizon = _goal(query, until)
+    trial = trial_of(network, sought, horizon, Random(seed), mean_wait)  # noqa: S311 - repeatable
+    found = sum(trial() for _ in range(runs))
+    successes = found if meets else runs - found
+    low, high = interval(successes, runs, confidence)
+    return Estimate(runs, successes, low, high, confidence)
+
+
+def trial_of(
+    network: Network, sought: Expression, horizon: int, random: Random, mean_wait: float
+) -> Callable[[], bool]:
+    """What simulates one run and says whether it meets a normalised formula within a horizon."""
     space = Space(network, formula_bounds(sought, network))
     constraints = constraint_maker(sought)
-    random = Random(seed)  # noqa: S311 - repeatable, not secret
-    found = sum(
-        _reaches(space, constraints, horizon * GRID, random, mean_wait * GRID) for _ in range(runs)
-    )
-    successes = found if meets else runs - found
-    low, high = exact_bounds(successes, runs, confidence)
-    return Estimate(runs, successes, low, high, confidence)
+    return lambda: _reaches(space, constraints, horizon * GRID, random, mean_wait * GRID)
 
 
 def _goal(query: Query, until: int | None) -> tuple[Expression, bool, int]:
@@ -124,6 +129,17 @@ def _reaches(
     space: Space, constraints: ConstraintMaker, horizon: int, random: Random, mean_wait: float
 ) -> bool:
     """Whether one random run meets a formula within some grid steps."""
+    for state, clocks, stay in stretches(space, horizon, random, mean_wait):
+        here = constraints(state.vector.locations, state.values)
+        if any(_window(constraint, clocks, 0, stay) is not None for constraint in here):
+            return True
+    return False
+
+
+def stretches(
+    space: Space, horizon: int, random: Random, mean_wait: float
+) -> Iterator[tuple[State, list[int], int]]:
+    """One random run: each state, the clocks as it begins and how long it lasts, in grid steps."""
     state = space.initial()
     assert state is not None  # noqa: S101 - the network can start
     clocks, now = [0] * space.dim, 0
@@ -131,15 +147,13 @@ def _reaches(
         drawn = _draw(space, state, clocks, random, mean_wait)
         # If nothing is left to do, time passes as long as it may.
         most = _longest(state, clocks) if drawn is None else drawn[1]
-        wait = int(min(most, horizon - now))
-        here = constraints(state.vector.locations, state.values)
-        if any(_window(constraint, clocks, 0, wait) is not None for constraint in here):
-            return True
-        now += wait
-        if drawn is None or now >= horizon:
-            return False
+        stay = int(min(most, horizon - now))
+        yield state, clocks, stay
+        if drawn is None or most > stay:
+            return
+        now += stay
         move = drawn[0]
-        clocks = [0, *(clock + wait for clock in clocks[1:])]
+        clocks = [0, *(clock + stay for clock in clocks[1:])]
         for clock, value in move.resets:
             clocks[clock] = int(value) * GRID
         state = move.target
@@ -215,39 +229,3 @@ def _limit(bound: float) -> int:
     """A bound in grid steps; a strict one is one step less."""
     whole = ceil(bound)
     return whole * GRID - (bound != whole)
-
-
-def exact_bounds(successes: int, runs: int, confidence: float) -> tuple[float, float]:
-    """Bounds of a share that hold with at least the given confidence.
-
-    >>> low, high = exact_bounds(8, 10, 0.95)
-    >>> round(low, 4), round(high, 4)
-    (0.4439, 0.9748)
-    """
-    tail = (1 - confidence) / 2
-    low = _share_with_tail(successes, runs, tail) if successes > 0 else 0.0
-    high = _share_with_tail(successes + 1, runs, 1 - tail) if successes < runs else 1.0
-    return low, high
-
-
-def _share_with_tail(least: int, runs: int, tail: float) -> float:
-    """The share for which at least so many successes have the given probability."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        if _probability_of_at_least(least, runs, middle) < tail:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
-
-
-def _probability_of_at_least(least: int, runs: int, share: float) -> float:
-    choices = lgamma(runs + 1)
-    return fsum(
-        exp(
-            choices - lgamma(k + 1) - lgamma(runs - k + 1)
-            + k * log(share) + (runs - k) * log1p(-share)
-        )
-        for k in range(least, runs + 1)
-    )  # fmt: skip

@@ -1,0 +1,239 @@
+"""Conflicts: minimal sets of requirements, triggered as given, that cannot all hold."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection, Iterator, Sequence
+from itertools import combinations
+
+from rvmon.analysis.product import Aim, Together
+from rvmon.analysis.requirement import Conflict, Member, Subject
+
+MOST_OFFSETS = 12
+"""Of two requirements so many distances between their triggers are looked at."""
+
+MOST_ALWAYS = 4
+"""So many requirements that hold at every instant are looked at beside two others."""
+
+LARGEST_GROUP = 6
+"""Groups of so many are tried first: where all of one can hold, so can all sets within."""
+
+LARGEST_SET = 5
+"""Larger sets are not looked at one by one."""
+
+MOST_SETS = 2000
+"""Of more sets of one size above three none is looked at."""
+
+
+class ConflictSearch:
+    """Looks for conflicts among requirements that can be met one by one.
+
+    Args:
+        together: answers about groups.
+        subjects: the requirements.
+        deadline: of `time.monotonic`.
+
+    Attributes:
+        conflicts: found so far; none holds another one.
+        pairs: how many pairs read a common name.
+        pairs_undecided: how many of these are not decided.
+        sets_undecided: how many larger sets that were looked at are not decided.
+        whole_sets: sets of up to so many were all looked at; `None` if of any size.
+    """
+
+    def __init__(self, together: Together, subjects: Sequence[Subject], deadline: float) -> None:
+        self.together = together
+        self.subjects = subjects
+        self.deadline = deadline
+        self.conflicts: list[Conflict] = []
+        self.sets_undecided = 0
+        self.whole_sets: int | None = 2
+        self._always = [subject for subject in subjects if subject.is_always]
+        self._pairs = [pair for pair in combinations(subjects, 2) if pair[0].names & pair[1].names]
+        self._near = set(map(frozenset, self._pairs))
+        self._open: set[frozenset[Subject]] = set(self._near)
+        self._apart: set[frozenset[Subject]] = set()
+        self._bad: list[frozenset[Subject]] = []
+        self._fine: list[frozenset[Subject]] = []
+
+    @property
+    def pairs(self) -> int:
+        """How many pairs read a common name."""
+        return len(self._pairs)
+
+    @property
+    def pairs_undecided(self) -> int:
+        """How many of the pairs are not decided, or not reached."""
+        return len(self._open)
+
+    def run(self) -> None:
+        """Look at pairs at once and apart, at groups, then at larger and larger sets."""
+        decided = set()
+        for pair in self._pairs:
+            if not self._is_late() and self._pair_at_once(*pair) is not None:
+                decided.add(frozenset(pair))
+        self._groups()
+        level = self._sets_of(3, list(self._near))
+        for one, other in self._to_be_set_apart():
+            if self._is_late():
+                return
+            self._pair_apart(one, other)
+            if frozenset((one, other)) in decided:
+                self._open.discard(frozenset((one, other)))
+        for size in range(4, LARGEST_SET + 1):
+            level = self._sets_of(size, level)
+
+    def _is_late(self) -> bool:
+        return time.monotonic() > self.deadline
+
+    def _can_hold(self, members: Sequence[Member]) -> bool | None:
+        """Whether all can end well, triggered as given."""
+        subjects = [member.subject for member in members]
+        offsets = [member.offset for member in members]
+        return self.together.can_reach(subjects, offsets, Aim(frozenset(range(len(members)))))
+
+    def _pair_at_once(self, one: Subject, other: Subject) -> bool | None:
+        """Whether two can hold, triggered at one instant; a conflict is kept."""
+        if self.together.can_start([one, other]) is False:
+            self._apart.add(frozenset((one, other)))
+            return True
+        holds = self._can_hold([Member(one), Member(other)])
+        if holds is False:
+            self._keep([Member(one), Member(other)])
+        return holds
+
+    def _to_be_set_apart(self) -> Iterator[tuple[Subject, Subject]]:
+        """Requirements with themselves, then pairs that are near, also by what holds always."""
+        yield from ((one, one) for one in self.subjects if one.starts_anew)
+        yield from self._pairs
+        for one, other in combinations(self.subjects, 2):
+            if frozenset((one, other)) not in self._near and any(
+                one.names & always.names and other.names & always.names for always in self._always
+            ):
+                yield one, other
+
+    def _pair_apart(self, one: Subject, other: Subject) -> None:
+        """Look at two, or at one that is triggered twice, with time between their triggers."""
+        orders = [(one, other)] if one is other else [(one, other), (other, one)]
+        for first, second in orders:
+            if second.starts_late and not first.is_always:
+                for offset in _offsets(first, second):
+                    if self._is_late() or self._apart_by(first, second, offset):
+                        return
+
+    def _apart_by(self, first: Subject, second: Subject, offset: int) -> bool:
+        """Whether two, the second so much later, conflict, or do so with what holds always."""
+        names = first.names | second.names
+        always = [
+            Member(subject)
+            for subject in self._always
+            if subject not in (first, second) and subject.names & names
+        ]
+        members = [Member(first), Member(second, offset), *always[:MOST_ALWAYS]]
+        holds = self._can_hold(members)
+        if holds is None:
+            members = members[:2]
+            holds = self._can_hold(members)
+        return holds is False and self._keep(self._minimal(members))
+
+    def _minimal(self, members: list[Member]) -> list[Member]:
+        """The members without those that are not needed for the conflict."""
+        for member in list(members):
+            rest = [other for other in members if other is not member]
+            if len(rest) > 1 and self._can_hold(rest) is False:
+                members = rest
+        start = min(member.offset for member in members)
+        return [Member(member.subject, member.offset - start) for member in members]
+
+    def _keep(self, members: Sequence[Member]) -> bool:
+        """Keep a conflict, if it is none of triggers alone; whether it was kept."""
+        group = frozenset(member.subject for member in members)
+        if any(bad <= group for bad in self._bad):
+            return False
+        subjects = [member.subject for member in members]
+        offsets = [member.offset for member in members]
+        for place in range(len(members)):
+            if not self.together.can_reach(subjects, offsets, Aim(frozenset([place]))):
+                return False
+        self._bad.append(group)
+        found = Conflict(tuple(subject.id for subject in subjects), tuple(offsets))
+        self.conflicts.append(found)
+        return True
+
+    # Sets of more than two, triggered at one instant.
+
+    def _groups(self) -> None:
+        """Of each requirement a group of near ones, in the hope that all of it can hold."""
+        for subject in self.subjects:
+            group = [subject]
+            for other in self.subjects:
+                if len(group) < LARGEST_GROUP and self._fits(group, other):
+                    group.append(other)
+            while len(group) > 2 and not self._is_late() and not self._is_fine(frozenset(group)):
+                if self._can_hold([Member(one) for one in group]):
+                    self._fine.append(frozenset(group))
+                group.pop()
+
+    def _fits(self, group: Collection[Subject], other: Subject) -> bool:
+        """Whether one more is near, can start with the others, and conflicts with none."""
+        if other in group or not any(frozenset((one, other)) in self._near for one in group):
+            return False
+        return not self._is_hopeless(frozenset((*group, other)))
+
+    def _is_hopeless(self, group: frozenset[Subject]) -> bool:
+        """Whether a conflict or two that never start together are within."""
+        pairs = map(frozenset, combinations(group, 2))
+        return any(bad <= group for bad in self._bad) or any(p in self._apart for p in pairs)
+
+    def _is_fine(self, group: frozenset[Subject]) -> bool:
+        return any(group <= known for known in self._fine)
+
+    def _sets_of(self, size: int, level: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
+        """Look at sets of a size, each a smaller one and one more; none is left if that is all."""
+        if self.whole_sets != size - 1:
+            return []
+        larger = list(dict.fromkeys(self._grown(level)))
+        if not larger:
+            self.whole_sets = None
+        if size > 3 and len(larger) > MOST_SETS:
+            return []
+        for group in larger:
+            if self._is_late():
+                return []
+            self._look_at(group)
+        if larger:
+            self.whole_sets = size
+        return larger
+
+    def _grown(self, level: Sequence[frozenset[Subject]]) -> Iterator[frozenset[Subject]]:
+        for group in level:
+            if not self._is_hopeless(group):
+                for other in self.subjects:
+                    if self._fits(group, other):
+                        yield group | {other}
+
+    def _look_at(self, group: frozenset[Subject]) -> None:
+        if self._is_fine(group) or self._is_hopeless(group):
+            return
+        members = [Member(subject) for subject in self.subjects if subject in group]
+        holds = self._can_hold(members)
+        self.sets_undecided += holds is None
+        if holds is False:
+            self._keep(self._minimal(members))
+
+
+def _offsets(first: Subject, second: Subject) -> list[int]:
+    """Distances at which windows of the two begin, end or touch, round ones first."""
+    theirs = {0, *_cuts(second)}
+    found = {a - b + step for a in _cuts(first) for b in theirs for step in (-1, 0, 1)}
+    return sorted((at for at in found if at > 0), key=_roundness)[:MOST_OFFSETS]
+
+
+def _roundness(offset: int) -> tuple[int, int]:
+    digits = str(offset)
+    return len(digits.rstrip("0")), offset
+
+
+def _cuts(subject: Subject) -> set[int]:
+    locations = () if subject.automaton is None else subject.automaton.locations
+    return {cut for location in locations for clock in location.cuts for cut in clock}

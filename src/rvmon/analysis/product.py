@@ -1,0 +1,270 @@
+"""Attempts of several requirements side by side: whether they can all end well.
+
+One clock measures the time since the first trigger; its ages are cut into cells by the windows of
+all. Of every clock of an attempt it is known in which cell it was started, so that its age is known
+up to the widths of two cells. More is taken to be possible than is: a cell takes any number of
+steps, and clocks that are started in one cell are not compared. So what is found impossible is so.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.analysis.combinations import Letters, Table, Truths
+from rvmon.analysis.requirement import Regions, Subject, after_edge
+from rvmon.analysis.vacuity import automaton_letter
+from rvmon.automaton.automaton import Automaton, row_of
+from rvmon.automaton.location import FAILED, NOW, PASSED
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
+
+MOST_STATES = 4000
+FOREVER = 1 << 63
+
+Spot = tuple[int, Regions, tuple[int, ...]]
+"""Where one attempt is: its location, the least regions of its clocks and where they began."""
+
+State = tuple[int, tuple[Spot | None, ...]]
+"""The cell, and each attempt; `None` before its trigger."""
+
+Letter = tuple[tuple[int, bool], ...]
+"""A joint letter: for each requirement the class for its automaton, and if its trigger holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """What is looked for.
+
+    Attributes:
+        well: the attempts, by their place, that shall end well.
+        failed: those that shall have failed; of the others nothing is asked.
+    """
+
+    well: frozenset[int]
+    failed: frozenset[int] = frozenset()
+
+
+class Together:
+    """Answers about groups of requirements of one specification."""
+
+    def __init__(self, spec: CheckedSpec) -> None:
+        self.spec = spec
+        self._letters = Letters(spec)
+        self._tables: dict[Subject, Table[tuple[int, bool]] | None] = {}
+        self._known: dict[tuple[Subject, ...], frozenset[Letter] | None] = {}
+
+    def letters(self, subjects: Sequence[Subject]) -> frozenset[Letter] | None:
+        """The joint letters of requirements; `None` if there are too many."""
+        key = tuple(subjects)
+        if key not in self._known:
+            self._known[key] = self._letters.joint([self._table(subject) for subject in key])
+        return self._known[key]
+
+    def _table(self, subject: Subject) -> Table[tuple[int, bool]] | None:
+        if subject not in self._tables:
+            propositions = _automaton(subject).alphabet.propositions
+            trigger = [] if subject.trigger is None else [subject.trigger]
+            states = [*propositions, *trigger]
+            self._tables[subject] = self._letters.table(states, _view(subject))
+        return self._tables[subject]
+
+    def can_start(self, subjects: Sequence[Subject]) -> bool | None:
+        """Whether the triggers of all can hold at one instant; `None` if it was not decided."""
+        letters = self.letters(subjects)
+        if letters is None:
+            return None
+        return any(all(holds for _, holds in letter) for letter in letters)
+
+    def can_reach(
+        self, subjects: Sequence[Subject], offsets: Sequence[int], aim: Aim
+    ) -> bool | None:
+        """Whether attempts can come to what is looked for.
+
+        Args:
+            subjects: with automata and triggers.
+            offsets: of their triggers, ticks after the first.
+            aim: what is looked for, if the run ended there.
+
+        Returns:
+            `False` if it surely cannot be, `True` if it may, `None` if that was too much to find
+            out.
+
+        Source: emptiness of a product of timed automata, after Alur and Dill 1994.
+        """
+        letters = self.letters(subjects)
+        if letters is None:
+            return None
+        search = _Search(self.spec, subjects, offsets, letters, aim)
+        waiting: list[State] = [(-1, tuple(None for _ in subjects))]
+        seen = set(waiting)
+        while waiting:
+            for state in search.after(waiting.pop()):
+                if state in seen:
+                    continue
+                if search.is_reached(state):
+                    return True
+                seen.add(state)
+                if len(seen) > MOST_STATES:
+                    return None
+                waiting.append(state)
+        return False
+
+
+def _view(subject: Subject) -> Callable[[Truths], tuple[int, bool]]:
+    """What matters of a requirement's propositions and trigger: class and whether it starts."""
+    automaton, triggered = _automaton(subject), subject.trigger is not None
+
+    def view(truths: Truths) -> tuple[int, bool]:
+        own = truths[:-1] if triggered else truths
+        return automaton_letter(automaton, own), triggered and truths[-1]
+
+    return view
+
+
+def _automaton(subject: Subject) -> Automaton:
+    assert subject.automaton is not None, "only requirements with an automaton come here"  # noqa: S101
+    return subject.automaton
+
+
+class _Search:
+    def __init__(
+        self,
+        spec: CheckedSpec,
+        subjects: Sequence[Subject],
+        offsets: Sequence[int],
+        letters: frozenset[Letter],
+        aim: Aim,
+    ) -> None:
+        self.aim = aim
+        self.subjects = subjects
+        self.offsets = offsets
+        self.letters = letters
+        self.automata = [_automaton(subject) for subject in subjects]
+        cuts = {0, 1}
+        for automaton, offset in zip(self.automata, offsets, strict=True):
+            cuts |= {offset, offset + 1} | {offset + cut for cut in _cuts(automaton)}
+        self.starts = sorted(cuts)
+        self.dense = spec.time is TimeModel.HELD
+        self._at: dict[int, frozenset[tuple[int, ...]]] = {}
+
+    def after(self, state: State) -> Iterator[State]:
+        """The states one step later from which the aim is not lost."""
+        cell, spots = state
+        for later in self._cells(cell):
+            for classes in self._classes(later):
+                ways = []
+                for index, spot in enumerate(spots):
+                    kept = [
+                        reached
+                        for reached in self._moves(index, spot, later, classes[index])
+                        if not self._is_lost(index, reached)
+                    ]
+                    if not kept:
+                        break
+                    ways.append(kept)
+                else:
+                    for chosen in product(*ways):
+                        yield later, chosen
+
+    def _classes(self, cell: int) -> frozenset[tuple[int, ...]]:
+        """The joint classes that can come in a cell: whoever starts there has its trigger."""
+        if cell not in self._at:
+            starting = [i for i, at in enumerate(self.offsets) if at == self.starts[cell]]
+            self._at[cell] = frozenset(
+                tuple(own for own, _ in letter)
+                for letter in self.letters
+                if all(letter[index][1] for index in starting)
+            )
+        return self._at[cell]
+
+    def _is_lost(self, index: int, spot: Spot | None) -> bool:
+        if spot is None:
+            return False
+        return spot[0] == (FAILED if index in self.aim.well else PASSED) and (
+            index in self.aim.well or index in self.aim.failed
+        )
+
+    def _cells(self, cell: int) -> Sequence[int]:
+        """The cells in which the next step may lie."""
+        last = len(self.starts) - 1
+        if cell < 0:
+            return (0,)
+        width = self.starts[cell + 1] - self.starts[cell] if cell < last else 2
+        first = cell if width > 1 else cell + 1
+        if self.dense:
+            return range(first, min(cell + 1, last) + 1)
+        ends = [i for i, at in enumerate(self.starts) if at in self.offsets and i > cell]
+        return range(first, min([*ends, last]) + 1)
+
+    def _moves(
+        self, index: int, spot: Spot | None, cell: int, class_: int
+    ) -> Iterator[Spot | None]:
+        """Where one attempt can be after a step in a cell."""
+        automaton, age = self.automata[index], self.starts[cell] - self.offsets[index]
+        if age < 0:
+            yield None
+            return
+        if spot is None:
+            spot = (automaton.initial, (), ())
+        location, _, began = spot
+        if location <= PASSED:
+            yield spot
+            return
+        for at in self._regions(index, spot, cell):
+            row = row_of(automaton, location, at)
+            edge = automaton.edges[row * automaton.classes + class_]
+            if edge >= 0:
+                since = [cell if s == NOW else began[s] for s in automaton.sources[edge]]
+                kept = after_edge(automaton, location, at, edge)
+                yield automaton.targets[edge], kept, tuple(since)
+
+    def _regions(self, index: int, spot: Spot, cell: int) -> Iterator[Regions]:
+        """The regions in which an attempt's clocks can be in a cell."""
+        location, regions, began = spot
+        cuts = self.automata[index].locations[location].cuts
+        ranges = []
+        for own, region, start in zip(cuts, regions, began, strict=True):
+            youngest = max(self.starts[cell] - self._last(start), 0)
+            oldest = self._last(cell) - self.starts[start]
+            low = max(bisect_right(own, youngest), region)
+            ranges.append(range(low, max(bisect_right(own, oldest), low) + 1))
+        yield from product(*ranges)
+
+    def _last(self, cell: int) -> int:
+        """The last tick of a cell."""
+        return self.starts[cell + 1] - 1 if cell + 1 < len(self.starts) else FOREVER
+
+    def is_reached(self, state: State) -> bool:
+        """Whether the aim is reached if the run ends here, all attempts having been triggered."""
+        cell, spots = state
+        if any(spot is None for spot in spots):
+            return False
+        at = [spot for spot in spots if spot is not None]
+        return all(self._well(i, at[i], cell) for i in self.aim.well) and all(
+            at[i][0] == FAILED for i in self.aim.failed
+        )
+
+    def _well(self, index: int, spot: Spot, cell: int) -> bool:
+        location = spot[0]
+        if location <= PASSED:
+            return location == PASSED
+        policy = self.subjects[index].requirement.at_end
+        if policy is not EndPolicy.DEFAULT:
+            return policy in (EndPolicy.WEAK, EndPolicy.PASS)
+        automaton = self.automata[index]
+        return any(
+            automaton.end_values[row_of(automaton, location, at)]
+            for at in self._regions(index, spot, cell)
+        )
+
+
+def _cuts(automaton: Automaton) -> set[int]:
+    """Ages at which windows of an automaton open and end, and those of windows in windows."""
+    cuts = {cut for location in automaton.locations for clock in location.cuts for cut in clock}
+    row = automaton.bases[automaton.initial] * automaton.classes
+    first = set(automaton.edges[row : row + automaton.classes])
+    later = (sources for edge, sources in enumerate(automaton.sources) if edge not in first)
+    restarts = any(NOW in sources for sources in later)
+    return cuts | {a + b for a in cuts for b in cuts} if restarts else cuts

@@ -1,0 +1,187 @@
+"""What a requirement can never do: trigger, fail, pass."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.analysis.combinations import combinations_of
+from rvmon.analysis.requirement import Regions
+from rvmon.automaton.automaton import Automaton, row_of
+from rvmon.automaton.location import FAILED, NOW, PASSED
+from rvmon.formula.state import FALSE, TRUE, State
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
+
+_STARTED = -1
+"""In the place of a region: of a clock that was started at this position."""
+
+
+@dataclass(frozen=True, slots=True)
+class Possible:
+    """What a requirement may do; `False` is certain, `None` was not decided.
+
+    Attributes:
+        trigger: whether an attempt can start.
+        fail: whether one can fail.
+        pass_: whether one can pass.
+    """
+
+    trigger: bool | None = None
+    fail: bool | None = None
+    pass_: bool | None = None
+
+
+def possible(
+    spec: CheckedSpec, trigger: State | None, automaton: Automaton | None, policy: EndPolicy
+) -> Possible:
+    """What a requirement can do, found on its automaton.
+
+    More is taken to be possible than is, never less: past and complex comparisons are true or
+    false at will, and so is the order in which ages cross their bounds.
+
+    Args:
+        spec: declares the names.
+        trigger: of the requirement; `None` if it is the end of the trace.
+        automaton: of what is owed; `None` if it does not close.
+        policy: for what is undecided at the end.
+
+    Source: AUTOMATA 2, regions after Alur and Dill 1994.
+    """
+    if automaton is None:
+        found = None if trigger is None else combinations_of(spec, [trigger])
+        return Possible(trigger=None if found is None else (True,) in found.vectors)
+    propositions = automaton.alphabet.propositions
+    states = [*propositions, *([] if trigger is None else [trigger])]
+    found = combinations_of(spec, states)
+    if found is None:
+        return Possible()
+    first = {v for v in found.vectors if trigger is None or v[-1]}
+    if not first:
+        return Possible(trigger=False)
+    # What is explored has every run that there is, and perhaps more. So "cannot fail" is a proof,
+    # and becomes a finding; "can fail" is none: no run need show it, and nothing is said of it.
+    width = len(propositions)
+    gap = {TimeModel.HELD: 1, TimeModel.CLOCKED: spec.period, TimeModel.SAMPLED: None}[spec.time]
+    reach = _Reach(automaton, gap)
+    reach.run(
+        {automaton_letter(automaton, v[:width]) for v in first},
+        {automaton_letter(automaton, v[:width]) for v in found.vectors},
+    )
+    undecided = bool(reach.rows)
+    fail = reach.failed or (undecided and policy in (EndPolicy.STRONG, EndPolicy.FAIL))
+    held = policy is EndPolicy.DEFAULT and any(automaton.end_values[row] for row in reach.rows)
+    settled = policy in (EndPolicy.WEAK, EndPolicy.PASS)
+    return Possible(True, fail, reach.passed or held or (undecided and settled))
+
+
+def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
+    """The class of the letter in which the propositions have these truths."""
+    weights = automaton.alphabet.pessimistic
+    letter = sum(
+        own[TRUE] if truth else own[FALSE] for own, truth in zip(weights, truths, strict=True)
+    )
+    return automaton.class_of[letter]
+
+
+class _Reach:
+    """All rows of an automaton that runs can come to.
+
+    Of a clock that was started at the position of a step the age is known; of others, between which
+    cuts it lies.
+
+    Args:
+        automaton: explored.
+        gap: ticks from position to position; `None`: time passes at will.
+
+    Attributes:
+        rows: of undecided locations.
+        failed: whether an attempt can fail.
+        passed: whether one can pass.
+    """
+
+    def __init__(self, automaton: Automaton, gap: int | None) -> None:
+        self.automaton = automaton
+        self.gap = gap
+        self.rows: set[int] = set()
+        self.failed = False
+        self.passed = False
+
+    def run(self, first: set[int], letters: set[int]) -> None:
+        """Explore from the trigger; letters are given by their classes."""
+        waiting = list(self._step(self.automaton.initial, (), first))
+        seen = set(waiting)
+        while waiting:
+            location, clocks = waiting.pop()
+            self._visit(location, tuple(max(clock, 0) for clock in clocks))
+            cuts = self.automaton.locations[location].cuts
+            for later in product(*map(self._later, clocks, cuts)):
+                self._visit(location, later)
+                for reached in self._step(location, later, letters):
+                    if reached not in seen:
+                        seen.add(reached)
+                        waiting.append(reached)
+
+    def _visit(self, location: int, regions: Regions) -> None:
+        row = row_of(self.automaton, location, regions)
+        self.rows.add(row)
+        self.failed |= self.automaton.time_values[row] == FALSE
+        self.passed |= self.automaton.time_values[row] == TRUE
+
+    def _later(self, clock: int, cuts: tuple[int, ...]) -> range:
+        """The regions in which a clock may be at the next position."""
+        if self.gap is None:
+            return range(max(clock, 0), len(cuts) + 1)
+        if clock == _STARTED:
+            region = bisect_right(cuts, self.gap)
+            return range(region, region + 1)
+        low, high = _ages(clock, cuts)
+        return _regions(cuts, low + self.gap, None if high is None else high + self.gap)
+
+    def _step(
+        self, location: int, regions: Regions, letters: Iterable[int]
+    ) -> Iterator[tuple[int, tuple[int, ...]]]:
+        automaton = self.automaton
+        row = row_of(automaton, location, regions)
+        for letter in letters:
+            edge = automaton.edges[row * automaton.classes + letter]
+            if edge < 0:
+                continue
+            target = automaton.targets[edge]
+            if target <= PASSED:
+                self.failed |= target == FAILED
+                self.passed |= target == PASSED
+                continue
+            ours = automaton.locations[location].cuts
+            theirs = automaton.locations[target].cuts
+            kept = (
+                self._kept(source, regions, ours, cuts)
+                for source, cuts in zip(automaton.sources[edge], theirs, strict=True)
+            )
+            for clocks in product(*kept):
+                yield target, clocks
+
+    def _kept(
+        self,
+        source: int,
+        regions: Regions,
+        ours: tuple[tuple[int, ...], ...],
+        cuts: tuple[int, ...],
+    ) -> Iterable[int]:
+        """What may be known of a clock behind an edge, whose cuts are others."""
+        if source == NOW:
+            return (_STARTED,)
+        return _regions(cuts, *_ages(regions[source], ours[source]))
+
+
+def _ages(region: int, cuts: tuple[int, ...]) -> tuple[int, int | None]:
+    """The least and the greatest age in a region."""
+    low = cuts[region - 1] if region else 0
+    return low, cuts[region] - 1 if region < len(cuts) else None
+
+
+def _regions(cuts: tuple[int, ...], low: int, high: int | None) -> range:
+    """The regions of the ages from one to another."""
+    last = len(cuts) if high is None else bisect_right(cuts, high)
+    return range(bisect_right(cuts, low), last + 1)

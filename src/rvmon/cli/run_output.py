@@ -1,0 +1,213 @@
+"""The files that `rvmon run` writes."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from rvmon.cli.judging import Judged
+from rvmon.cli.output import say
+from rvmon.cli.reading import reading_words
+from rvmon.diagnostics.shown import shown_path
+from rvmon.errors import RvmonError
+from rvmon.evidence.keep import (
+    COVERAGE,
+    About,
+    Judging,
+    coverage_json,
+    own_program,
+    package_versions,
+    sha256_of,
+    texts_of,
+    write_evidence,
+)
+from rvmon.readers.held import HeldRecording
+from rvmon.readers.messages.forms import form_of_folder
+from rvmon.readers.source import Source
+from rvmon.report.folder import write_file
+from rvmon.session import Spec
+from rvmon.verdict.rows import VerdictRow
+
+if TYPE_CHECKING:
+    from rvmon.cli.judging import Judged
+    from rvmon.session import Spec
+    from rvmon.trace.sample import Sample
+    from rvmon.verdict.known_failures import KnownFailures
+    from rvmon.verdict.rows import VerdictRow
+
+
+def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
+    """Write the verdicts as a table (`--out`).
+
+    Raises:
+        RvmonError: it cannot be written.
+    """
+    import rvmon
+    from rvmon.verdict import write_rows as write
+    from rvmon.verdict.verdict import LAW
+
+    about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
+    write.write_results(path, rows_of(judged), about)
+
+
+def rows_of(judged: Iterable[Judged]) -> Iterator[VerdictRow]:
+    """The verdicts on recordings as rows."""
+    from rvmon.verdict.rows import broken_rows
+
+    for one in judged:
+        if one.report is not None:
+            yield from one.report.rows()
+        else:
+            yield from broken_rows(one.trace, one.error, one.before)
+
+
+def write_files(
+    arguments: argparse.Namespace,
+    spec: Spec,
+    judged: Sequence[Judged],
+    known: KnownFailures,
+    reproducer: str,
+) -> None:
+    """Write what else was asked for: coverage, JUnit, MCAP, pages.
+
+    Raises:
+        RvmonError: a file cannot be written.
+    """
+    reports = [one.report for one in judged if one.report is not None]
+    if arguments.coverage is not None:
+        _record_coverage(Path(arguments.coverage), spec, judged, known)
+    broken = [(one.trace, one.error) for one in judged if one.report is None]
+    if arguments.junit:
+        from rvmon.report.junit import junit_xml
+
+        write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
+
+    def read(trace: str) -> Sequence[Sample]:
+        # What came over standard input is gone: its page has the verdicts, not the signals.
+        place = arguments.traces[0] if reproducer else trace
+        if trace == "-":
+            return []
+        return HeldRecording(Source(spec.recording(place)).pieces(), spec.checked.events)
+
+    if arguments.mcap:
+        from rvmon.export.verdicts_mcap import write_verdicts
+
+        for report in reports:
+            end = report.end or 0
+            samples = [one for one in read(report.trace) if one.t <= end]
+            write_verdicts(arguments.mcap, spec.checked, report, samples)
+    if arguments.report:
+        from rvmon.report.run_pages import write_run_pages
+
+        def command(trace: str) -> str:
+            if reproducer:
+                return shlex.join(["rvmon", "run", reproducer])
+            return shlex.join(["rvmon", "run", arguments.spec, trace, *reading_words(arguments)])
+
+        folder = Path(arguments.report)
+        written = write_run_pages(
+            folder, spec.checked, reports, read, command, broken=broken, known=known
+        )
+        if written and arguments.format == "text":
+            say(f"wrote {written[-1]}")
+
+
+def _record_coverage(
+    path: Path, spec: Spec, judged: Sequence[Judged], known: KnownFailures
+) -> None:
+    from rvmon.coverage.database import Database
+    from rvmon.coverage.record import TestRecord
+
+    with Database.open(path) as database:
+        database.declare(spec.coverage_model.model)
+        for number, one in enumerate(judged):
+            if one.report is not None:
+                test = TestRecord(
+                    one.trace,
+                    campaign=spec.checked.name,
+                    recording=one.trace,
+                    verdicts=one.report.verdicts,
+                    number=number,
+                    seconds=one.seconds,
+                    expected=known.expected(one.report),
+                )
+                database.record(test, one.hits)
+
+
+def is_recording(path: str) -> bool:
+    """Whether there is a file, or a folder that is a recording; other things have no hash."""
+    try:
+        return Path(path).is_file() or bool(form_of_folder(path))
+    except (OSError, ValueError):
+        return False
+
+
+def begun(
+    arguments: argparse.Namespace, traces: Sequence[str]
+) -> tuple[dict[str, bytes], list[str], dict[str, str]]:
+    """What verdicts depend on, before anything is judged, and after.
+
+    Args:
+        arguments: of `rvmon run`.
+        traces: paths of the recordings.
+
+    Returns:
+        What `texts_of` returns, and the SHA-256 of the recordings by path.
+
+    Raises:
+        RvmonError: evidence cannot be kept of it.
+    """
+    found: dict[str, str] = {}
+    for trace in traces:
+        if not is_recording(trace) or shown_path(trace) in found:
+            raise RvmonError(f"--evidence: {trace}: name files that are there, each once")
+        found[shown_path(trace)] = sha256_of(Path(trace))
+    return *texts_of({"": arguments.spec}, arguments.binding), found
+
+
+def write_run(
+    arguments: argparse.Namespace,
+    spec: Spec,
+    judged: Sequence[Judged],
+    before: tuple[dict[str, bytes], list[str], dict[str, str]],
+) -> None:
+    """Write the evidence of recordings.
+
+    Args:
+        arguments: of `rvmon run`.
+        spec: that judged.
+        judged: the recordings.
+        before: what `begun` gave before these were judged.
+
+    Raises:
+        RvmonError: it cannot be written, or what was judged has changed meanwhile.
+    """
+    if begun(arguments, list(before[2])) != before:
+        raise RvmonError("--evidence: an input has changed meanwhile: run it again")
+    entries, (main, *binding), recordings = before
+    how = msgspec.convert(arguments, Judging, from_attributes=True)
+    about = About(
+        name=spec.checked.name,
+        packages=package_versions(),
+        programs={"rvmon": own_program()},
+        specs={"": main},
+        recordings=recordings,
+        judging=msgspec.structs.replace(how, binding=binding[0] if binding else None),
+    )
+    if arguments.coverage is not None:
+        covered = (spec.coverage_model.model, [one.hits for one in judged])
+        entries = {**entries, COVERAGE: coverage_json({"": covered})}
+    write_evidence(arguments.evidence, about, entries, {"": spec}, rows_of_judged(judged))
+
+
+def rows_of_judged(judged: Sequence[Judged]) -> Iterator[VerdictRow]:
+    """The verdicts, and what was hit of coverpoints and must not be."""
+    yield from rows_of(judged)
+    for one in judged:
+        for hit in () if one.report is None else one.report.illegal:
+            yield VerdictRow(one.trace, verdict="F", reason=str(hit))

@@ -1,0 +1,74 @@
+"""Why, in full: what the rest of a recording adds to reasons, or says where there is none."""
+
+from __future__ import annotations
+
+from rvmon.spec.print.printer import format_duration
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+
+def without_attempts(verdict: Verdict, miss: str) -> str:
+    """Why a requirement has no attempt.
+
+    Args:
+        verdict: of the requirement: `NT`, or `I` if its trigger was never known.
+        miss: what the trigger lacked when it was nearest; empty if nobody looked.
+
+    >>> without_attempts(Verdict.NOT_TRIGGERED, "`near` was never true")
+    'never triggered: `near` was never true'
+    >>> without_attempts(Verdict.INCONCLUSIVE, "")
+    'not known ever to be triggered'
+    """
+    is_sure = verdict is Verdict.NOT_TRIGGERED
+    why = "never triggered" if is_sure else "not known ever to be triggered"
+    return f"{why}: {miss}" if miss else why
+
+
+def full_reason(attempt: Attempt, report: Report) -> str:
+    """The reason of an attempt with its afterword, if the report knows one."""
+    return with_lateness(attempt, report.late.get(attempt.requirement, {}).get(attempt.number))
+
+
+def with_lateness(attempt: Attempt, came: int | None) -> str:
+    """The reason of an attempt; if what it awaited came after the deadline, also how late.
+
+    Args:
+        attempt: any.
+        came: the instant at which it came, ticks; `None`: it did not, or nobody looked.
+
+    >>> from rvmon.verdict.attempt import Blame
+    >>> from rvmon.verdict.verdict import Verdict
+    >>> second = 10**9
+    >>> blame = Blame("within 3 s a", 0, 12, (0, 3 * second))
+    >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)
+    >>> with_lateness(failed, 3 * second + 20_000_000)
+    'no `a`; it came at 3.02 s, 20 ms after the deadline'
+    >>> with_lateness(failed, 5 * second + 500_000_000)
+    'no `a`; it came at 5.5 s, 2.5 s after the deadline'
+    """
+    if came is None or attempt.blame is None or attempt.blame.window[1] is None:
+        return attempt.reason
+    span = duration_text(came - attempt.blame.window[1])
+    return f"{attempt.reason}; it came at {format_ticks(came)}, {span} after the deadline"
+
+
+def duration_text(ticks: int) -> str:
+    """A duration for people, in a unit of its size.
+
+    >>> duration_text(20_000_000), duration_text(2_500_000_000)
+    ('20 ms', '2.5 s')
+    """
+    return format_duration(ticks) if ticks < TICKS_PER_SECOND else format_ticks(ticks)
+
+
+def forecast_sentence(forecast: Verdict) -> str:
+    """What an undecided attempt comes to, however the run goes on.
+
+    >>> forecast_sentence(Verdict.FAIL)
+    'forecast F: no continuation can fulfil it'
+    """
+    if forecast is Verdict.PASS:
+        return "forecast P: every continuation fulfils it"
+    return "forecast F: no continuation can fulfil it"

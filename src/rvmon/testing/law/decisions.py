@@ -1,0 +1,179 @@
+"""Attempts through time: when each is decided, and where an episode goes on after a failure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from rvmon.errors import RvmonError
+from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.spec.checked.specification import Mode, Requirement
+from rvmon.testing.law.attempts import (
+    Start,
+    View,
+    counts_in_favour,
+    is_pulse,
+    is_upon_end,
+    obligation,
+    starts_upon,
+    views,
+)
+from rvmon.testing.law.syntax import looks_back_at_future, speaks_of_future
+from rvmon.testing.law.word import Truth, Word
+
+
+@dataclass(slots=True, eq=False)
+class Followed:
+    """One attempt, and the first instant at which the prefix decides it, with its truth then.
+
+    Attributes:
+        start: where it begins and what it owes.
+        decided: instant and truth; `None` if no prefix decides it.
+        number: among those whose trigger was TRUE, in the order in which it was first; 0 if in
+            doubt.
+        doubtful_number: among those whose trigger was not TRUE at first, in the order of their
+            starts; 0 for the others.
+    """
+
+    start: Start
+    decided: tuple[int, Truth] | None = None
+    number: int = 0
+    doubtful_number: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Followings:
+    """What is judged of one requirement.
+
+    Attributes:
+        attempts: in the order of their starts.
+        is_determined: whether its trigger was ever TRUE or FALSE.
+    """
+
+    attempts: Sequence[Followed]
+    is_determined: bool
+
+
+def follow(requirement: Requirement, word: Word) -> Followings:
+    """The attempts of a requirement on a word.
+
+    Raises:
+        RvmonError: the requirement's `pulse` is not what its trigger's syntax says.
+
+    Source: SEMANTICS, section 3; decision records 1 (Triggers, `whenever`, `for each`) and 4.
+    """
+    if is_pulse(requirement.trigger) != requirement.pulse:
+        raise RvmonError(f"requirement {requirement.id}: its trigger's class is not its syntax's")
+    seen = views(requirement, word)
+    found = sorted(
+        (one for view in seen for one in _followed(view)), key=lambda one: one.start.position
+    )
+    sure = [one for one in found if one.start.sure is not None]
+    for number, one in enumerate(sorted(sure, key=lambda one: one.start.sure or 0), start=1):
+        one.number = number
+    doubtful = (one for one in found if one.start.sure != one.start.position)
+    for number, one in enumerate(doubtful, start=1):
+        one.doubtful_number = number
+    return Followings(found, any(view.is_determined for view in seen))
+
+
+def _followed(view: View) -> list[Followed]:
+    if not view.word.letters:
+        return []
+    by_edges = view.requirement.mode is Mode.UPON or is_upon_end(view.requirement)
+    if not by_edges:
+        return _episodes(view)
+    found = [Followed(start) for start in starts_upon(view)]
+    first = view.word.letters[0].instant
+    if found:
+        readings = view.readings()
+        for reached in range(first, view.word.reached + 1):
+            readings.reach(reached)
+            _decide(found, view, reached)
+    return found
+
+
+def _decide(attempts: Iterable[Followed], view: View, reached: int) -> None:
+    """See what the prefix known at an instant decides."""
+    for one in attempts:
+        if one.decided is None and one.start.triggered <= reached:
+            truth = obligation(one.start, view.readings())
+            if truth is not Truth.UNKNOWN:
+                one.decided = (reached, truth)
+
+
+def _episodes(view: View) -> list[Followed]:
+    """The attempts of a `whenever`, of which each failure begins another."""
+    requirement, letters, readings = view.requirement, view.word.letters, view.readings()
+    at_once = opened_at_once(requirement.consequent)
+    goes_on = not looks_back_at_future(requirement.consequent)
+    favour = counts_in_favour(requirement)
+    found: list[Followed] = []
+    episode: Start | None = None
+    position = 0
+    for reached in range(letters[0].instant, view.word.reached + 1):
+        readings.reach(reached)
+        if position < len(letters) and letters[position].instant == reached:
+            k, position = position, position + 1
+            if view.trigger[k] is Truth.FALSE:
+                episode = None
+            elif episode is None and k >= view.first:
+                owes, stop = view.stretch(k)
+                episode = view.begin(k, owes, stop)
+                found.append(Followed(episode))
+            elif episode is not None and goes_on and _has_failed(found[-1]):
+                truths = readings.of(episode.captured, favour=favour)
+                blurred = episode.blurred is not None and k >= episode.blurred
+                if not blurred and truths.truth(at_once, k) is not Truth.FALSE:
+                    found.append(Followed(episode.restarted(k)))
+        _decide(found, view, reached)
+    return found
+
+
+def _has_failed(one: Followed) -> bool:
+    return one.decided is not None and one.decided[1] is Truth.FALSE
+
+
+_RELEASES = {UnaryOp.ALWAYS, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL}
+_UNTILS = {UnaryOp.EVENTUALLY, BinaryOp.UNTIL, BinaryOp.STRONG_RELEASE}
+
+
+def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
+    """The formula with the windows of all that has to be kept up opened at once.
+
+    In negation normal form these are the windows of `G` and `R`: their lower bounds become 0.
+
+    Args:
+        formula: a consequent or a part of one, with nothing of the future below the past.
+        positive: whether an even number of negations stands above it.
+
+    Source: SEMANTICS, section 3 (After a failure).
+    """
+
+    def same(part: Formula) -> Formula:
+        return opened_at_once(part, positive=positive)
+
+    def other(part: Formula) -> Formula:
+        return Unary(UnaryOp.NOT, opened_at_once(part, positive=not positive))
+
+    if not speaks_of_future(formula) or not isinstance(formula, Unary | Binary):
+        return formula
+    kept_up = _RELEASES if positive else _UNTILS
+    interval = formula.interval
+    if formula.op in kept_up and interval is not None:
+        interval = Interval(0, interval.high)
+    match formula:
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return other(operand)
+        case Unary(operand=operand):
+            return replace(formula, operand=same(operand), interval=interval)
+        case Binary(op=BinaryOp.IMPLIES, left=left, right=right):
+            return Binary(BinaryOp.OR, other(left), same(right))
+        case Binary(op=BinaryOp.IFF, left=left, right=right):
+            both = Binary(BinaryOp.AND, same(left), same(right))
+            return Binary(BinaryOp.OR, both, Binary(BinaryOp.AND, other(left), other(right)))
+        case Binary(op=BinaryOp.XOR, left=left, right=right):
+            one = Binary(BinaryOp.AND, same(left), other(right))
+            return Binary(BinaryOp.OR, one, Binary(BinaryOp.AND, other(left), same(right)))
+        case Binary(left=left, right=right):
+            return replace(formula, left=same(left), right=same(right), interval=interval)

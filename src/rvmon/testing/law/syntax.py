@@ -1,0 +1,111 @@
+"""What a formula is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rvmon.spec.checked.formula import (
+    Amount,
+    Arithmetic,
+    Binary,
+    BinaryOp,
+    Compare,
+    Constant,
+    Formula,
+    Interval,
+    Numeric,
+    Unary,
+    UnaryOp,
+)
+from rvmon.testing.law.word import Truth, conjunction, disjunction, negation, truth_of
+
+
+def subformulas(formula: Formula) -> Iterator[Formula]:
+    """The formula and all below it, from the top."""
+    yield formula
+    match formula:
+        case Unary(operand=operand) | Amount(operand=operand):
+            yield from subformulas(operand)
+        case Binary(left=left, right=right):
+            yield from subformulas(left)
+            yield from subformulas(right)
+        case _:
+            return
+
+
+_FUTURE = {
+    *(UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS),
+    *(BinaryOp.UNTIL, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE),
+}
+
+_BOOLEAN = {
+    *(UnaryOp.NOT, BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES, BinaryOp.IFF, BinaryOp.XOR),
+}
+
+
+def speaks_of_future(formula: Formula) -> bool:
+    """Whether a formula speaks of later positions."""
+    return any(
+        isinstance(part, Unary | Binary) and part.op in _FUTURE for part in subformulas(formula)
+    )
+
+
+def looks_back_at_future(formula: Formula) -> bool:
+    """Whether something of the future stands below an operator of the past."""
+    return any(
+        isinstance(part, Unary | Binary)
+        and part.op not in _BOOLEAN | _FUTURE
+        and speaks_of_future(part)
+        for part in subformulas(formula)
+    )
+
+
+def is_proposition(formula: Formula) -> bool:
+    """Whether it is read off the trace so far, and no combination of what is."""
+    if isinstance(formula, Unary | Binary):
+        return formula.op not in _BOOLEAN and not speaks_of_future(formula)
+    return True
+
+
+def intervals(formula: Formula) -> Iterator[Interval]:
+    """The intervals of all temporal operators."""
+    for part in subformulas(formula):
+        if isinstance(part, Unary | Binary) and part.interval is not None:
+            yield part.interval
+
+
+def numerics(formula: Formula) -> Iterator[Numeric]:
+    """All numeric expressions and their parts."""
+    for part in subformulas(formula):
+        if isinstance(part, Compare):
+            yield from parts_of(part.left)
+            yield from parts_of(part.right)
+
+
+def parts_of(expression: Numeric) -> Iterator[Numeric]:
+    """The expression and all below it, from the top."""
+    yield expression
+    if isinstance(expression, Arithmetic):
+        for arg in expression.args:
+            yield from parts_of(arg)
+
+
+def constant_value(formula: Formula) -> Truth:
+    """What a formula is whatever its propositions are, by Kleene's connectives; else UNKNOWN."""
+    match formula:
+        case Constant(value=value):
+            return truth_of(value)
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return negation(constant_value(operand))
+        case Binary(op=op, left=left, right=right):
+            one, other = constant_value(left), constant_value(right)
+            match op:
+                case BinaryOp.AND:
+                    return conjunction([one, other])
+                case BinaryOp.OR:
+                    return disjunction([one, other])
+                case BinaryOp.IMPLIES:
+                    return disjunction([negation(one), other])
+                case BinaryOp.IFF | BinaryOp.XOR if Truth.UNKNOWN not in (one, other):
+                    return truth_of((one is other) is (op is BinaryOp.IFF))
+    return Truth.UNKNOWN
