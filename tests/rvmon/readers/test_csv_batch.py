@@ -22,6 +22,7 @@ event stop(id: int, part: {arm, hand})
 requirement R1 "a"
   always (count < 5)
 """)
+SPEC_OF_DATES = "spec s\nsignal p : bool\nrequirement R\n  always p\n"
 HEADER = ["t", "p", "speed", "count", "mode", "stop", "stop.id", "stop.part", "note"]
 ODD = ["", " ", "nan", "NaN", "-1", "7.0", "1e3", "x", '"', 'a"b', "\xa0", "\xa05", "é", "\x1f3"]
 ENDS = ["\n"] * 6 + ["\r\n", "\r", "\n\n", "\n \n", "\r\n\r\n"]
@@ -124,3 +125,21 @@ def test_numbers_are_the_nearest(tmp_path):
     (piece, last) = spec.recording(tmp_path / "a.csv").pieces()
     found = [*piece.signals["speed"].values.tolist(), last.values["speed"]]
     assert list(map(repr, found)) == [repr(float(text)) for text in texts]
+
+
+def test_dates_are_exact(tmp_path):
+    """Each date is read as one by one, whether it is written as most are or otherwise."""
+    rng = random.Random(2)
+    texts = []
+    for _ in range(1500):
+        year, month, day = rng.randint(1825, 2115), rng.randint(0, 13), rng.randint(0, 32)
+        clock = f"{rng.randint(0, 25):02d}:{rng.randint(0, 60):02d}:{rng.randint(0, 61):02d}"
+        part = rng.choice(["", ".5", ",25", f".{rng.randrange(10**9):09d}", ".1234567890", "."])
+        zone = rng.choice(["", "Z", "z", " Z", " ", "+02:00", "-23:59", "+24:00", "+0100", "+1"])
+        texts.append(f"{year}-{month:02d}-{day:02d}{rng.choice('T tx')}{clock}{part}{zone}")
+    texts += ["2024-02-29T00:00:00", "1900-02-29T00:00:00", "0000-01-01T00:00:00", "2024-05-01"]
+    spec = rvmon.loads(SPEC_OF_DATES).reading(time="t:iso")
+    path = tmp_path / "a.csv"
+    for text in texts:
+        path.write_text(f"t,p\n{text},1\n")
+        assert read(spec.recording(path)) == read(samples_of_csv(spec, path)), text

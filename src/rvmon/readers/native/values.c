@@ -185,6 +185,106 @@ static int stamp_of(const decimal *d, int32_t places, csv_number *made)
     return CSV_YES;
 }
 
+/* So many digits as a number; -1: one is none. */
+static int32_t digits_at(const char *at, int32_t count)
+{
+    int32_t made = 0;
+    for (; count > 0; count--, at++) {
+        if (!is_digit(*at)) {
+            return -1;
+        }
+        made = made * 10 + (*at - '0');
+    }
+    return made;
+}
+
+/* Days since 1970 of a date of the Gregorian calendar; a year begins with March. */
+static int64_t days_of(int32_t year, int32_t month, int32_t day)
+{
+    const int64_t y = year - ((month <= 2) ? 1 : 0);
+    const int64_t m = (month + 9) % 12;
+    return 365 * y + y / 4 - y / 100 + y / 400 + (153 * m + 2) / 5 + day - 1 - 719468;
+}
+
+/* Seconds that a time zone is ahead of UTC; false: it is written otherwise than Z and +02:00. */
+static bool zone_of(const char *at, const char *to, int64_t *ahead)
+{
+    int32_t hours;
+    int32_t minutes;
+    *ahead = 0;
+    if ((at == to) || ((to - at == 1) && ((*at | 32) == 'z'))) {
+        return true;
+    }
+    if ((to - at != 6) || ((*at != '+') && (*at != '-')) || (at[3] != ':')) {
+        return false;
+    }
+    hours = digits_at(at + 1, 2);
+    minutes = digits_at(at + 4, 2);
+    *ahead = ((*at == '-') ? -60 : 60) * ((int64_t)hours * 60 + minutes);
+    return (hours >= 0) && (hours <= 23) && (minutes >= 0) && (minutes <= 59);
+}
+
+/* A date and time as most programs write it, 2024-05-01T12:00:00.123Z, as ticks since 1970. */
+static int date_of(const char *from, const char *to, csv_number *made)
+{
+    static const int32_t DAYS[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+    const char *at;
+    int32_t year;
+    int32_t month;
+    int32_t day;
+    int32_t hour;
+    int32_t minute;
+    int32_t second;
+    int32_t scale;
+    int64_t seconds;
+    int64_t ahead;
+    int64_t part = 0;
+    bool leap;
+    if ((to - from < 19) || (from[4] != '-') || (from[7] != '-') || (from[13] != ':')
+        || (from[16] != ':') || ((from[10] != ' ') && ((from[10] | 32) != 't'))) {
+        return CSV_ODD;
+    }
+    at = from + 19;
+    year = digits_at(from, 4);
+    month = digits_at(from + 5, 2);
+    day = digits_at(from + 8, 2);
+    hour = digits_at(from + 11, 2);
+    minute = digits_at(from + 14, 2);
+    second = digits_at(from + 17, 2);
+    if ((year < 1) || (month < 1) || (month > 12) || (day < 1) || (hour < 0) || (hour > 23)
+        || (minute < 0) || (minute > 59) || (second < 0) || (second > 59)) {
+        return CSV_ODD;
+    }
+    leap = (year % 4 == 0) && ((year % 100 != 0) || (year % 400 == 0));
+    if (day > DAYS[month - 1] + ((leap && (month == 2)) ? 1 : 0)) {
+        return CSV_ODD;
+    }
+    if ((at < to) && ((*at == '.') || (*at == ','))) {
+        at++;
+        if ((at == to) || !is_digit(*at)) {
+            return CSV_ODD;
+        }
+        for (scale = 100000000; (at < to) && is_digit(*at); at++, scale /= 10) {
+            if ((scale == 0) && (*at != '0')) {
+                return CSV_ODD;
+            }
+            part += (int64_t)scale * (*at - '0');
+        }
+    }
+    if ((at + 1 < to) && (*at == ' ')) {
+        at++;
+    }
+    if (!zone_of(at, to, &ahead)) {
+        return CSV_ODD;
+    }
+    seconds = days_of(year, month, day) * 86400 + hour * 3600 + minute * 60 + second - ahead;
+    if ((seconds <= -4611686018) || (seconds >= 4611686018)) {
+        return CSV_ODD;
+    }
+    made->whole = seconds * 1000000000 + part;
+    return CSV_YES;
+}
+
 static bool is_word(const char *from, const char *to, const char *word)
 {
     const size_t size = (size_t)(to - from);
@@ -223,7 +323,10 @@ int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *t
         }
         return CSV_UNKNOWN;
     }
-    if ((kind == CSV_DATE) || !decimal_of(from, to, &d)) {
+    if (kind == CSV_DATE) {
+        return date_of(from, to, made);
+    }
+    if (!decimal_of(from, to, &d)) {
         return CSV_ODD;
     }
     switch (kind) {
