@@ -171,6 +171,8 @@ def _in_words(accepted: set[str], parser: lark.Lark) -> str:
     if "AND" in rest:
         words.append("an operator such as `and`, `or`, `->`, `until`")
         rest -= _INFIX | _ARITHMETIC
+    if "THEN" in rest:
+        rest -= _CLAUSES  # what has to come is told, not what may stand before it
     if rest >= _CLAUSES:
         words.append("a clause (`source`, `scope`, `let`, …)")
         rest -= _CLAUSES
