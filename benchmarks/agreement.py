@@ -28,7 +28,7 @@ from tests.tools.common_fragment import UntranslatableError, names_in
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.law.walk import intervals
+from rvmon.testing.law.syntax import intervals
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
 

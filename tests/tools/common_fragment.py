@@ -21,7 +21,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.reading import Formulas, read
-from rvmon.testing.law.walk import numerics, subformulas
+from rvmon.testing.law.syntax import numerics, subformulas
 
 EVER = Interval(0, None)
 _KEPT = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY)

@@ -13,7 +13,7 @@ from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-from rvmon.testing.law.walk import intervals
+from rvmon.testing.law.syntax import intervals
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.chains import random_chain
 from tests.tools.compare import differences

@@ -8,7 +8,7 @@ from itertools import product
 
 from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Interval, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement, TimeModel
-from rvmon.testing.law.walk import subformulas
+from rvmon.testing.law.syntax import subformulas
 
 WINDOWS = ("[0,0]", "[0,b]", "[0,∞)", "[a,a]", "[a,b]", "[a,∞)")
 TRIGGERS = (

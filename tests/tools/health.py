@@ -21,7 +21,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.case import Case
 from rvmon.testing.law.sample_words import heard
-from rvmon.testing.law.walk import parts_of, subformulas
+from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.testing.law.word import Word
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Value

@@ -16,7 +16,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.law.sample_words import heard
-from rvmon.testing.law.walk import parts_of, subformulas
+from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
 

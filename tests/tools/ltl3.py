@@ -22,7 +22,7 @@ from rvmon.spec.checked.formula import (
     Unary,
 )
 from rvmon.spec.checked.formula import UnaryOp as Op
-from rvmon.testing.law.walk import subformulas
+from rvmon.testing.law.syntax import subformulas
 from tests.tools.common_fragment import both, either, to_core
 
 Letter = frozenset[str]

@@ -12,7 +12,7 @@ from math import gcd
 from rvmon.spec.checked.formula import Binary, Formula, Interval, Unary, UpdateFunction, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 from rvmon.testing.case import Case
-from rvmon.testing.law.walk import intervals, numerics, subformulas
+from rvmon.testing.law.syntax import intervals, numerics, subformulas
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 

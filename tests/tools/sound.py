@@ -9,7 +9,7 @@ from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
 from rvmon.testing.generate.choices import Rng
-from rvmon.testing.law.walk import parts_of, subformulas
+from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict

@@ -18,9 +18,9 @@ from rvmon.cdv import Observer, Test
 from rvmon.cdv.close.witnesses import EDGES, Witness, Witnesses
 from rvmon.cdv.measured import hits_of_states
 from rvmon.cdv.presentation import RobotTest
+from rvmon.confidence import interval_text
 from rvmon.execute import parallel
 from rvmon.report.markup import Child, e
-from rvmon.report.proportion import interval_text
 from rvmon.report.table import checked_text
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What a sample can say: values of the names concerned that the formulas can tell apart."""
+"""What a sample can say: values of the names read that the formulas can tell apart."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Silence(Enum):
 T = TypeVar("T")
 SILENT = Silence.SILENT
 Valuation = Mapping[str, Value | Silence]
-"""Of every name concerned what a sample says of it; of an event `False` if it does not occur."""
+"""Of every name read what a sample says of it; of an event `False` if it does not occur."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +51,8 @@ class Choices:
     """The samples to choose from at every instant.
 
     Attributes:
-        names: signals and events concerned.
-        valuations: those that some formula tells apart, calm ones first.
+        names: signals and events that are read.
+        valuations: those that some formula tells apart, those nearest the defaults first.
         remembered: the names whose updates matter beside their values.
         complete: whether no combination was left out.
     """
@@ -66,16 +66,16 @@ class Choices:
 def choices_of(
     spec: CheckedSpec,
     leaves: Sequence[Leaf],
-    concerned: Collection[str],
+    read: Collection[str],
     captured: Sequence[Numeric] = (),
 ) -> Choices:
     """The samples worth trying."""
-    names = tuple(name for name in (*spec.signals, *spec.events) if name in concerned)
+    names = tuple(name for name in (*spec.signals, *spec.events) if name in read)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered)
     seen = _Seen(spec, leaves, remembered)
     found: dict[tuple[object, ...], Valuation] = {}
-    waiting = _calm_first([options.of(name) for name in names])
+    waiting = _defaults_first([options.of(name) for name in names])
     for _ in range(MOST_TRIED // MOST_VALUATIONS):
         tried = [
             dict(zip(names, chosen, strict=True)) for chosen in islice(waiting, MOST_VALUATIONS)
@@ -105,7 +105,7 @@ def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
 
 
 class _Options:
-    """What can be reported of one name; the calm one comes first."""
+    """What can be reported of one name; the default comes first."""
 
     def __init__(
         self,
@@ -138,7 +138,7 @@ class _Options:
         fields = self.spec.events[event].fields
         values = [self._scalars(FieldValue(event, name), fields[name]) for name in fields]
         made: list[Value] = []
-        for chosen in _calm_first(values):
+        for chosen in _defaults_first(values):
             payload: Payload = dict(zip(fields, chosen, strict=True))
             made.append(payload or True)
             if len(made) == MOST_PAYLOADS and len(fields) > 1:
@@ -170,7 +170,7 @@ class _Options:
         return [*rest[:1], *(label for label in labels if label in named)]
 
 
-def _calm_first(options: Sequence[Sequence[T]]) -> Iterator[tuple[T, ...]]:
+def _defaults_first(options: Sequence[Sequence[T]]) -> Iterator[tuple[T, ...]]:
     """All combinations: few departures from the first options, then few from all, in turn."""
     low, high = 0, len(options)
     while low <= high:

@@ -176,13 +176,19 @@ def _join(
     part: _Part[T],
     later: set[Source],
 ) -> tuple[tuple[Source, ...], dict[tuple[int, ...], set[tuple[T, ...]]]]:
-    """One group more, joined on the sources it shares; only those used later are kept."""
+    """One group more, joined on the sources it shares; only those used later are kept.
+
+    A hash join with projection, as in bucket elimination. To drop a source that no later group
+    reads loses nothing: what can be joined later does not depend on which of its values was chosen.
+    If all were kept, the rows would multiply with every group.
+    """
     ours = [place for place, source in enumerate(live) if source in part.sources]
     theirs = [part.sources.index(live[place]) for place in ours]
     kept = [place for place, source in enumerate(live) if source in later]
     fresh = [
         place for place, source in enumerate(part.sources) if source in later and source not in live
     ]
+    # The group's rows by what they share with the relation: the table that is probed below.
     matches: dict[tuple[int, ...], dict[tuple[int, ...], set[T]]] = {}
     for chosen, views in part.rows.items():
         rests = matches.setdefault(tuple(chosen[place] for place in theirs), {})

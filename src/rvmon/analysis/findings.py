@@ -6,11 +6,11 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rvmon.analysis.conflicts import ConflictSearch
 from rvmon.analysis.implied import implications_among
-from rvmon.analysis.possible import Possible, possible
-from rvmon.analysis.sets import ConflictSearch
-from rvmon.analysis.subject import Conflict, Implication, Subject
-from rvmon.analysis.together import Together
+from rvmon.analysis.product import Together
+from rvmon.analysis.requirement import Conflict, Implication, Subject
+from rvmon.analysis.vacuity import Possible, possible
 from rvmon.diagnostics.diagnostic import Diagnostic, Label, Severity
 from rvmon.diagnostics.span import Span
 from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Unary

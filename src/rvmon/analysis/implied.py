@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from rvmon.analysis.subject import Conflict, Implication, Subject
-from rvmon.analysis.together import Aim, Together
+from rvmon.analysis.product import Aim, Together
+from rvmon.analysis.requirement import Conflict, Implication, Subject
 
 MOST_OTHERS = 5
 """So many others are looked at together."""

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.automaton.ages import (
+from rvmon.automaton.clock_regions import (
     NEVER,
     Ages,
     Cuts,

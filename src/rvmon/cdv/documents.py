@@ -8,7 +8,7 @@ import msgspec
 
 from rvmon.cdv.run_share import ALPHA, BETA, Decision
 from rvmon.cdv.summary import CampaignSummary, RobotSummary, StrategySummary
-from rvmon.report.proportion import interval
+from rvmon.confidence import interval
 from rvmon.report.table import Counts
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping, Sequence
 
 from rvmon.cdv.gate import CampaignJudgement, TestJudgement
 from rvmon.coverage.record import Ending
 from rvmon.diagnostics.shown import shown
+from rvmon.report.junit import add_suite, as_text
 
 
 def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
@@ -26,29 +26,15 @@ def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
         job = one.played.job
         groups.setdefault(f"{job.robot}.{job.test.strategy}", []).append(one)
     for name, tests in groups.items():
-        _suite(root, f"{campaign}.{name}", [_case(one) for one in tests])
+        add_suite(root, f"{campaign}.{name}", [_case(one) for one in tests])
     together = [_check(check, what) for check, what in judgement.checks.items()]
     if judgement.cut_short:
         case = ET.Element("testcase", name="all tests are played")
         ET.SubElement(case, "error", message=shown(judgement.cut_short))
         together.append(case)
     if together:
-        _suite(root, campaign, together)
-    ET.indent(root)
-    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
-
-
-def _suite(root: ET.Element, name: str, cases: Sequence[ET.Element]) -> None:
-    counts: Mapping[str, int] = {
-        kind: sum(case.find(tag) is not None for case in cases)
-        for kind, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped"))
-    }
-    figures = {kind: str(count) for kind, count in counts.items()}
-    own = {"name": shown(name), "tests": str(len(cases)), **figures}
-    suite = ET.SubElement(root, "testsuite", own)
-    for case in cases:
-        case.set("classname", shown(name))
-        suite.append(case)
+        add_suite(root, campaign, together)
+    return as_text(root)
 
 
 def _case(one: TestJudgement) -> ET.Element:

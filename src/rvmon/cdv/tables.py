@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from rvmon.cdv.run_share import errors_text
 from rvmon.cdv.summary import CampaignSummary, RobotSummary
-from rvmon.report.proportion import CONFIDENCE
+from rvmon.confidence import CONFIDENCE
 from rvmon.report.table import Counts, RunGroup, VerdictTable
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."

@@ -14,6 +14,7 @@ from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.reading import add_binding
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
+from rvmon.report.percent import counted
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
@@ -157,9 +158,6 @@ def _show(form: str, findings: list[Diagnostic]) -> None:
 
 
 def _summary(files: int, findings: list[Diagnostic]) -> str:
-    def counted(count: int, noun: str) -> str:
-        return f"{count} {noun}{'' if count == 1 else 's'}"
-
     errors = sum(finding.severity == "error" for finding in findings)
     counts = ((errors, "error"), (len(findings) - errors, "warning"))
     found = ", ".join(counted(count, noun) for count, noun in counts if count)

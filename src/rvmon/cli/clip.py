@@ -173,8 +173,7 @@ def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) ->
 
 
 def _judged(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Judged:
-    from rvmon.cli.beside import Options
-    from rvmon.cli.judging import judge
+    from rvmon.cli.judging import Options, judge
 
     allowed = allowed_names(arguments.allow_missing)
     return judge(spec, trace, Options((name,), allow_missing=allowed), is_alone=True)

@@ -181,8 +181,8 @@ def _code(summary: Summary, arguments: argparse.Namespace) -> int:
     is_held = arguments.strict or arguments.require is not None
     wrong = is_held and bool(summary.illegal or summary.contradicted)
     if arguments.require is not None:
-        wrong |= summary.is_void or summary.share < arguments.require
-        if summary.is_void:
+        wrong |= summary.is_empty or summary.share < arguments.require
+        if summary.is_empty:
             warn("--require: nothing is to be covered: no model was declared, or all weights are 0")
     if arguments.strict:
         wrong |= bool(summary.not_fine)

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from rvmon.cli.beside import spec_and_options
-from rvmon.cli.evidence_write import is_recording, rows_of_judged
-from rvmon.cli.judging import judge_all
+from rvmon.cli.judging import judge_all, spec_and_options
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import constants_of
 from rvmon.cli.output import bar, say
+from rvmon.cli.run_output import is_recording, rows_of_judged
 from rvmon.evidence.keep import (
     Kept,
     TamperedError,

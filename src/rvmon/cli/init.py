@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rvmon.cli.output import busy, say
 from rvmon.cli.reading import add_time, time_words
 from rvmon.errors import RvmonError
+from rvmon.report.percent import counted
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
@@ -97,14 +98,10 @@ def _contents(profile: Profile, text: str) -> str:
     events = sum(column.is_event for column in profile.columns)
     signals = len(profile.columns) - events
     parts = [
-        _counted(signals, "signal"),
-        _counted(events, "event"),
-        _counted(text.count("\nrequirement "), "requirement"),
+        counted(signals, "signal"),
+        counted(events, "event"),
+        counted(text.count("\nrequirement "), "requirement"),
     ]
     if profile.left_out:
         parts.append(f"{len(profile.left_out)} left out")
     return ", ".join(parts)
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -51,8 +51,8 @@ def post_analysis(
     late, silent = _missed(spec, report), _silent(report)
     if not late and not silent:
         return report
-    from rvmon.explain.late import late_in
-    from rvmon.explain.not_triggered import miss_in, parts_asked
+    from rvmon.explain.late_arrival import late_in
+    from rvmon.explain.near_miss import miss_in, parts_asked
     from rvmon.explain.truths import look_through
 
     questions = [question for _, waits in late.values() for question in waits.values()]
@@ -87,7 +87,7 @@ def _missed(
     failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
     if not failed:
         return {}
-    from rvmon.explain.late import waits_of
+    from rvmon.explain.late_arrival import waits_of
 
     most = max(1, min(MOST_LATE, MOST_LATE_IN_ALL // len(failed)))
     found = {}

@@ -15,8 +15,7 @@ import msgspec
 
 import rvmon
 from rvmon.cache import contents
-from rvmon.cli.beside import Options
-from rvmon.cli.judging import Judged
+from rvmon.cli.judging import Judged, Options
 from rvmon.coverage.hits import Hit
 from rvmon.errors import RvmonError
 from rvmon.execute import journal

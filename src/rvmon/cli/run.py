@@ -25,7 +25,7 @@ from rvmon.cli.reading import (
     reading_words,
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
-from rvmon.cli.run_files import write_files, write_results
+from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
@@ -33,8 +33,7 @@ from rvmon.trace.time import format_ticks
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.cli.beside import Options
-    from rvmon.cli.judging import Judged
+    from rvmon.cli.judging import Judged, Options
     from rvmon.reproducer import Case
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
@@ -153,7 +152,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
-    from rvmon.cli.beside import spec_and_options
+    from rvmon.cli.judging import spec_and_options
     from rvmon.readers.found import found_recordings
 
     spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
@@ -164,7 +163,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _refuse_places(arguments, traces, spec)
     before = None
     if arguments.evidence is not None:
-        from rvmon.cli.evidence_write import begun, write_run
+        from rvmon.cli.run_output import begun, write_run
 
         before = begun(arguments, traces)
     must_trigger = ids_of(arguments.require_triggered or None, spec)

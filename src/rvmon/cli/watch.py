@@ -138,7 +138,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
     from rvmon.adapters.json_lines import read_lines
-    from rvmon.cli.watch_kept import refuse_others, watch_kept
+    from rvmon.cli.watch_output import refuse_others, watch_kept
 
     refuse_others(arguments)
     with _opened(arguments.source) as file:

@@ -62,8 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
-    from rvmon.explain.dissect import dissect
-    from rvmon.explain.not_triggered import why_not_triggered
+    from rvmon.explain.near_miss import why_not_triggered
+    from rvmon.explain.subformulas import dissect
     from rvmon.monitor.inputs.missing import expect_names
     from rvmon.session import load
     from rvmon.trace.time import ticks_of_seconds
@@ -93,17 +93,17 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     attempt = chosen_attempt(report, name, exact)
     assert report.end is not None, "a recording with an attempt has an end"  # noqa: S101
     with busy(f"taking {attempt.name} apart"):
-        anatomy = dissect(spec.checked, samples, report.end, attempt, recording.names)
+        breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
     if arguments.format == "json":
         import msgspec
 
-        say_json(msgspec.json.encode(anatomy).decode())
+        say_json(msgspec.json.encode(breakdown).decode())
         return 0
 
     from rvmon.report.terminal import Terminal
     from rvmon.report.why_text import why_lines
 
     console = Terminal(soft_wrap=True)
-    for line in why_lines(anatomy, spec.requirements[name]):
+    for line in why_lines(breakdown, spec.requirements[name]):
         console.print(line)
     return 0

@@ -32,7 +32,7 @@ class Diagnostic:
         name: the code in words, such as `unknown-signal`.
         severity: error or warning.
         message: one sentence: what is wrong.
-        spans: the places concerned, the offending one first; empty if the whole file is meant.
+        spans: the places, the offending one first; empty if the whole file is meant.
         help: what fixes it; empty if nothing is known to.
     """
 

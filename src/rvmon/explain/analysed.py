@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.analysis.findings import Examination, examine, findings_of
-from rvmon.analysis.subject import Conflict, Subject
+from rvmon.analysis.requirement import Conflict, Subject
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.explain.example import Budget, Example
 from rvmon.explain.search import Goal, shortest_examples

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, assert_never
 
-from rvmon.explain.spans import FOREVER, Spans, both, outside, union
+from rvmon.explain.intervals import FOREVER, Spans, both, outside, union
 from rvmon.formula.core import Core
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
@@ -64,14 +64,14 @@ class Seen:
         begin: the instant of the first sample, ticks; `None`: there is none.
         end: the last instant.
         positions: of the recording; `None` where every tick is one.
-        unborn: the signals that never had a value.
+        valueless: the signals that never had a value.
     """
 
     names: frozenset[str] | None
     begin: int | None
     end: int
     positions: Sequence[int] | None
-    unborn: frozenset[str]
+    valueless: frozenset[str]
     _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
 
     def truths(self, question: Question) -> list[Truth]:
@@ -107,21 +107,21 @@ def look_through(
     runs = [run for one in groups.values() if (run := one.begun(names)) is not None]
     begin: int | None = None
     instants = array("q")
-    unborn = set(spec.signals)
+    valueless = set(spec.signals)
     for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
         times = (piece.t,) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])
         if spec.time is TimeModel.SAMPLED:
             instants.extend(times if isinstance(times, tuple) else _unlike(times.tolist()))
-        if unborn:
-            unborn -= _born(piece, unborn)
+        if valueless:
+            valueless -= _born(piece, valueless)
         for run in runs:
             run.take(piece)
     positions = None if begin is None else _positions(spec, begin, end, instants)
     ticks = _Ticks(positions, begin or 0, end)
     truths = {whose: one.truths(ticks) for whose, one in groups.items()}
-    return Seen(names, begin, end, positions, frozenset(unborn), truths)
+    return Seen(names, begin, end, positions, frozenset(valueless), truths)
 
 
 def truths_of(
@@ -203,12 +203,12 @@ class _Group:
         return {text: found[core] for text, core in self._cores.items()}
 
 
-def _born(piece: Batch | Sample, unborn: Set[str]) -> set[str]:
+def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:
     """The signals that have a value in a piece and had none before."""
     if isinstance(piece, Sample):
         values = piece.values
-        return {name for name in unborn & values.keys() if not is_unknown(values[name])}
-    return {name for name in unborn & piece.signals.keys() if piece.signals[name].holds_value}
+        return {name for name in valueless & values.keys() if not is_unknown(values[name])}
+    return {name for name in valueless & piece.signals.keys() if piece.signals[name].holds_value}
 
 
 def _unlike(instants: Iterable[int]) -> Iterator[int]:
@@ -315,7 +315,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
             pass
 
 
-class Eye:
+class TruthRecorder:
     """Sees the truth of what a requirement is made of over a recording.
 
     Args:

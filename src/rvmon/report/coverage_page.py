@@ -79,7 +79,7 @@ def coverage_page(summary: Summary) -> str:
 
 def _headline(summary: Summary) -> str:
     tests = len(summary.coverage.entries)
-    parts = ["nothing to cover" if summary.is_void else f"{share_text(summary.share)} covered"]
+    parts = ["nothing to cover" if summary.is_empty else f"{share_text(summary.share)} covered"]
     if summary.illegal:
         parts.append(f"{counted(len(summary.illegal), 'illegal item')} hit")
     if summary.not_fine:

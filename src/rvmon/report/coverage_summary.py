@@ -80,7 +80,7 @@ class Summary:
         return share_of(self.coverage, self.scores)
 
     @property
-    def is_void(self) -> bool:
+    def is_empty(self) -> bool:
         """Whether there is nothing to cover, so that a share says nothing."""
         groups = self.coverage.model.groups
         return not any(one.items for name, one in self.scores.items() if groups[name].weight)

@@ -134,10 +134,10 @@ def _groups(summary: Summary, console: Console) -> Table:
     if wide:
         table.add_column("what")
     table.add_column("covered", justify="right")
-    total = "–" if summary.is_void else share_text(summary.share)
+    total = "–" if summary.is_empty else share_text(summary.share)
     table.add_column("share", total, justify="right", no_wrap=True)
     if wide:
-        table.add_column("", "" if summary.is_void else _bar(summary.share, console), no_wrap=True)
+        table.add_column("", "" if summary.is_empty else _bar(summary.share, console), no_wrap=True)
     for group in summary.coverage.model.groups.values():
         score = summary.scores[group.name]
         name = group.name if group.weight else f"{group.name} (not in the total)"

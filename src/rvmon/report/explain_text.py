@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.analysis.possible import Possible, possible
+from rvmon.analysis.vacuity import Possible, possible
 from rvmon.explain.analysed import Analysis
 from rvmon.explain.example import Budget, Example, Found
 from rvmon.explain.graph import graph_lines, graph_of
@@ -30,7 +30,7 @@ NARROWEST = 9
 """Characters of a column at least."""
 
 
-def picture_of(example: Example, spec: CheckedSpec, concerned: Collection[str]) -> list[Text]:
+def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> list[Text]:
     """The lines of a drawing, at most 80 columns wide if that is possible.
 
     Times are not to scale: every instant at which something happens has a column.
@@ -38,7 +38,7 @@ def picture_of(example: Example, spec: CheckedSpec, concerned: Collection[str]) 
     from rich.text import Text
 
     instants = _instants(example)
-    names = [name for name in (*spec.signals, *spec.events) if name in concerned]
+    names = [name for name in (*spec.signals, *spec.events) if name in read]
     heads = [*names, *example.verdicts, "time"]
     margin = max(len(head) for head in heads) + 4
     labels = [label_of(t) for t in instants]
@@ -218,7 +218,7 @@ def explained(
         example = found.examples.get(verdict.value)
         if example is not None:
             yield Text(f"… {phrase}")
-            yield from picture_of(example, compiled.checked, _concerned(one))
+            yield from picture_of(example, compiled.checked, _names_read(one))
         else:
             yield _wrapped(f"… {phrase}: {impossible.get(verdict) or _not_found(found)}", "", "  ")
 
@@ -237,14 +237,14 @@ def difference_explained(
         yield ""
     goal = difference_of(first, second)
     found = shortest_examples(compiled, pair, goal, ["hard", "soft"], budget)
-    concerned = _concerned(pair[0]) | _concerned(pair[1])
+    read = _names_read(pair[0]) | _names_read(pair[1])
     if not found.examples:
         yield _wrapped(f"No run was found on which they differ: {_not_found(found)}", "", "  ")
     for kind, phrase in (("hard", "one fails and the other does not"), ("soft", "they differ")):
         example = found.examples.get(kind)
         if example is not None:
             yield Text(f"The shortest run on which {phrase}", style="bold")
-            yield from picture_of(example, compiled.checked, concerned)
+            yield from picture_of(example, compiled.checked, read)
             yield ""
 
 
@@ -287,7 +287,7 @@ def _not_found(found: Found) -> str:
     return f"{tried}, all that there are to try" if found.exhausted else f"{tried}; not decided"
 
 
-def _concerned(one: CompiledRequirement) -> frozenset[str]:
+def _names_read(one: CompiledRequirement) -> frozenset[str]:
     each = one.requirement.for_each
     return one.reads | ({each.value.event} if each else set())
 

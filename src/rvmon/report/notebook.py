@@ -14,8 +14,8 @@ from rvmon.report.pages import asset, render
 from rvmon.report.panel_html import spec_lines
 from rvmon.report.panels import shown_attempts
 from rvmon.report.style import MARKS, verdict_colours
+from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import axis_row, place_of, timeline
-from rvmon.report.view import View, view_of, whole_run
 from rvmon.report.wording import full_reason, without_attempts
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.attempt import Attempt

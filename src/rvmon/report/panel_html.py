@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from rvmon.explain.dissect import Strand
+from rvmon.explain.subformulas import PartTruth
 from rvmon.report.markup import Child, e
 from rvmon.report.panels import Panel
 from rvmon.report.style import MARKS
+from rvmon.report.time_axis import moment, with_moments
 from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names
-from rvmon.report.view import moment, with_moments
-from rvmon.report.wording import with_afterword, without_attempts
+from rvmon.report.wording import with_lateness, without_attempts
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Blame
@@ -28,15 +28,15 @@ def parts_timeline(panel: Panel, report: Report) -> ET.Element:
     """A row for the trigger and for each part of what is required of an attempt.
 
     Args:
-        panel: with an attempt and strands.
+        panel: with an attempt and part_truths.
         report: of the run.
     """
-    assert panel.attempt is not None  # noqa: S101 - as only these have strands
+    assert panel.attempt is not None  # noqa: S101 - as only these have part_truths
     end = end_of(report)
     rows: list[Child] = []
-    for part, strands in groupby(panel.strands, key=lambda strand: strand.part):
+    for part, part_truths in groupby(panel.part_truths, key=lambda part_truth: part_truth.part):
         rows.append(e("div", {"class": "part"}, part))
-        rows += [_row(strand, panel, end) for strand in strands]
+        rows += [_row(part_truth, panel, end) for part_truth in part_truths]
     rows.append(axis_row(panel.view, report.origin))
     guides = guides_of(panel.attempt, panel.view, end, panel.late)
     overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
@@ -54,7 +54,7 @@ def panel_timeline(panel: Panel, requirement: Requirement, report: Report) -> ET
         end=end_of(report),
         blamed=frozenset() if blame is None else blamed_names(requirement, blame),
         late=panel.late,
-        ghost=panel.ghost,
+        reference=panel.reference,
     )
 
 
@@ -63,17 +63,17 @@ def end_of(report: Report) -> int:
     return report.origin if report.end is None else report.end
 
 
-def _row(strand: Strand, panel: Panel, end: int) -> ET.Element:
-    indent = f"padding-left:{0.7 * min(strand.depth, DEEPEST):g}rem"
-    label = e("code", {"style": indent}, strand.text)
-    track = Track(strand.text, TrackKind.SWITCH, _changes(strand))
+def _row(part_truth: PartTruth, panel: Panel, end: int) -> ET.Element:
+    indent = f"padding-left:{0.7 * min(part_truth.depth, DEEPEST):g}rem"
+    label = e("code", {"style": indent}, part_truth.text)
+    track = Track(part_truth.text, TrackKind.SWITCH, _changes(part_truth))
     return truth_row(label, track, panel.view, end)
 
 
-def _changes(strand: Strand) -> tuple[tuple[int, Scalar], ...]:
+def _changes(part_truth: PartTruth) -> tuple[tuple[int, Scalar], ...]:
     """From when on it is true, false, or not known."""
     stretches: Sequence[tuple[int, int, bool]] = sorted(
-        [(a, b, True) for a, b in strand.true] + [(a, b, False) for a, b in strand.false]
+        [(a, b, True) for a, b in part_truth.true] + [(a, b, False) for a, b in part_truth.false]
     )
     changes: list[tuple[int, Scalar]] = []
     after: int | None = None
@@ -154,7 +154,7 @@ def headline(run: str, panel: Panel, origin: int) -> str:
         panel: about the attempt.
         origin: the instant from which people count seconds, ticks.
 
-    >>> from rvmon.report.view import View
+    >>> from rvmon.report.time_axis import View
     >>> from rvmon.verdict.attempt import Attempt
     >>> from rvmon.verdict.verdict import Verdict
     >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
@@ -168,6 +168,6 @@ def headline(run: str, panel: Panel, origin: int) -> str:
         why = without_attempts(panel.verdict, with_moments(panel.miss, panel.view))
         return f"{panel.requirement} {MARKS[panel.verdict].word}, {run}: {why}"
     when = "" if attempt.decided is None else f", {moment(attempt.decided, origin, panel.view)}"
-    why = with_afterword(attempt, panel.late)
+    why = with_lateness(attempt, panel.late)
     reason = f": {with_moments(why, panel.view)}" if why else ""
     return f"{panel.requirement} {MARKS[attempt.verdict].word}, {run}{when}{reason}"

@@ -9,15 +9,15 @@ from itertools import islice
 from typing import TypeGuard
 
 from rvmon.errors import RvmonError
-from rvmon.explain.dissect import Strand, strands_of
-from rvmon.explain.late import late_in, waits_of
-from rvmon.explain.not_triggered import miss_in, parts_asked
-from rvmon.explain.truths import Eye, Question, Seen, look_through, parts_of
+from rvmon.explain.late_arrival import late_in, waits_of
+from rvmon.explain.near_miss import miss_in, parts_asked
+from rvmon.explain.subformulas import PartTruth, part_truths_of
+from rvmon.explain.truths import Question, Seen, TruthRecorder, look_through, parts_of
 from rvmon.report.markup import Child
 from rvmon.report.scene import Scene
-from rvmon.report.timeline import Ghost
+from rvmon.report.time_axis import View, view_of, whole_run
+from rvmon.report.timeline import ReferenceAttempt
 from rvmon.report.tracks import Changes, Track, TrackKind, changes_of, tracks_of
-from rvmon.report.view import View, view_of, whole_run
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Sample
@@ -74,10 +74,10 @@ class Panel:
         attempt: `None` if there is none.
         verdict: of the attempt, or of a requirement without any.
         view: the stretch of time that is shown.
-        tracks: of the signals and events concerned.
-        ghost: the nearest passing attempt, for a failed one.
-        strands: the truth of each part of the requirement over the view; empty if that would take
-            too long.
+        tracks: of the signals and events that the requirement reads.
+        reference: the nearest passing attempt, for a failed one.
+        part_truths: when each part of the requirement was true in the view; empty if that would
+            take too long.
         late: when what the attempt had awaited came after its deadline, ticks; `None`: it did not.
         miss: without an attempt, what the trigger lacked when it was nearest.
     """
@@ -88,8 +88,8 @@ class Panel:
     verdict: Verdict
     view: View
     tracks: tuple[Track, ...]
-    ghost: Ghost | None
-    strands: tuple[Strand, ...] = ()
+    reference: ReferenceAttempt | None
+    part_truths: tuple[PartTruth, ...] = ()
     late: int | None = None
     miss: str = ""
 
@@ -123,7 +123,7 @@ class Candidate:
 
 def nearest_passing(
     attempt: Attempt, tracks: Sequence[Track], view: View, candidates: Sequence[Candidate]
-) -> Ghost | None:
+) -> ReferenceAttempt | None:
     """The passing attempt whose signals differ least from those of a failed one.
 
     Both are laid over each other at their triggers. Two tracks differ by the share of the view
@@ -149,14 +149,14 @@ def _passing(
                 yield candidate, attempt
 
 
-def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Ghost:
+def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> ReferenceAttempt:
     shift = failed.triggered - passed.triggered
     moved = (
         replace(track, changes=tuple((t + shift, value) for t, value in track.changes))
         for track in candidate.tracks
     )
     end = candidate.run.report.end
-    return Ghost(
+    return ReferenceAttempt(
         name=candidate.run.name,
         number=passed.number,
         tracks=tuple(moved),
@@ -248,9 +248,9 @@ class _Panels:
         for attempt in attempts:
             came = None if attempt.in_doubt else late.get(attempt.number)
             view = view_of(attempt, report, came)
-            ghost = None
+            reference = None
             if attempt.verdict is Verdict.FAIL:
-                ghost = nearest_passing(attempt, tracks, view, candidates)
+                reference = nearest_passing(attempt, tracks, view, candidates)
             yield Panel(
                 panel_id(name, attempt),
                 name,
@@ -258,8 +258,8 @@ class _Panels:
                 attempt.verdict,
                 view,
                 tracks,
-                ghost,
-                self._strands(attempt, view),
+                reference,
+                self._part_truths(attempt, view),
                 came,
             )
 
@@ -271,7 +271,7 @@ class _Panels:
             self._changes[id(run)] = changes_of(spec, run.samples)
         return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.health)
 
-    def _strands(self, attempt: Attempt, view: View) -> tuple[Strand, ...]:
+    def _part_truths(self, attempt: Attempt, view: View) -> tuple[PartTruth, ...]:
         """The truth of each part over a view, as far as the run reaches."""
         samples = self._content.run.samples
         if self._seen is None or len(samples) > MOST_DISSECTED:
@@ -280,7 +280,7 @@ class _Panels:
         if start > stop:
             return ()
         requirement = self._content.spec.requirements[attempt.requirement]
-        return strands_of(Eye(requirement, attempt, self._seen), start, stop)
+        return part_truths_of(TruthRecorder(requirement, attempt, self._seen), start, stop)
 
     def _miss(self, name: str) -> str:
         """What the trigger lacked: as was found when the run was judged, or by looking now."""

@@ -20,9 +20,9 @@ from rvmon.report.panel_html import (
 )
 from rvmon.report.panels import Panel, RunPage, opening, panel_id, panels_of
 from rvmon.report.scene import Outline, Scene
+from rvmon.report.time_axis import View, moment, whole_run
 from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Track, TrackKind
-from rvmon.report.view import View, moment, whole_run
 from rvmon.report.wording import forecast_sentence
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND

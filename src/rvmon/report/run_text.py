@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rvmon.report.percent import counted
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import forecast_sentence, full_reason, without_attempts
 from rvmon.spec.checked.goals import BinKind
@@ -222,8 +223,8 @@ def _runs_table(reports: Sequence[Report]) -> Table:
     from rich import box
     from rich.table import Table
 
-    noun = "recording" if len(reports) == 1 else "recordings"
-    table = Table(title=f"{len(reports):,} {noun}", box=box.SIMPLE_HEAD, title_justify="left")
+    title = counted(len(reports), "recording")
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
     table.add_column("")
     for verdict in Verdict:
         table.add_column(verdict.value, justify="right")

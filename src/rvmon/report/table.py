@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from rvmon.confidence import interval, interval_text
 from rvmon.diagnostics.shown import shown_line
-from rvmon.report.proportion import interval, interval_text
 from rvmon.report.style import MARKS
 from rvmon.verdict.verdict import Verdict
 

@@ -1,4 +1,4 @@
-"""The timeline of one attempt as HTML: obligation, axis, and a track per signal concerned."""
+"""The timeline of one attempt as HTML: obligation, axis, and a track per signal that is read."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from rvmon.report.markup import Child, e
 from rvmon.report.style import MARKS
+from rvmon.report.time_axis import View, moment, round_instants, with_moments
 from rvmon.report.tracks import (
     Stretch,
     Track,
@@ -18,7 +19,6 @@ from rvmon.report.tracks import (
     readable,
     stretches,
 )
-from rvmon.report.view import View, moment, round_instants, with_moments
 from rvmon.report.wording import duration_text
 from rvmon.verdict.attempt import Attempt
 
@@ -43,8 +43,8 @@ def track_row(
     view: View,
     end: int,
     blamed: Sequence[int],
-    ghost: Track | None,
-    ghost_end: int,
+    reference: Track | None,
+    reference_end: int,
 ) -> ET.Element:
     """Draw one track.
 
@@ -53,23 +53,23 @@ def track_row(
         view: the stretch of time that is shown.
         end: the last instant of the run, ticks.
         blamed: instants of the offending samples.
-        ghost: the same signal in another run, drawn behind, dashed.
-        ghost_end: the last instant of that run.
+        reference: the same signal in another run, drawn behind, dashed.
+        reference_end: the last instant of that run.
     """
     plot = e("div", {"class": f"plot {track.kind.value}"})
     if track.absent:
         plot.append(_unknown(0.0, 1.0))
     elif track.kind is TrackKind.EVENT:
-        _add_event(plot, track, view, blamed, ghost)
+        _add_event(plot, track, view, blamed, reference)
     elif track.kind is TrackKind.NUMBER:
-        _add_number(plot, track, view, end, blamed, ghost, ghost_end)
+        _add_number(plot, track, view, end, blamed, reference, reference_end)
     else:
         _add_stretches(plot, stretches(track, view, end))
         for instant in blamed:
             if view.start <= instant <= view.end:
                 plot.append(_ring(view.fraction(instant)))
-        if ghost is not None:
-            _add_stretches(plot, stretches(ghost, view, ghost_end), " ghost")
+        if reference is not None:
+            _add_stretches(plot, stretches(reference, view, reference_end), " reference")
     unit = e("small", None, f" [{track.unit}]") if track.unit else None
     name = e("div", {"class": "name"}, e("span", None, e("code", None, track.name), unit))
     if track.kind is not TrackKind.EVENT:
@@ -92,11 +92,11 @@ def truth_row(label: ET.Element, track: Track, view: View, end: int) -> ET.Eleme
 
 
 def _add_event(
-    plot: ET.Element, track: Track, view: View, blamed: Sequence[int], ghost: Track | None
+    plot: ET.Element, track: Track, view: View, blamed: Sequence[int], reference: Track | None
 ) -> None:
-    if ghost is not None:
-        for place, _ in occurrences(ghost, view):
-            plot.append(e("span", {"class": "mark ghost", "style": f"left:{place:.2%}"}, "◇"))
+    if reference is not None:
+        for place, _ in occurrences(reference, view):
+            plot.append(e("span", {"class": "mark reference", "style": f"left:{place:.2%}"}, "◇"))
     offending = {round(view.fraction(t), 9) for t in blamed}
     for place, value in occurrences(track, view):
         sign = "?" if value is None else "◆"
@@ -126,11 +126,11 @@ def _add_number(
     view: View,
     end: int,
     blamed: Sequence[int],
-    ghost: Track | None,
-    ghost_end: int,
+    reference: Track | None,
+    reference_end: int,
 ) -> None:
     pieces = stretches(track, view, end)
-    others = [] if ghost is None else stretches(ghost, view, ghost_end)
+    others = [] if reference is None else stretches(reference, view, reference_end)
     low, high = _range([*pieces, *others], track)
     edge = (high - low) * EDGE
     lowest, highest = low - edge, high + edge
@@ -138,7 +138,7 @@ def _add_number(
         "svg",
         {"viewBox": f"0 0 {WIDTH} {HEIGHT}", "preserveAspectRatio": "none", "aria-hidden": "true"},
     )
-    for kind, some in (("ghost", others), ("line", pieces)):
+    for kind, some in (("reference", others), ("line", pieces)):
         for points in polylines(some, lowest, highest):
             drawing.append(e("polyline", {"class": kind, "points": _points(points)}))
     plot.append(drawing)
@@ -204,7 +204,7 @@ LABEL = 0.44
 
 
 @dataclass(frozen=True, slots=True)
-class Ghost:
+class ReferenceAttempt:
     """The nearest passing attempt, laid over the failed one.
 
     Attributes:
@@ -231,28 +231,30 @@ def timeline(
     end: int,
     blamed: frozenset[str] = frozenset(),
     late: int | None = None,
-    ghost: Ghost | None = None,
+    reference: ReferenceAttempt | None = None,
 ) -> ET.Element:
     """Draw a timeline.
 
     Args:
         attempt: the one that it is about; `None` if there was none.
-        tracks: of the signals and events concerned.
+        tracks: of the signals and events that the requirement reads.
         view: what is shown.
         origin: the instant from which people count seconds, ticks.
         end: the last instant of the run, ticks.
         blamed: the names that the failed part of the requirement reads.
         late: when what the attempt had awaited came after its deadline, ticks.
-        ghost: drawn behind the tracks, dashed.
+        reference: drawn behind the tracks, dashed.
     """
-    ghosts = {track.name: track for track in ghost.tracks} if ghost else {}
+    references = {track.name: track for track in reference.tracks} if reference else {}
     rows: list[Child] = []
     if attempt is not None:
         rows.append(_obligation(attempt, view, origin, end, late))
     for track in tracks:
         offending = _offending(attempt) if track.name in blamed else ()
-        other = ghosts.get(track.name)
-        rows.append(track_row(track, view, end, offending, other, ghost.end if ghost else end))
+        other = references.get(track.name)
+        rows.append(
+            track_row(track, view, end, offending, other, reference.end if reference else end)
+        )
     rows.append(axis_row(view, origin))
     guides = [] if attempt is None else guides_of(attempt, view, end, late)
     overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
@@ -307,11 +309,13 @@ def _labels(
         sign = "◆" if late <= view.end else "→"
         word = with_moments(f"came {duration_text(late - deadline)} late", view)
         wanted.append((late, "late", sign, word))
+    # By importance, each into the topmost row where its share of the width is free: the page is
+    # laid out without a browser, so the share is that of the narrowest screen.
     taken: list[list[tuple[float, float]]] = []
     labels = []
     for instant, kind, sign, word in wanted:
         place = min(max(view.fraction(instant), 0.0), 1.0)
-        to_left = place > 1 - LABEL
+        to_left = place > 1 - LABEL  # else the page's edge would cut its words off
         left, right = (place - LABEL, place) if to_left else (place, place + LABEL)
         row = next(
             (i for i, used in enumerate(taken) if all(right <= a or left >= b for a, b in used)),

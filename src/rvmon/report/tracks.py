@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.readers.coalesce import updates_in
 from rvmon.readers.held import HeldRecording
-from rvmon.report.view import View
+from rvmon.report.time_axis import View
 from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal

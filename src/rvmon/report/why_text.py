@@ -6,11 +6,11 @@ import textwrap
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rvmon.explain.dissect import Anatomy, Strand
-from rvmon.explain.spans import Spans
+from rvmon.explain.intervals import Spans
+from rvmon.explain.subformulas import Breakdown, PartTruth
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
-from rvmon.report.wording import forecast_sentence, with_afterword
+from rvmon.report.wording import forecast_sentence, with_lateness
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.time import format_ticks
 
@@ -25,91 +25,91 @@ TRUE, FALSE, UNKNOWN, RISES, FALLS, PULSE, DIP = "▇▁?╱╲●○"
 LEGEND = f"{TRUE} true  {FALSE} false  {UNKNOWN} not known  {PULSE} true for a moment"
 
 
-def why_lines(anatomy: Anatomy, requirement: Requirement) -> Iterator[Text]:
+def why_lines(breakdown: Breakdown, requirement: Requirement) -> Iterator[Text]:
     """The verdict with its reason, then a row for the trigger and for each part of what is owed."""
     from rich.text import Text
 
-    attempt = anatomy.attempt
+    attempt = breakdown.attempt
     yield Text.assemble((f"{attempt.name}  ", "bold"), verdict_text(attempt.verdict))
-    for line in _sentences(anatomy, requirement):
+    for line in _sentences(breakdown, requirement):
         yield Text(wrapped(line, WIDTH))
     yield Text("")
-    yield from _axis(anatomy)
+    yield from _axis(breakdown)
     part = ""
-    for strand in anatomy.strands:
-        if strand.part != part:
-            part = strand.part
+    for part_truth in breakdown.part_truths:
+        if part_truth.part != part:
+            part = part_truth.part
             yield Text(f"  {part}", style="bold")
-        yield from _row(strand, anatomy)
+        yield from _row(part_truth, breakdown)
     yield Text(f"  {LEGEND}", style="dim")
 
 
-def _sentences(anatomy: Anatomy, requirement: Requirement) -> Iterator[str]:
-    attempt = anatomy.attempt
+def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
+    attempt = breakdown.attempt
     if requirement.text:
         yield requirement.text
-    decided = "" if attempt.decided is None else f", decided {_instant(attempt.decided, anatomy)}"
-    yield f"triggered {_instant(attempt.triggered, anatomy)}{decided}"
+    decided = "" if attempt.decided is None else f", decided {_instant(attempt.decided, breakdown)}"
+    yield f"triggered {_instant(attempt.triggered, breakdown)}{decided}"
     for name, value in attempt.captured.items():
         yield f"{name} = {value}"
     if attempt.reason:
-        yield with_afterword(attempt, anatomy.late)
+        yield with_lateness(attempt, breakdown.late)
     if attempt.forecast is not None:
         yield forecast_sentence(attempt.forecast)
 
 
-def _instant(t: int, anatomy: Anatomy) -> str:
-    return format_ticks(t - anatomy.origin)
+def _instant(t: int, breakdown: Breakdown) -> str:
+    return format_ticks(t - breakdown.origin)
 
 
-def _axis(anatomy: Anatomy) -> Iterator[Text]:
+def _axis(breakdown: Breakdown) -> Iterator[Text]:
     """Where the trigger and the decision are."""
     from rich.text import Text
 
-    attempt = anatomy.attempt
+    attempt = breakdown.attempt
     marks = [" "] * PLOT
-    marks[_column(attempt.triggered, anatomy)] = "▼"
+    marks[_column(attempt.triggered, breakdown)] = "▼"
     if attempt.decided is not None:
-        column = _column(attempt.decided, anatomy)
+        column = _column(attempt.decided, breakdown)
         marks[column] = MARKS[attempt.verdict].sign
-    first, last = _instant(anatomy.start, anatomy), _instant(anatomy.end, anatomy)
+    first, last = _instant(breakdown.start, breakdown), _instant(breakdown.end, breakdown)
     margin = " " * (WIDTH - PLOT)
     yield Text(f"{margin}{first}{last:>{PLOT - len(first)}}", style="dim")
     yield Text(f"{margin}{''.join(marks)}".rstrip())
 
 
-def _column(t: int, anatomy: Anatomy) -> int:
-    span = anatomy.end - anatomy.start + 1
-    return min(max((t - anatomy.start) * PLOT // span, 0), PLOT - 1)
+def _column(t: int, breakdown: Breakdown) -> int:
+    span = breakdown.end - breakdown.start + 1
+    return min(max((t - breakdown.start) * PLOT // span, 0), PLOT - 1)
 
 
-def _row(strand: Strand, anatomy: Anatomy) -> Iterator[Text]:
+def _row(part_truth: PartTruth, breakdown: Breakdown) -> Iterator[Text]:
     from rich.text import Text
 
     room = WIDTH - PLOT - 2
-    indent = "  " + "  " * min(strand.depth + 1, 6)
-    lines = textwrap.wrap(strand.text, room - len(indent)) or [""]
+    indent = "  " + "  " * min(part_truth.depth + 1, 6)
+    lines = textwrap.wrap(part_truth.text, room - len(indent)) or [""]
     for line in lines[:-1]:
         yield Text(f"{indent}{line}")
-    cells = (_cell(strand, anatomy, column) for column in range(PLOT))
+    cells = (_cell(part_truth, breakdown, column) for column in range(PLOT))
     yield Text(f"{indent + lines[-1]:<{WIDTH - PLOT}}{''.join(cells)}")
 
 
-def _cell(strand: Strand, anatomy: Anatomy, column: int) -> str:
+def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:
     """One column: what the formula is in its ticks."""
-    span = anatomy.end - anatomy.start + 1
-    low = anatomy.start + column * span // PLOT
-    high = max(anatomy.start + (column + 1) * span // PLOT - 1, low)
-    true, false = _touches(strand.true, low, high), _touches(strand.false, low, high)
+    span = breakdown.end - breakdown.start + 1
+    low = breakdown.start + column * span // PLOT
+    high = max(breakdown.start + (column + 1) * span // PLOT - 1, low)
+    true, false = _touches(part_truth.true, low, high), _touches(part_truth.false, low, high)
     if not (true and false):
-        whole = strand.true if true else strand.false
+        whole = part_truth.true if true else part_truth.false
         known = any(a <= low and high <= b for a, b in whole)
         return UNKNOWN if not known and not true else TRUE if true else FALSE
-    if _inside(strand.true, low, high):
+    if _inside(part_truth.true, low, high):
         return PULSE
-    if _inside(strand.false, low, high):
+    if _inside(part_truth.false, low, high):
         return DIP
-    begins, ends = _touches(strand.true, low, low), _touches(strand.true, high, high)
+    begins, ends = _touches(part_truth.true, low, low), _touches(part_truth.true, high, high)
     if begins is ends:
         return DIP if begins else PULSE
     return FALLS if begins else RISES

@@ -28,10 +28,10 @@ def without_attempts(verdict: Verdict, miss: str) -> str:
 
 def full_reason(attempt: Attempt, report: Report) -> str:
     """The reason of an attempt with its afterword, if the report knows one."""
-    return with_afterword(attempt, report.late.get(attempt.requirement, {}).get(attempt.number))
+    return with_lateness(attempt, report.late.get(attempt.requirement, {}).get(attempt.number))
 
 
-def with_afterword(attempt: Attempt, came: int | None) -> str:
+def with_lateness(attempt: Attempt, came: int | None) -> str:
     """The reason of an attempt; if what it awaited came after the deadline, also how late.
 
     Args:
@@ -43,9 +43,9 @@ def with_afterword(attempt: Attempt, came: int | None) -> str:
     >>> second = 10**9
     >>> blame = Blame("within 3 s a", 0, 12, (0, 3 * second))
     >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)
-    >>> with_afterword(failed, 3 * second + 20_000_000)
+    >>> with_lateness(failed, 3 * second + 20_000_000)
     'no `a`; it came at 3.02 s, 20 ms after the deadline'
-    >>> with_afterword(failed, 5 * second + 500_000_000)
+    >>> with_lateness(failed, 5 * second + 500_000_000)
     'no `a`; it came at 5.5 s, 2.5 s after the deadline'
     """
     if came is None or attempt.blame is None or attempt.blame.window[1] is None:

@@ -91,7 +91,11 @@ def shapes_seen(seen: Mapping[str, Seen]) -> Shapes:
 
 
 def _shape(seen: Seen) -> Shape | str:
-    """The shape, or why there is none."""
+    """The shape, or why there is none.
+
+    What would compile and mislead is left out with a reason: a signal has one kind in the language,
+    so values of two kinds would make each sample of the rarer one an error.
+    """
     if seen.payloads:
         if seen.kinds - {Kind.BOOL} or seen.other:
             return "objects and other values"
@@ -113,7 +117,7 @@ def _shape(seen: Seen) -> Shape | str:
         return Shape(Kind.BOOL)
     if seen.kinds <= {Kind.INT, Kind.REAL}:
         return Shape(Kind.REAL if Kind.REAL in seen.kinds else Kind.INT)
-    if seen.kinds != {Kind.LABEL} or seen.bits:
+    if seen.kinds != {Kind.LABEL} or seen.bits:  # 0 and 1 among text may be labels, or truths
         return "numbers and text"
     if len(seen.labels) > MOST_LABELS:
         return f"text with more than {MOST_LABELS} values"

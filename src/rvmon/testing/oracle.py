@@ -13,7 +13,7 @@ from typing import Protocol
 from rvmon.errors import TraceError
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement
 from rvmon.testing.law.attempts import Start, is_upon_end, obligation
-from rvmon.testing.law.follow import Followed, Followings, follow
+from rvmon.testing.law.decisions import Followed, Followings, follow
 from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Rest

@@ -69,7 +69,7 @@ class Attempt(Record):
         reason: one sentence for people.
         deadline: the last instant before time alone settles what is still owed (or was), ticks: if
             no position comes that does so before, it is decided a tick later.
-        at_trigger: values of the propositions concerned at the trigger, by their text.
+        at_trigger: values of its propositions at the trigger, by their text.
         at_decision: the same at the decision.
         owed: what was open at the end, as text of the spec.
         captured: values captured by `let` and `for each`.

@@ -8,7 +8,7 @@ from tests.tools import build
 
 import rvmon
 from rvmon.analysis.choices import choices_of
-from rvmon.analysis.possible import possible
+from rvmon.analysis.vacuity import possible
 from rvmon.cli import main
 from rvmon.explain.analysed import analyse
 from rvmon.explain.example import Budget

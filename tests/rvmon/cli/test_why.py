@@ -67,7 +67,7 @@ def test_the_same_as_data(door, capsys):
     assert main(["why", "door.rv", "a.csv", "D1#1", "--format", "json"]) == 0
     shown = json.loads(capsys.readouterr().out)
     assert shown["attempt"]["decided"] == 2 * 10**9
-    rows = {row["text"]: row for row in shown["strands"]}
+    rows = {row["text"]: row for row in shown["part_truths"]}
     assert rows["knock"]["true"] == [[10**9, 10**9]]
     assert rows["not closed"]["true"][0][0] == 2 * 10**9
 

@@ -6,7 +6,7 @@ import re
 import pytest
 from tests.tools import build
 
-from rvmon.analysis.possible import possible
+from rvmon.analysis.vacuity import possible
 from rvmon.explain.example import Budget
 from rvmon.explain.graph import ANY, cubes_of, graph_of
 from rvmon.explain.search import shortest_examples, verdict_of

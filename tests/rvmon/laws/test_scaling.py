@@ -12,7 +12,7 @@ from tests.tools.scale import compact, in_units, scaled
 from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.law.walk import numerics, parts_of
+from rvmon.testing.law.syntax import numerics, parts_of
 from rvmon.testing.strategies import cases
 from rvmon.verdict.report import Report
 

@@ -13,7 +13,7 @@ from tests.tools.compare import outcomes
 
 from rvmon.spec.checked.formula import Probe, ProbeAtom
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Event, Mode, Type
-from rvmon.testing.law.walk import subformulas
+from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.strategies import specs, traces
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind

@@ -195,12 +195,12 @@ def test_a_window_ends_with_the_decision_if_nothing_else_ends_it():
     assert re.findall(r'class="(window[^"]*)"', section) == ["window unbounded"]
 
 
-def test_the_nearest_passing_attempt_is_the_ghost():
+def test_the_nearest_passing_attempt_is_the_reference():
     """Of all that pass, the one that differs least."""
     far, near = door("far", answer=0.1), door("near", answer=1.9)
     page = run_page(content(others=[far[1], near[1]]))
     assert "nearest passing attempt: near, attempt 1" in page
-    assert "ghost" in page
+    assert "reference" in page
 
 
 def test_names_and_texts_cannot_become_markup():

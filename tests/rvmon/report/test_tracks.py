@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import rvmon
 from rvmon.readers import line_chunks
 from rvmon.readers.held import HeldRecording
+from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (
     PLACES,
     Threshold,
@@ -25,7 +26,6 @@ from rvmon.report.tracks import (
     thresholds,
     tracks_of,
 )
-from rvmon.report.view import View, round_instants, view_of
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt, Blame

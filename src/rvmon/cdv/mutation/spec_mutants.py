@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rvmon.analysis.implied import starts_with
-from rvmon.analysis.subject import Subject
-from rvmon.analysis.together import Aim, Together
+from rvmon.analysis.product import Aim, Together
+from rvmon.analysis.requirement import Subject
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.mutation.mutant import third_of
 from rvmon.cdv.mutation.record import Recorded

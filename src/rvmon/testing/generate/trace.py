@@ -10,7 +10,7 @@ from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.testing.case import Case
 from rvmon.testing.generate.choices import Rng, chance, pick
 from rvmon.testing.law.outage import Outage
-from rvmon.testing.law.walk import intervals, numerics
+from rvmon.testing.law.syntax import intervals, numerics
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 

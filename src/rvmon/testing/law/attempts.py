@@ -26,8 +26,8 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.specification import Mode, Requirement
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
+from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.law.truths import Rest, Truths
-from rvmon.testing.law.walk import subformulas
 from rvmon.testing.law.word import (
     EventState,
     Letter,

@@ -20,7 +20,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.testing.law.walk import parts_of
+from rvmon.testing.law.syntax import parts_of
 from rvmon.testing.law.word import Letter, Truth, conjunction, disjunction, truth_of
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.schema import Kind

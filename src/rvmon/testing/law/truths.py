@@ -38,7 +38,7 @@ from rvmon.testing.law.past import (
     is_within,
     since,
 )
-from rvmon.testing.law.walk import constant_value, is_proposition, speaks_of_future
+from rvmon.testing.law.syntax import constant_value, is_proposition, speaks_of_future
 from rvmon.testing.law.word import (
     Letter,
     Truth,

@@ -14,9 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import ceil, exp, fsum, inf, lgamma, log, log1p, prod
+from math import ceil, inf, prod
 from random import Random
 
+from rvmon.confidence import interval
 from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Network, Query
@@ -89,15 +90,13 @@ def estimate(
 
     Raises:
         ModelError: the query cannot be judged on one run, or the network cannot start.
-
-    Source: Clopper and Pearson, The Use of Confidence or Fiducial Limits, 1934.
     """
     check_start(network)
     sought, meets, horizon = _goal(query, until)
     trial = trial_of(network, sought, horizon, Random(seed), mean_wait)  # noqa: S311 - repeatable
     found = sum(trial() for _ in range(runs))
     successes = found if meets else runs - found
-    low, high = exact_bounds(successes, runs, confidence)
+    low, high = interval(successes, runs, confidence)
     return Estimate(runs, successes, low, high, confidence)
 
 
@@ -230,39 +229,3 @@ def _limit(bound: float) -> int:
     """A bound in grid steps; a strict one is one step less."""
     whole = ceil(bound)
     return whole * GRID - (bound != whole)
-
-
-def exact_bounds(successes: int, runs: int, confidence: float) -> tuple[float, float]:
-    """Bounds of a share that hold with at least the given confidence.
-
-    >>> low, high = exact_bounds(8, 10, 0.95)
-    >>> round(low, 4), round(high, 4)
-    (0.4439, 0.9748)
-    """
-    tail = (1 - confidence) / 2
-    low = _share_with_tail(successes, runs, tail) if successes > 0 else 0.0
-    high = _share_with_tail(successes + 1, runs, 1 - tail) if successes < runs else 1.0
-    return low, high
-
-
-def _share_with_tail(least: int, runs: int, tail: float) -> float:
-    """The share for which at least so many successes have the given probability."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        if _probability_of_at_least(least, runs, middle) < tail:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
-
-
-def _probability_of_at_least(least: int, runs: int, share: float) -> float:
-    choices = lgamma(runs + 1)
-    return fsum(
-        exp(
-            choices - lgamma(k + 1) - lgamma(runs - k + 1)
-            + k * log(share) + (runs - k) * log1p(-share)
-        )
-        for k in range(least, runs + 1)
-    )  # fmt: skip

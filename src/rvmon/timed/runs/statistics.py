@@ -16,12 +16,13 @@ from math import fsum, log, log1p, sqrt
 from random import Random
 from statistics import NormalDist
 
+from rvmon.confidence import interval
 from rvmon.timed.model.evaluate import evaluator
 from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Chance, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.simulate import GRID, exact_bounds, stretches, trial_of
+from rvmon.timed.runs.simulate import GRID, stretches, trial_of
 from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.successors import Space
 from rvmon.timed.zones.zone_unions import is_plain
@@ -113,7 +114,7 @@ def _chance(
     while runs < (chance.runs or RUNS) and watch(runs):
         successes += trial() == meets
         runs += 1
-    low, high = exact_bounds(successes, runs, 1 - ERROR) if runs else (0.0, 1.0)
+    low, high = interval(successes, runs, 1 - ERROR) if runs else (0.0, 1.0)
     return Sampled(query, runs, successes / max(1, runs), low, high)
 
 

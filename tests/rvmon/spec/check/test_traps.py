@@ -14,7 +14,7 @@ from rvmon.spec.checked.specification import TimeModel
 from rvmon.spec.compile import compile_text
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-from rvmon.testing.law.walk import numerics
+from rvmon.testing.law.syntax import numerics
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict
 

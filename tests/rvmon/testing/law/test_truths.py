@@ -9,7 +9,7 @@ from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.attempts import Readings, obligation
-from rvmon.testing.law.follow import follow
+from rvmon.testing.law.decisions import follow
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Rest
 from rvmon.testing.law.word import Truth

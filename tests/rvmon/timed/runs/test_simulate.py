@@ -4,10 +4,11 @@ from math import comb
 
 import pytest
 
+from rvmon.confidence import interval
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.runs.simulate import estimate, exact_bounds
+from rvmon.timed.runs.simulate import estimate
 
 COIN = """
 automaton A {
@@ -67,7 +68,7 @@ def test_the_same_seed_gives_the_same_figure():
 @pytest.mark.parametrize(("successes", "runs"), [(0, 20), (1, 20), (10, 20), (20, 20)])
 def test_bounds_are_clopper_and_pearsons(successes, runs):
     """At each bound the observed count is just as improbable as the confidence allows."""
-    low, high = exact_bounds(successes, runs, 0.9)
+    low, high = interval(successes, runs, 0.9)
     at_least = sum(
         comb(runs, k) * low**k * (1 - low) ** (runs - k) for k in range(successes, runs + 1)
     )

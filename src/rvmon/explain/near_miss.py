@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from rvmon.explain.spans import holds
+from rvmon.explain.intervals import holds
 from rvmon.explain.truths import Question, Seen, Truth, look_through
 from rvmon.spec.checked.formula import (
     Binary,
@@ -82,8 +82,8 @@ def miss_in(spec: CheckedSpec, requirement: Requirement, seen: Seen) -> str:
     misses = [_miss(parts, truths) for parts in _options(requirement)]
     best = min(misses, key=lambda miss: len(miss.missing))
     if best.missing and best.at is None:
-        unborn = _unborn(spec, best.parts, seen)
-        return "; ".join(_apart(best.parts, truths, unborn, seen.begin, seen.end))
+        valueless = _without_values(spec, best.parts, seen)
+        return "; ".join(_apart(best.parts, truths, valueless, seen.begin, seen.end))
     return _sentence(best, truths)
 
 
@@ -129,7 +129,7 @@ def _sentence(miss: _Miss, seen: Mapping[Formula, Truth]) -> str:
 def _apart(
     parts: tuple[Formula, ...],
     seen: Mapping[Formula, Truth],
-    unborn: Mapping[str, str],
+    valueless: Mapping[str, str],
     start: int,
     end: int,
 ) -> Iterator[str]:
@@ -138,8 +138,8 @@ def _apart(
     for part in parts:
         word = "was never true"
         low, high = seen[part].may[0]
-        if isinstance(part, SignalAtom) and part.name in unborn:
-            word = unborn[part.name]
+        if isinstance(part, SignalAtom) and part.name in valueless:
+            word = valueless[part.name]
         elif low <= start and high >= end:
             word = "was never known"
         elif low <= end:
@@ -150,14 +150,14 @@ def _apart(
     for word, own in groups.items():
         yield f"{_listed(own)} {word}"
     signals = {part.name for part in parts if isinstance(part, SignalAtom)}
-    for name in sorted(unborn.keys() - signals):
-        yield f"`{name}` {unborn[name]}"
+    for name in sorted(valueless.keys() - signals):
+        yield f"`{name}` {valueless[name]}"
 
 
-def _unborn(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> Mapping[str, str]:
+def _without_values(spec: CheckedSpec, parts: Sequence[Formula], seen: Seen) -> Mapping[str, str]:
     """Of the signals that parts read, those without any value, and what is reported of them."""
     read = {name for part in parts for name in names_read(part)} & spec.signals.keys()
-    lacking = read & seen.unborn
+    lacking = read & seen.valueless
     absent = set() if seen.names is None else lacking - seen.names
     return dict.fromkeys(absent, "has no source") | dict.fromkeys(
         lacking - absent, "never had a value"

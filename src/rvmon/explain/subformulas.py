@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.explain.example import small_step
-from rvmon.explain.late import late_in, waits_of
-from rvmon.explain.spans import Spans, both, outside
-from rvmon.explain.truths import Eye, look_through, parts_of, subformulas
+from rvmon.explain.intervals import Spans, both, outside
+from rvmon.explain.late_arrival import late_in, waits_of
+from rvmon.explain.truths import TruthRecorder, look_through, parts_of, subformulas
 from rvmon.spec.checked.formula import BoundAtom, Constant, Formula
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.print.printer import format_formula
@@ -17,7 +17,7 @@ from rvmon.verdict.attempt import Attempt
 
 
 @dataclass(frozen=True, slots=True)
-class Strand:
+class PartTruth:
     """One subformula over the window.
 
     Attributes:
@@ -36,7 +36,7 @@ class Strand:
 
 
 @dataclass(frozen=True, slots=True)
-class Anatomy:
+class Breakdown:
     """An attempt taken apart.
 
     Attributes:
@@ -45,7 +45,7 @@ class Anatomy:
         end: its last tick.
         origin: from which people count seconds, ticks.
         late: when what it had awaited came after its deadline, ticks; `None` if it did not.
-        strands: the trigger, then what is owed, each before its parts.
+        part_truths: the trigger, then what is owed, each before its parts.
     """
 
     attempt: Attempt
@@ -53,7 +53,7 @@ class Anatomy:
     end: int
     origin: int
     late: int | None
-    strands: tuple[Strand, ...]
+    part_truths: tuple[PartTruth, ...]
 
 
 AROUND = 0.15
@@ -66,7 +66,7 @@ def dissect(
     end: int,
     attempt: Attempt,
     names: frozenset[str] | None = None,
-) -> Anatomy:
+) -> Breakdown:
     """Take an attempt apart.
 
     Args:
@@ -88,25 +88,25 @@ def dissect(
     questions = [parts_of(requirement, attempt), *waits.values()]
     seen = look_through(spec, questions, samples, end, names)
     late = late_in([attempt], waits, seen).get(attempt.number)
-    eye = Eye(requirement, attempt, seen)
-    return Anatomy(attempt, start, stop, begin, late, strands_of(eye, start, stop))
+    recorder = TruthRecorder(requirement, attempt, seen)
+    return Breakdown(attempt, start, stop, begin, late, part_truths_of(recorder, start, stop))
 
 
-def strands_of(eye: Eye, start: int, stop: int) -> tuple[Strand, ...]:
+def part_truths_of(recorder: TruthRecorder, start: int, stop: int) -> tuple[PartTruth, ...]:
     """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time."""
-    requirement = eye.requirement
-    strands = []
+    requirement = recorder.requirement
+    part_truths = []
     parts: list[tuple[str, Formula]] = [("owed", requirement.consequent)]
     if not isinstance(requirement.trigger, BoundAtom) and not _is_true(requirement.trigger):
         parts.insert(0, ("trigger", requirement.trigger))
     for part, whole in parts:
         for depth, formula in subformulas(whole, 0):
-            truth = eye.truth(formula)
+            truth = recorder.truth(formula)
             shown = ((start, stop),)
             true = both(truth.sure, shown)
             false = outside(both(truth.may, shown), start, stop)
-            strands.append(Strand(depth, format_formula(formula), part, true, false))
-    return tuple(strands)
+            part_truths.append(PartTruth(depth, format_formula(formula), part, true, false))
+    return tuple(part_truths)
 
 
 def _is_true(formula: Formula) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
-from rvmon.analysis.subject import Regions
+from rvmon.analysis.requirement import Regions
 from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.state import FALSE, TRUE, State
@@ -60,6 +60,8 @@ def possible(
     first = {v for v in found.vectors if trigger is None or v[-1]}
     if not first:
         return Possible(trigger=False)
+    # What is explored has every run that there is, and perhaps more. So "cannot fail" is a proof,
+    # and becomes a finding; "can fail" is none: no run need show it, and nothing is said of it.
     width = len(propositions)
     gap = {TimeModel.HELD: 1, TimeModel.CLOCKED: spec.period, TimeModel.SAMPLED: None}[spec.time]
     reach = _Reach(automaton, gap)

@@ -18,7 +18,7 @@ from rvmon.testing.law.attempts import (
     starts_upon,
     views,
 )
-from rvmon.testing.law.walk import looks_back_at_future, speaks_of_future
+from rvmon.testing.law.syntax import looks_back_at_future, speaks_of_future
 from rvmon.testing.law.word import Truth, Word
 
 

@@ -5,9 +5,9 @@ import random
 import pytest
 from tests.tools import build
 
-from rvmon.explain.dissect import dissect
-from rvmon.explain.spans import both, outside, union
-from rvmon.explain.truths import Eye, look_through, parts_of, subformulas
+from rvmon.explain.intervals import both, outside, union
+from rvmon.explain.subformulas import dissect
+from rvmon.explain.truths import TruthRecorder, look_through, parts_of, subformulas
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import show_case
@@ -46,7 +46,7 @@ def test_subformulas_have_the_truth_of_the_oracle(time, seed):
         word = word_of(spec, samples, end=end, names=case.names)
         attempt = Attempt("R1", 1, samples[0].t, None, Verdict.INCONCLUSIVE)
         seen = look_through(spec, [parts_of(requirement, attempt)], samples, end, case.names)
-        eye = Eye(requirement, attempt, seen)
+        eye = TruthRecorder(requirement, attempt, seen)
         truths = Truths(word, {})
         for _, formula in subformulas(requirement.consequent, 0):
             found = eye.truth(formula)
@@ -103,7 +103,7 @@ def test_an_attempt_of_an_instance_and_with_captures():
     for sample in samples:
         monitor.step_ns(sample.t, sample.values)
     second = next(a for a in monitor.finish_ns(20).attempts if a.number == 2)
-    found = {s.text: s for s in dissect(spec, samples, 20, second).strands}
+    found = {s.text: s for s in dissect(spec, samples, 20, second).part_truths}
     assert ticks(found["pick"].true) == {2}
     assert min(ticks(found["x > v"].true)) == 5
     assert second.decided == 5
@@ -117,7 +117,7 @@ def test_the_window_reaches_around_the_attempt():
     for sample in samples:
         monitor.step_ns(sample.t, sample.values)
     attempt = monitor.finish_ns(30).attempts[0]
-    anatomy = dissect(spec, samples, 30, attempt)
-    assert anatomy.start <= attempt.triggered < attempt.decided <= anatomy.end
-    owed = next(s for s in anatomy.strands if s.part == "owed" and s.depth == 0)
+    breakdown = dissect(spec, samples, 30, attempt)
+    assert breakdown.start <= attempt.triggered < attempt.decided <= breakdown.end
+    owed = next(s for s in breakdown.part_truths if s.part == "owed" and s.depth == 0)
     assert attempt.triggered in ticks(owed.false)

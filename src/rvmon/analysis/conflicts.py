@@ -6,8 +6,8 @@ import time
 from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations
 
-from rvmon.analysis.subject import Conflict, Member, Subject
-from rvmon.analysis.together import Aim, Together
+from rvmon.analysis.product import Aim, Together
+from rvmon.analysis.requirement import Conflict, Member, Subject
 
 MOST_OFFSETS = 12
 """Of two requirements so many distances between their triggers are looked at."""
@@ -189,7 +189,7 @@ class ConflictSearch:
         return any(group <= known for known in self._fine)
 
     def _sets_of(self, size: int, level: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
-        """Look at sets of a size, each grown from a smaller one; none is left if that is all."""
+        """Look at sets of a size, each a smaller one and one more; none is left if that is all."""
         if self.whole_sets != size - 1:
             return []
         larger = list(dict.fromkeys(self._grown(level)))

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import loads
-from rvmon.explain.not_triggered import why_not_triggered
+from rvmon.explain.near_miss import why_not_triggered
 from rvmon.trace.sample import Sample
 
 SPEC = """

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import Letters, Table, Truths
-from rvmon.analysis.possible import automaton_letter
-from rvmon.analysis.subject import Regions, Subject, after_edge
+from rvmon.analysis.requirement import Regions, Subject, after_edge
+from rvmon.analysis.vacuity import automaton_letter
 from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel

@@ -3,7 +3,7 @@
 import pytest
 
 import rvmon
-from rvmon.explain.late import late_in, waits_of
+from rvmon.explain.late_arrival import late_in, waits_of
 from rvmon.explain.truths import look_through
 from rvmon.trace.sample import Sample
 
