@@ -62,7 +62,7 @@ def model_sections(
     for requirement, row in zip(claims(), rows, strict=True):
         witness = addresses.get((ROBOT, witness_test(requirement.removesuffix(SUFFIX))))
         if witness is not None:
-            row[1].append(e("a", {"href": witness}, " its witness, played"))
+            row[1].append(e("a", {"href": witness, "title": "the robot plays it"}, " (witness)"))
     found = list(parallel.execute(chosen, _conformer, jobs=jobs, what="run"))
     both = _edge_rows(frozenset().union(*edges))
     both += [
@@ -122,8 +122,8 @@ def _verifier() -> Callable[[str], ET.Element]:
             None,
             e("th", {"scope": "row"}, requirement),
             e("td", None, checked_text(some)),
-            e("td", None, f"{found.successes / found.runs:.1%} "
-              f"({interval_text(found.successes, found.runs)} %)"),
+            e("td", None, f"{100 * found.successes / found.runs:.1f} % "
+              f"({interval_text(found.successes, found.runs)})"),
             e("td", None, checked_text(every)),
             e("td", {"class": "text", "title": claim.text}, claim.remark),
         )  # fmt: skip

@@ -82,7 +82,7 @@ def test_a_requirement_that_no_test_triggers_is_pointed_out(campaign, tmp_path, 
     )
     assert main(campaign(("low", {"level": 3.0})), ["run", "--jobs", "1", "--out", "out"]) == 0
     page = (tmp_path / "out/report.html").read_text()
-    told = page.partition("triggered by no test, and so untested: ")[2].partition("</p>")[0]
+    told = page.partition("triggered by no test, and so untested:")[2].partition("</p>")[0]
     assert told.count("<a ") == 1
     assert 'href="runs/toy-low.html#Far"' in told
     capsys.readouterr()
