@@ -39,7 +39,7 @@ BUDGETS = {
     "tests/rvmon/explain": 20,
     "tests/rvmon/export": 35,
     "tests/rvmon/formula": 2,
-    "tests/rvmon/laws": 75,
+    "tests/rvmon/laws": 130,
     "tests/rvmon/live": 15,
     "tests/rvmon/monitor": 80,
     "tests/rvmon/readers": 60,

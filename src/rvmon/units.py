@@ -83,7 +83,7 @@ _PREFIXES = {
     "G": Fraction(10**9),
 }
 
-_SPOKEN = {"A": "ampere", "W": "watt"}
+SPOKEN = {"A": "ampere", "W": "watt"}
 """The letters are operators, so behind a number the words stand for them."""
 
 _LONGEST = 60
@@ -146,7 +146,7 @@ def _powers(text: str) -> Mapping[str, int]:
         if part is None or (part[1] == "") != (place == 0):
             raise UnknownUnitError(text[place:])
         place = part.end()
-        name = _SPOKEN.get(part[2], part[2])
+        name = SPOKEN.get(part[2], part[2])
         if name != "1":
             powers[name] += int(part[3] or 1) * (-1 if part[1] == "/" else 1)
     return powers
@@ -202,7 +202,7 @@ def root(unit: Unit) -> Unit | None:
 
 def base_unit(dimension: Mapping[str, int]) -> Unit:
     """The product of base units with these exponents."""
-    powers = {_SPOKEN.get(base, base): power for base, power in dimension.items()}
+    powers = {SPOKEN.get(base, base): power for base, power in dimension.items()}
     return _of_powers(powers, unit_table())
 
 

@@ -21,7 +21,7 @@ from rvmon.timed.model.expressions import (
     UnaryOperation,
 )
 from rvmon.timed.model.guards import parts_of
-from rvmon.timed.model.network import LeadsToFormula, Network, Query
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.zones.zone_unions import is_plain
 from tests.tools.timed_regions import Region, RegionGraph, satisfies
@@ -36,6 +36,7 @@ def holds_at_start(network: Network, query: Query, limit: int = 2_000) -> bool:
         TooManyRegionsError: there are more regions than the limit.
     """
     formula = query.formula
+    assert not isinstance(formula, Chance | Mean)
     if isinstance(formula, LeadsToFormula):
         answered = PathFormula(PathOp.EVENTUALLY, formula.right, formula.bound)
         implied = BinaryOperation(BinaryOp.IMPLY, formula.left, answered)
@@ -95,6 +96,8 @@ class _Truth:
                 return self._plain.before_actions(body)
             case PathOp.EVERY_NEXT:
                 return everywhere - self._plain.before_actions(everywhere - body)
+            case _:
+                raise AssertionError(f"{op} speaks of one run")
 
     def _until(self, body: Regions, bound: int | None, left: Regions, *, every: bool) -> Regions:
         if bound is None:

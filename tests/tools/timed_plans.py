@@ -6,12 +6,14 @@ from collections.abc import Iterable, Iterator
 
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import PathFormula
+from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import normal_form
-from rvmon.timed.model.network import LeadsToFormula
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
+from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
 from tests.tools.timed_generate import random_model
 
+_LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"
 _NESTS = "AG (EF[<=2] P0.l1 or A[not P0.l0 U[<=3] deadlock] or EX AF x > 1)"
 
 
@@ -22,8 +24,6 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
         formulas = [network.queries[k].formula for k in (0, 1, 10)]
         some, other, nested = (f.body for f in formulas if isinstance(f, PathFormula))
         some, other, nested = normal_form(some), normal_form(other), normal_form(nested, False)
-        of_states = query_on(network, _NESTS).formula
-        assert not isinstance(of_states, LeadsToFormula)
         for sought in (
             *(Sought(Seek.GOAL, some, choose=choose) for choose in Choose),
             Sought(Seek.GOAL, some, bound=3),
@@ -33,6 +33,17 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
             Sought(Seek.LATE, None, other, bound=2),
             Sought(Seek.LATE_AFTER, some, other, bound=2),
             Sought(Seek.NESTED, nested=nested),
-            Sought(Seek.START, nested=normal_form(of_states)),
+            *(
+                Sought(Seek.RUN, ways=ways_of(normal_form(linear)), progress=progress)
+                for linear in (_formula(network, text) for text in _LINEAR)
+                for progress in (False, True)
+            ),
+            Sought(Seek.START, nested=normal_form(_formula(network, _NESTS))),
         ):
             yield Plan(network, sought)
+
+
+def _formula(network: Network, text: str) -> Expression:
+    formula = query_on(network, text).formula
+    assert not isinstance(formula, LeadsToFormula | Chance | Mean)
+    return formula

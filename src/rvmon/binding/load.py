@@ -23,6 +23,7 @@ from rvmon.binding.expression import term_of
 from rvmon.diagnostics.nearest import cannot_read, did_you_mean
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
+from rvmon.readers.messages.forms import DATABASES
 from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.arithmetic import NumericOp
@@ -41,7 +42,7 @@ class On(StrEnum):
     CHANGE = "change"
 
 
-_TOP = ("clock", "definitions", "bind")
+_TOP = ("clock", "definitions", "robot", "bind")
 _SIGNAL = ("topic", "type", "value", "unit", "labels", "on", "clock")
 _EVENT = ("topic", "type", "value", "fields", "on", "clock")
 
@@ -82,8 +83,11 @@ def _binding(content: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Bin
     listed = content.get("definitions", [])
     if not isinstance(listed, list) or not all(isinstance(one, str) for one in listed):
         raise RvmonError('`definitions` is a list of files: ["shop_msgs/msg/Pick.msg"]')
+    robot = content.get("robot", "")
+    if not isinstance(robot, str):
+        raise RvmonError('`robot` stands for `*` in topics: robot = "robot_1"')
     clock = _choice(content, "clock", Clock) or Clock.LOG
-    return Binding(bounds, clock, dict(_definition(folder / one) for one in listed))
+    return Binding(bounds, clock, dict(_definition(folder / one) for one in listed), robot)
 
 
 def _tables(content: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -178,15 +182,21 @@ def _scaled(value: Term, factor: Fraction) -> Term:
 
 
 def _definition(path: Path) -> tuple[str, str]:
-    """Type and text of a definition; the last folders say the package: `shop_msgs/msg/Pick.msg`."""
-    if path.suffix != ".msg" or len(path.parts) < 3 or path.parts[-2] != "msg":
-        raise RvmonError(f"definition {path}: expected PACKAGE/msg/NAME.msg")
+    """Type and text of a definition; the last folders say the package: `shop_msgs/msg/Pick.msg`.
+
+    A database of CAN is called by its file.
+    """
+    is_database = path.suffix.lower() in DATABASES
+    is_message = path.suffix == ".msg" and len(path.parts) >= 3 and path.parts[-2] == "msg"
+    if not is_message and not is_database:
+        listed = ", ".join(DATABASES)
+        raise RvmonError(f"definition {path}: expected PACKAGE/msg/NAME.msg, or one of {listed}")
     try:
         text = text_of_file(path)
     except (OSError, UnicodeDecodeError) as error:
         reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
         raise RvmonError(f"definition {path}: {reason}") from None
-    return "/".join((*path.parts[-3:-1], path.stem)), text
+    return path.name if is_database else "/".join((*path.parts[-3:-1], path.stem)), text
 
 
 def _table(content: Mapping[str, Any], key: str, what: str) -> Mapping[str, Any]:

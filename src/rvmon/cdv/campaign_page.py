@@ -13,6 +13,8 @@ from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import INTERVALS, RobotTables
 from rvmon.report.pages import render, table_html
+from rvmon.report.table import VerdictTable
+from rvmon.verdict.verdict import Verdict
 
 
 def campaign_page(
@@ -55,7 +57,13 @@ def campaign_page(
         others=others,
         whose=" and ".join(dict.fromkeys(of for one in others for of in robots_of[one])),
         robots=[
-            (figures.title, figures.spec, tables[robot], *_tables(robot, tables[robot], examples))
+            (
+                figures.title,
+                figures.spec,
+                tables[robot],
+                *_tables(robot, tables[robot], examples, tests),
+                _silent(robot, tables[robot].own, examples),
+            )
             for robot, figures in summary.robots.items()
             if figures.requirements and figures.strategies
         ],
@@ -74,12 +82,37 @@ def campaign_page(
 
 
 def _tables(
-    robot: str, tables: RobotTables, examples: Mapping[Cell, str]
+    robot: str,
+    tables: RobotTables,
+    examples: Mapping[Cell, str],
+    tests: Mapping[tuple[str, str], str],
 ) -> tuple[Markup, Markup | None]:
     """The table of a robot, whose counts lead to examples, and that of its control."""
     own = table_html(
-        tables.own, beside=tables.beside, link=lambda *cell: examples.get((robot, *cell))
+        tables.own,
+        beside=tables.beside,
+        link=lambda *cell: examples.get((robot, *cell)),
+        witnesses={
+            name: tests[robot, test]
+            for name, test in tables.witnesses.items()
+            if (robot, test) in tests
+        },
     )
     if tables.control is None or not tables.control_label:
         return own, None
     return own, table_html(tables.control, beside=tables.beside)
+
+
+def _silent(
+    robot: str, table: VerdictTable, examples: Mapping[Cell, str]
+) -> list[tuple[str, str | None]]:
+    """The requirements that no test triggered, each with a run that says what it lacked."""
+    found: list[tuple[str, str | None]] = []
+    for name in table.requirements:
+        groups = [group for group in table.groups if name in group.counts]
+        counts = [group.counts[name] for group in groups]
+        tests = sum(sum(one.values()) for one in counts)
+        if tests and sum(one.get(Verdict.NOT_TRIGGERED, 0) for one in counts) == tests:
+            shown = (examples.get((robot, one.name, name, Verdict.NOT_TRIGGERED)) for one in groups)
+            found.append((name, next((one for one in shown if one is not None), None)))
+    return found

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 GROUPS = {
     "write requirements": {
-        "init": "a starter specification from a recording",
+        "look": "what a recording holds, over time",
+        "init": "a starter specification from a recording, or a campaign",
         "bind": "which topics of a recording feed a specification: a proposal",
         "check": "what is wrong in specifications, or can never hold together",
         "explain": "a requirement, or a diagnostic's code, in plain words",

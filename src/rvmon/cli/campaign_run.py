@@ -188,7 +188,8 @@ def written(
         write_tests(folder, results)
         played = frozenset(one.job.test.strategy for one in results.played)
         campaign.presentation.write_more(folder, played)
-    examples = choose_examples(results.played, every=arguments.pages == "all")
+    witnesses = {test for table in tables.values() for test in table.witnesses.values()}
+    examples = choose_examples(results.played, also=witnesses, every=arguments.pages == "all")
     with bar("pages", len(examples.jobs)) as show:
         otherwise = write_pages(
             folder,

@@ -304,6 +304,11 @@ def _show_warnings(spec: Spec) -> None:
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
         warn(f"{spec.checked.name} has no requirement: there is nothing to check")
+    alone = [f"`{name}`" for name in checked.properties
+             if name not in spec.requirements and name not in checked.covers]  # fmt: skip
+    if alone:
+        by = "a requirement with `monitor as written` or `monitor as cover` is"
+        warn(f"properties are not judged on runs: {', '.join(alone)}; {by}")
 
 
 def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:

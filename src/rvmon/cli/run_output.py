@@ -26,7 +26,9 @@ from rvmon.evidence.keep import (
     texts_of,
     write_evidence,
 )
+from rvmon.readers.held import HeldRecording
 from rvmon.readers.messages.forms import form_of_folder
+from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 from rvmon.session import Spec
 from rvmon.verdict.rows import VerdictRow
@@ -85,10 +87,12 @@ def write_files(
 
         write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
 
-    def read(trace: str) -> list[Sample]:
+    def read(trace: str) -> Sequence[Sample]:
         # What came over standard input is gone: its page has the verdicts, not the signals.
         place = arguments.traces[0] if reproducer else trace
-        return [] if trace == "-" else list(spec.recording(place))
+        if trace == "-":
+            return []
+        return HeldRecording(Source(spec.recording(place)).pieces(), spec.checked.events)
 
     if arguments.mcap:
         from rvmon.export.verdicts_mcap import write_verdicts

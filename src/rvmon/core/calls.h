@@ -244,7 +244,11 @@ void revive_all(run *r, int64_t t);
 
 /* ---- past.c */
 stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
+void part_stretches(rv_monitor *m, stretches *worse, stretches *better);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
+
+/* ---- amounts.c */
+uint8_t node_amount(run *r, const node_plan *n, int64_t t, uint8_t operand);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
 /* ---- graph.c: the nodes of a part */

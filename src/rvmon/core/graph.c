@@ -77,6 +77,7 @@ void remember_unknown(run *r, int64_t t)
         case NODE_EVER: (void)ever(r, n, left_there(r, n), IS_UNKNOWN); break;
         case NODE_EDGE:
         case NODE_STRETCH: (void)node_since(r, n, t, left_there(r, n), IS_UNKNOWN); break;
+        case NODE_AMOUNT: (void)node_amount(r, n, t, IS_UNKNOWN); break;
         default: break;
         }
     }
@@ -99,6 +100,7 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_DOUBT: return node_doubt(r, n, place, t, r->truth[operands[0]]);
     case NODE_PREVIOUS: return previous(r, n, t, r->truth[operands[0]]);
     case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
+    case NODE_AMOUNT: return node_amount(r, n, t, r->truth[operands[0]]);
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
 }

@@ -177,6 +177,7 @@ enum {
     NODE_EVER,                 /* since, without bounds */
     NODE_EDGE,                 /* since from 0 on, or without an end */
     NODE_STRETCH,              /* since in bounds */
+    NODE_AMOUNT,               /* so much in the last `high` ticks: amounts.c */
     NODES
 };
 

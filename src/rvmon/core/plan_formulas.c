@@ -144,7 +144,8 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
         timed = false;
         break;
     case NODE_EDGE: slots = x->edges; break;
-    case NODE_STRETCH: slots = x->stretches; break;
+    case NODE_STRETCH:
+    case NODE_AMOUNT: slots = x->stretches; break;
     case NODE_ELAPSED: break;
     default: timed = false; break;
     }

@@ -176,6 +176,7 @@ static bool copy_grown(run *made, const run *r)
         to->right = from->right;
         to->growing = from->growing;
         to->apart = from->apart;
+        to->total = from->total;
     }
     return true;
 }
@@ -229,6 +230,7 @@ void clear_run(run *r)
         s->right = false;
         s->growing = false;
         s->apart = false;
+        s->total = 0;
     }
     begin_unlost(r);
     clear_judges(r);

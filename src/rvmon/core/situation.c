@@ -70,6 +70,17 @@ static void put_stretches(telling *s, const stretches *own)
     put_word(s, (own->left ? 1 : 0) + (own->right ? 2 : 0) + (own->growing ? 4 : 0));
 }
 
+static void put_amount(telling *s, const stretches *own)
+{
+    int32_t i;
+    for (i = 0; i < own->count; i++) {
+        const stretch *one = &own->at[(own->head + i) & (own->room - 1)];
+        put_word(s, one->begin - s->now);
+        put_word(s, one->end - s->now);
+    }
+    put_word(s, own->growing ? 1 : 0);
+}
+
 /* What formulas are, and remember. */
 static void put_formulas(telling *s, const run *r)
 {
@@ -104,6 +115,12 @@ static void put_formulas(telling *s, const run *r)
             put_stretches(s, worse);
             if (worse->apart) {
                 put_stretches(s, worse + 1);
+            }
+        } else if (n->op == NODE_AMOUNT) {
+            const stretches *worse = &r->past[2 * n->slot];
+            put_amount(s, worse);
+            if (worse->apart) {
+                put_amount(s, worse + 1);
             }
         } else {
             /* It remembers no more than a truth. */

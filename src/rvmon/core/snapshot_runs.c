@@ -122,6 +122,7 @@ static void carry_stretches(carrier *c, stretches *s)
     carry_flag(c, &s->right);
     carry_flag(c, &s->growing);
     carry_flag(c, &s->apart);
+    carry_long(c, &s->total, 0, NEVER);
 }
 
 /* What looks back; a second reading is there only if it is another. */

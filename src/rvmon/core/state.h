@@ -67,7 +67,7 @@ enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD, SAYS_DENSE, SAYS_SPA
 /* Whether there are positions: surely; nobody knows; from the next one on. */
 enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
 
-/* Stretches of instants at which a `since` in bounds holds, as a ring. */
+/* Stretches of instants at which a `since` in bounds holds, or of which an amount is made, as a ring. */
 typedef struct {
     stretch *at;
     int32_t room;              /* a power of two, or 0 */
@@ -77,6 +77,7 @@ typedef struct {
     bool right;
     bool growing;              /* whether the end of the last one is still to come */
     bool apart;                /* whether there is a second one, the unknown taken for the better */
+    int64_t total;             /* the positions in those of an amount */
 } stretches;
 
 typedef struct {

@@ -13,7 +13,8 @@ from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor.core.watching import TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
-from rvmon.spec.checked.formula import Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
+from rvmon.readers.held import HeldRecording
+from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.gaps import is_unknown
@@ -107,7 +108,7 @@ def look_through(
     begin: int | None = None
     instants = array("q")
     valueless = set(spec.signals)
-    for piece in pieces:
+    for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
         times = (piece.t,) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])
@@ -303,7 +304,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
     """The formula, then what it is made of; a negation of an atom is not taken apart."""
     yield depth, formula
     match formula:
-        case Unary(operand=Unary() | Binary() as operand):
+        case Amount(operand=operand) | Unary(operand=Unary() | Binary() | Amount() as operand):
             yield from subformulas(operand, depth + 1)
         case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
             yield from subformulas(operand, depth + 1)

@@ -13,7 +13,7 @@ from xml.sax.saxutils import escape
 
 from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.names import Names, Thing
-from rvmon.timed.model.expressions import TRUE, Expression, PathFormula
+from rvmon.timed.model.expressions import TRUE, PathFormula
 from rvmon.timed.model.network import (
     Automaton,
     Edge,
@@ -21,6 +21,7 @@ from rvmon.timed.model.network import (
     LeadsToFormula,
     Network,
     Query,
+    QueryFormula,
     Reset,
     Update,
     Variable,
@@ -34,7 +35,7 @@ _HEAD = """<?xml version="1.0" encoding="utf-8"?>
 'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
 <nta>
 """
-_NEXT = (PathOp.SOME_NEXT, PathOp.EVERY_NEXT)
+_OUTERMOST = list(PathOp)[:4]
 _GRID = (200, 150)
 """Distance of locations in a drawing, right and down."""
 
@@ -168,13 +169,13 @@ def _query(names: Names, query: Query) -> Iterator[str]:
     yield "    </query>"
 
 
-def _formula(names: Names, formula: Expression | LeadsToFormula) -> str:
+def _formula(names: Names, formula: QueryFormula) -> str:
     """The formula; empty if UPPAAL has none for it."""
     match formula:
         case LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
             return f"{names.expression(left)} --> {names.expression(right)}"
         case PathFormula(op, body, None, left) if (
-            left == TRUE and op not in _NEXT and not has_paths(body)
+            left == TRUE and op in _OUTERMOST and not has_paths(body)
         ):
             return names.expression(formula)
         case _:

@@ -8,7 +8,7 @@ from rvmon.native.extension import extension
 from rvmon.native.sources import CSV_FOLDER
 
 if TYPE_CHECKING:
-    from rvmon.native import _csv
+    import rvmon.native._csv as _csv
 
     read = _csv.read
 else:

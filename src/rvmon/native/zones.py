@@ -8,7 +8,7 @@ from rvmon.native.extension import extension
 from rvmon.native.sources import ZONES_FOLDER
 
 if TYPE_CHECKING:
-    from rvmon.native import _zones
+    import rvmon.native._zones as _zones
 
     search = _zones.search
 else:

@@ -152,6 +152,11 @@ class Batch:
                     found[name] = value
             yield Sample(t, found)
 
+    def numbered(self) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
+        """Number, ticks and values of each row."""
+        for row, sample in enumerate(self.rows(0, len(self.times))):
+            yield self.number_of(row), sample.t, sample.values
+
     def up_to(self, until: int | None) -> Batch:
         """The rows up to an instant (ticks); all of them without one."""
         if until is None or not len(self.times) or self.times[-1] <= until:

@@ -136,6 +136,7 @@ def table_html(
     *,
     beside: Mapping[str, VerdictTable] | None = None,
     link: Link | None = None,
+    witnesses: Mapping[str, str] | None = None,
 ) -> Markup:
     """A table of counts, with a line per requirement.
 
@@ -143,6 +144,7 @@ def table_html(
         table: the counts.
         beside: by label, tables whose counts stand in further lines of each row.
         link: where a count leads to.
+        witnesses: by requirement, the address of a run that shows what model checking says.
     """
     others = beside or {}
     text = render(
@@ -150,6 +152,7 @@ def table_html(
         table=table,
         others=others,
         link=link,
+        witnesses=witnesses or {},
         has_checked=any(one.checked for one in (table, *others.values())),
         checked_text=checked_text,
         interval_text=interval_text,

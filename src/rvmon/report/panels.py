@@ -17,7 +17,7 @@ from rvmon.report.markup import Child
 from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
-from rvmon.report.tracks import Track, TrackKind, Updates, tracks_of, updates_of
+from rvmon.report.tracks import Changes, Track, TrackKind, changes_of, tracks_of
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Sample
@@ -209,7 +209,7 @@ class _Panels:
     def __init__(self, content: RunPage, shown: Mapping[str, Sequence[Attempt]]) -> None:
         self._content = content
         report = content.run.report
-        self._updates: dict[int, Updates] = {}
+        self._changes: dict[int, Mapping[str, Changes]] = {}
         self._waits = {
             name: waits_of(content.spec.requirements[name], attempts)
             for name, attempts in shown.items()
@@ -267,10 +267,9 @@ class _Panels:
         if not run.samples:
             return ()
         spec = self._content.spec
-        if id(run) not in self._updates:
-            self._updates[id(run)] = updates_of(spec, run.samples)
-        updates = self._updates[id(run)]
-        return tracks_of(spec, spec.requirements[name], updates, run.report.health)
+        if id(run) not in self._changes:
+            self._changes[id(run)] = changes_of(spec, run.samples)
+        return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.health)
 
     def _part_truths(self, attempt: Attempt, view: View) -> tuple[PartTruth, ...]:
         """The truth of each part over a view, as far as the run reaches."""

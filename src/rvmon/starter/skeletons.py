@@ -81,7 +81,7 @@ def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
 
 def _others(profile: Profile) -> Iterator[Skeleton]:
     """What can be said of any recording."""
-    yield from (_range(column) for column in profile.columns if column.low is not None)
+    yield from (_range(column) for column in profile.columns if column.is_finite)
     yield from (_happens(column, profile) for column in profile.columns if column.instants)
     yield from (_ever(column) for column in profile.columns)
 

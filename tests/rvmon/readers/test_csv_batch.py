@@ -6,6 +6,7 @@ import struct
 from pathlib import Path
 
 import pytest
+from tests.tools.csv_rows import samples_of_csv
 
 import rvmon
 from rvmon.readers import csv_batch, line_chunks
@@ -102,11 +103,12 @@ def test_columns_say_what_rows_say(seed, tmp_path, monkeypatch):
     """Samples and faults are those of reading row by row, with few rooms, too."""
     rng = random.Random(seed)
     (tmp_path / "a.csv").write_text(csv_text(rng, rng.choice([0, 0.01, 0.1])), newline="")
-    expected = read(SPEC.recording(tmp_path / "a.csv"))
+    expected = read(samples_of_csv(SPEC, tmp_path / "a.csv"))
     monkeypatch.setattr(line_chunks, "BLOCK", rng.choice([1, 7, 100, 999, 1 << 20]))
     monkeypatch.setattr(csv_batch, "_ODD", 1)
     monkeypatch.setattr(csv_batch, "_LABELS", 1)
     assert read(of_pieces(tmp_path / "a.csv")) == expected
+    assert read(SPEC.recording(tmp_path / "a.csv")) == expected
 
 
 def test_numbers_are_the_nearest(tmp_path):

@@ -55,11 +55,14 @@ _LINES = {
         "upon",
         "then",
     ): "`upon θ then ψ`: ψ is owed each time θ becomes true; if θ is an event, each time it occurs",
+    ("if", "else"): "`if φ then x else y` is a number, or a formula",
     ("whenever",): "`whenever θ then ψ`: ψ is owed at every instant at which θ holds",
     ("monitor as response",): "`monitor as response within D`: derived from the requirement's "
     "`property E<> (…)`: upon its `input` part, its `output` part is owed within D",
     ("monitor as written",): "`monitor as written`: the requirement's `property` itself, on every "
     "run",
+    ("monitor as cover",): "`monitor as cover`: the requirement's `property E<> …` is a goal that "
+    "some run should show",
     ("source", "rationale", "severity", "tags"): '`source "…"`, `rationale "…"`, `severity high`, '
     "`tags a, b`: kept and shown",
     ("let",): "`let v = expression`: the value at the trigger, for the consequent",

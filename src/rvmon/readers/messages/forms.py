@@ -4,9 +4,30 @@ from __future__ import annotations
 
 import os
 
-MESSAGE_FORMATS = {".bag": "ros1", ".db3": "ros2", ".mcap": "mcap"}
+MESSAGE_FORMATS = {
+    ".bag": "ros1",
+    ".db3": "ros2",
+    ".mcap": "mcap",
+    ".ulg": "ulog",
+    ".bin": "dataflash",
+    ".tlog": "tlog",
+    ".mf4": "mdf",
+    ".asc": "can",
+    ".blf": "can",
+    ".trc": "can",
+    ".log": "can",
+    ".h5": "hdf5",
+    ".hdf": "hdf5",
+    ".hdf5": "hdf5",
+    ".mat": "mat",
+}
 """File name endings and the formats of messages they stand for; a bag of ROS 2 is a folder."""
 
+DATABASES = (".dbc", ".kcd", ".sym", ".arxml")
+"""Endings of files that say what frames of CAN hold."""
+
+ARRAYS = frozenset({"hdf5", "mat"})
+"""The formats in which the stamps are an array among others."""
 
 TOPICS = "topics.toml"
 """In a folder of tables that are one recording: says which file is which topic."""

@@ -16,7 +16,7 @@ from rvmon.units import PLAIN, Unit, parse_unit
 _ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==", "!="})
 """Operations whose arguments are in one unit."""
 
-_TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not"})
+_TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not", "any", "all"})
 
 
 @dataclass(frozen=True, slots=True)

@@ -76,6 +76,58 @@ def age_alone(span: Span) -> Diagnostic:
     )
 
 
+amount_alone = Breach(
+    WRONG_TYPE,
+    "`{}` can only be compared with a constant",
+    "write `count(e, 5 s) >= 3`, `duration(φ, 60 s) <= 4 s`, `share(φ, 1 h) >= 70 %`",
+)
+
+
+extreme_alone = Breach(
+    WRONG_TYPE,
+    "`{}` can only be compared with a constant, or with a captured value",
+    "write `max(x, 5 s) <= 1`, or capture the other side: `let v = y`",
+)
+
+
+def count_of_state(span: Span) -> Diagnostic:
+    """A count of what holds for a while, at each tick."""
+    text = short(span.text)
+    return finding(
+        WRONG_TYPE,
+        f"in `time held` `{text}` holds at every nanosecond of a stretch, and is not counted",
+        span,
+        fix=f"count where it begins, `rise({text})`, or measure it: `duration({text}, …)`",
+    )
+
+
+def amount_of_future(span: Span, name: str) -> Diagnostic:
+    """An amount of what is not known at once."""
+    return finding(
+        WRONG_TYPE,
+        f"`{name}` is of the past, and `{short(span.text)}` speaks of the future",
+        span,
+        fix="count what shows that it came, as in `count(e and once[0, 3 s] a, 1 min)`",
+    )
+
+
+choice_alone = Breach(
+    WRONG_TYPE,
+    "`{}` is a choice, expected one number",
+    "compare each side: `if φ then x <= 1 else x <= 2`",
+)
+
+
+def many_outcomes(span: Span, most: int) -> Diagnostic:
+    """Choices within choices."""
+    return finding(
+        WRONG_TYPE,
+        f"`{short(span.text)}` chooses between more than {most} numbers",
+        span,
+        fix="split it into several requirements",
+    )
+
+
 not_constant = Breach(
     WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"
 )

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import assert_never
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Bound,
@@ -58,7 +59,7 @@ def is_pulse(formula: Formula, *, negated: bool = False) -> bool:
             return not negated and bool([*events_of(left), *events_of(right)])
         case ProbeAtom(probe=probe):
             return not negated and probe is not Probe.KNOWN
-        case SignalAtom() | BoundAtom():
+        case SignalAtom() | BoundAtom() | Amount():
             return False
         case Unary(op=UnaryOp.NOT, operand=operand):
             return is_pulse(operand, negated=not negated)

@@ -270,7 +270,7 @@ def _at_edge(payload: Payload, event: Event) -> Payload:
 
 def _signal(told: _Told, signal: Signal) -> SignalState:
     if not told.has_source:
-        return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN)
+        return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True)
     if not told.entries:
         return SignalState()
     said = (_update(entry.t, entry.value) for entry in told.entries)

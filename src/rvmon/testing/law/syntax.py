@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Arithmetic,
     Binary,
     BinaryOp,
@@ -23,7 +24,7 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
     """The formula and all below it, from the top."""
     yield formula
     match formula:
-        case Unary(operand=operand):
+        case Unary(operand=operand) | Amount(operand=operand):
             yield from subformulas(operand)
         case Binary(left=left, right=right):
             yield from subformulas(left)

@@ -11,6 +11,7 @@ from enum import Enum, auto
 from typing import Protocol, assert_never
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Bound,
@@ -30,6 +31,7 @@ from rvmon.testing.law.numbers import compare
 from rvmon.testing.law.past import (
     Operand,
     always_true,
+    amount,
     held,
     historically,
     inverted,
@@ -187,6 +189,8 @@ class Truths:
                 return self._is_first(i)
             case Unary() | Binary():
                 return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
+            case Amount(operand=operand):
+                return amount(self._letters, lambda k: self.state(operand, k), i, formula)
             case _:
                 assert_never(formula)
 

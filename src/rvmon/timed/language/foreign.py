@@ -14,10 +14,13 @@ _STATEMENTS: Reason = (
 _GAMES: Reason = ("games and strategies are not supported", "ask for a run with E<>")
 _EXTREMES: Reason = ("extreme values are not computed", "ask whether A[] x <= bound holds")
 _STATISTICS: Reason = (
-    "statistical queries are not decided",
-    "--simulate counts the runs that E<>, A<>, A[] or E[] speak of",
+    "this form of a statistical query is not supported",
+    "write Pr[<=T](<> p), with >= or <= a number for a test, or E[<=T; n](max: e)",
 )
-_UNTIL: Reason = ("until takes square brackets", "write A[p U q], E[p U q], A[p W q] or E[p W q]")
+_UNTIL: Reason = (
+    "until takes brackets",
+    "write A[p U q], E[p U q], or (p U q) in a formula of LTL",
+)
 _HOOKS: Reason = ("updates around every step are not supported", "write them on the edges")
 _OUTSIDE: Reason = ("functions from outside are not supported", "write their body out")
 _DYNAMIC: Reason = (

@@ -117,6 +117,39 @@ class LeadsTo:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class Assuming:
+    """A query about the runs that a formula holds of."""
+
+    query: Expression
+    premise: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """`Pr[<=T; n](<> p)`, or with `[]`; compared with a `level` by `op` if it is a test."""
+
+    op: PathOp
+    body: Expression
+    within: Expression
+    runs: Expression | None
+    sign: BinaryOp | None
+    level: float
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """`E[<=T; n](max: e)`, or with `min`."""
+
+    largest: bool
+    value: Expression
+    within: Expression
+    runs: Expression | None
+    span: Span
+
+
 Expression = (
     Number
     | Name
@@ -129,6 +162,9 @@ Expression = (
     | Quantified
     | Path
     | LeadsTo
+    | Assuming
+    | Chance
+    | Mean
 )
 
 

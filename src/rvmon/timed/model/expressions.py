@@ -121,7 +121,7 @@ class PathFormula:
 
     Attributes:
         bound: in units of time; `None` if there is none.
-        left: what holds until the body does, for `E<>` and `A<>`; their negations keep it.
+        left: what holds until the body does, for `E<>`, `A<>` and `F`; their negations keep it.
     """
 
     op: PathOp

@@ -35,6 +35,10 @@ _NEGATED_PATH = {
     PathOp.POTENTIALLY_ALWAYS: PathOp.EVENTUALLY,
     PathOp.SOME_NEXT: PathOp.EVERY_NEXT,
     PathOp.EVERY_NEXT: PathOp.SOME_NEXT,
+    PathOp.FINALLY: PathOp.GLOBALLY,
+    PathOp.GLOBALLY: PathOp.FINALLY,
+    PathOp.EVERY_RUN: PathOp.SOME_RUN,
+    PathOp.SOME_RUN: PathOp.EVERY_RUN,
 }
 
 
@@ -61,6 +65,13 @@ def is_discrete(expression: Expression) -> bool:
     """Whether locations and variables alone give the expression a value."""
     of_runs = ClockCompare | Deadlock | PathFormula
     return not any(isinstance(part, of_runs) for part in parts_of(expression))
+
+
+def is_linear(expression: Expression) -> bool:
+    """Whether operators occur that speak of one run, not of all that begin in a state."""
+    linear = (PathOp.FINALLY, PathOp.GLOBALLY, PathOp.EVERY_RUN, PathOp.SOME_RUN)
+    parts = parts_of(expression)
+    return any(isinstance(part, PathFormula) and part.op in linear for part in parts)
 
 
 def normal_form(expression: Expression, positive: bool = True) -> Expression:

@@ -63,8 +63,18 @@ typedef struct {
 } frame;
 
 typedef struct {
-    uint32_t node, link;
+    uint32_t node, link, flags;
 } successor;
+
+/* A component that is not closed: the number of its first node, what is met in it, and by the edge
+ * into it. */
+typedef struct {
+    uint32_t number, flags, in;
+} root;
+
+typedef struct {
+    uint32_t node, parent, link, flags;
+} step;
 
 /* Where moves start and where the one at hand leads. */
 typedef struct {
@@ -131,6 +141,14 @@ typedef struct {
     uint32_t frame_count, frame_room;
     bool improper;
     uint32_t stem, resume, resume_end;
+    /* runs that an automaton accepts */
+    uint32_t *rank, rank_room, last_rank, *open, open_count, open_room;
+    root *roots;
+    uint32_t root_count, root_room;
+    step *trail;
+    uint32_t trail_count, trail_room;
+    bool clocked, rest_known;
+    uint8_t *allowed, *rest_allowed, *rest_good, *rest_on, *rest_back;
     /* nested formulas */
     arrow *arrows;
     uint32_t arrow_count, arrow_room, *into, into_room, *out_of, out_of_room;

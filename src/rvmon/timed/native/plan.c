@@ -7,6 +7,7 @@
 const uint8_t plan_widths[SECTIONS] = {
     4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, UPDATE_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
     LIMIT_SIZE, TREE_SIZE, ROW_SIZE,
+    WAY_SIZE, 1,
 };
 
 /* Operands of each op, and how it changes the depth of the stack where it goes on behind itself. */
@@ -293,6 +294,33 @@ static bool tree_fits(const checker *c)
     return true;
 }
 
+/* An automaton whose states are what is inside. */
+static bool ways_fit(const checker *c)
+{
+    const int32_t *row = plan_rows(c->plan, AT_WAYS);
+    const int32_t pieces = rows(c, AT_INSIDE);
+    int32_t i;
+    if (c->plan[HEAD_KIND] != SEEK_RUN) {
+        return true;
+    }
+    if ((rows(c, AT_WAYS) != pieces) || (c->plan[HEAD_SETS] < 0)
+        || (c->plan[HEAD_SETS] > MOST_SETS)) {
+        return false;
+    }
+    for (i = 0; i < pieces; i++, row += WAY_SIZE) {
+        if ((row[WAY_SETS] < 0) || ((row[WAY_SETS] >> c->plan[HEAD_SETS]) != 0)
+            || !within(row[WAY_ARC], row[WAY_ARCS], rows(c, AT_ARCS))) {
+            return false;
+        }
+    }
+    for (i = 0; i < rows(c, AT_ARCS); i++) {
+        if (!within(plan_rows(c->plan, AT_ARCS)[i], 1, pieces)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool head_fits(const int32_t *plan)
 {
     const int32_t kind = plan[HEAD_KIND];
@@ -323,7 +351,8 @@ static bool parts_fit(checker *c)
 {
     return programs_fit(c) && limits_fit(c, AT_LIMITS) && limits_fit(c, AT_EXTRA) && atoms_fit(c)
            && updates_fit(c) && alternatives_fit(c, AT_GOAL) && alternatives_fit(c, AT_INSIDE)
-           && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c);
+           && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c)
+           && ways_fit(c);
 }
 
 plan_state plan_check(const int32_t *plan, size_t count)

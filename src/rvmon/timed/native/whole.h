@@ -3,7 +3,7 @@
 #define RVMON_ZONES_WHOLE_H
 
 #include "nested.h"
-#include "stay.h"
+#include "linear.h"
 
 /* The bits that locations and variables take in a packed state. */
 static bool lay_out(engine *h)
@@ -131,6 +131,11 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     h->copy = block(h, d * d, sizeof *h->copy);
     h->between = block(h, d * d * (size_t)h->inside_count + d * d, sizeof *h->between);
     h->been = block(h, (size_t)h->inside_count, sizeof *h->been);
+    h->allowed = block(h, (size_t)h->inside_count, 1);
+    h->rest_allowed = block(h, (size_t)h->inside_count, 1);
+    h->rest_good = block(h, (size_t)h->inside_count, 1);
+    h->rest_on = block(h, (size_t)h->inside_count, 1);
+    h->rest_back = block(h, (size_t)h->inside_count, 1);
     h->step_edges = block(h, (size_t)h->automaton_count, sizeof *h->step_edges);
     h->failed_edges = block(h, (size_t)h->automaton_count, sizeof *h->failed_edges);
     h->tables = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->tables);
@@ -140,7 +145,7 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
 
 static void free_engine(engine *h)
 {
-    void *all[32];
+    void *all[40];
     size_t n = 0;
     size_t i;
     uint32_t s;
@@ -193,6 +198,15 @@ static void free_engine(engine *h)
     all[n++] = h->copy;
     all[n++] = h->between;
     all[n++] = h->been;
+    all[n++] = h->allowed;
+    all[n++] = h->rest_allowed;
+    all[n++] = h->rest_good;
+    all[n++] = h->rest_on;
+    all[n++] = h->rest_back;
+    all[n++] = h->rank;
+    all[n++] = h->open;
+    all[n++] = h->roots;
+    all[n++] = h->trail;
     all[n++] = h->step_edges;
     all[n++] = h->failed_edges;
     all[n++] = h->crossings.at;
@@ -276,6 +290,10 @@ static void run(engine *h)
         }
         return;
     }
+    if (h->kind == SEEK_RUN) {
+        look_for_run(h);
+        return;
+    }
     if (h->kind == SEEK_STAY) {
         stay_from(h, NONE, 0);
         return;
@@ -313,7 +331,8 @@ static void tell_end(engine *h)
 {
     const search_state ended = h->failed ? SEARCH_FAILED : h->state;
     const int32_t failed = h->step_edge_count;
-    const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER);
+    const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER)
+                            || (h->kind == SEEK_RUN);
     if (h->failed) {
         (void)memcpy(h->failed_edges, h->step_edges, (size_t)failed * sizeof *h->step_edges);
     }

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf, log, prod
-from typing import assert_never
 
 from rvmon.timed.model.expressions import (
     TRUE,
@@ -17,6 +16,7 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    InLocation,
     PathFormula,
     UnaryOperation,
 )
@@ -24,10 +24,11 @@ from rvmon.timed.model.guards import is_discrete
 from rvmon.timed.model.network import Assignment, Edge, Network, Reset
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
+from rvmon.timed.search.linear import Ways, WayState
+from rvmon.timed.search.nested import together
 from rvmon.timed.search.programs import Programs
-from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
+from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds, location_bounds
 from rvmon.timed.zones.zone_unions import (
-    formula_bounds,
     has_bounds,
     has_paths,
     speaks_of_deadlock,
@@ -54,6 +55,7 @@ class Seek(IntEnum):
     LATE_AFTER = 5
     NESTED = 6
     START = 7
+    RUN = 8
 
 
 class Choose(IntEnum):
@@ -81,6 +83,8 @@ class Sought:
         goal: normalised; where runs lead, or from where they are watched, or what holds where
             there is no deadlock.
         inside: normalised; where runs stay, or what holds where there is a deadlock.
+        ways: the automaton of a formula of LTL, that accepts the run.
+        progress: whether time has to pass on for ever on the run, beside what `ways` says.
         nested: normalised; where runs lead, or what holds at the start, if that speaks of runs.
         choose: among several runs.
         bound: units of time, if there is one.
@@ -90,6 +94,8 @@ class Sought:
     goal: Expression | None = None
     inside: Expression | None = None
     nested: Expression | None = None
+    ways: Ways | None = None
+    progress: bool = False
     choose: Choose = Choose.SHORTEST
     bound: int | None = None
 
@@ -98,6 +104,7 @@ class Sought:
         """Whether one more clock belongs to the query."""
         return (
             self.bound is not None
+            or self.progress
             or self.choose is Choose.FASTEST
             or (self.nested is not None and has_bounds(self.nested))
         )
@@ -105,7 +112,14 @@ class Sought:
     @property
     def is_levelled(self) -> bool:
         """Whether only states that can do the same stand for each other, not those that do more."""
-        return self.kind in (Seek.DEADLOCK, Seek.STAY, Seek.STAY_AFTER, Seek.NESTED, Seek.START)
+        return self.kind in (
+            Seek.DEADLOCK,
+            Seek.STAY,
+            Seek.STAY_AFTER,
+            Seek.NESTED,
+            Seek.START,
+            Seek.RUN,
+        )
 
 
 class Plan:
@@ -133,13 +147,21 @@ class Plan:
         due: tuple[ClockCompare, ...] = ()
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             due = (ClockCompare(timer, ClockOp.LE, Constant(sought.bound)),)
-        automata, locations, edges = self._automata()
+        self._sets = [
+            {u.clock for edge in a.edges for u in edge.updates if isinstance(u, Reset)}
+            for a in network.automata
+        ]
+        # What a query compares clocks with, by automaton and location, or with None everywhere.
+        self._asked: dict[int | None, dict[int, list[ClockCompare]]] = {}
         self.goal = alternatives_of(sought.goal, due)
         self.inside = alternatives_of(sought.inside, due)
+        states = () if sought.ways is None else sought.ways.states
+        self.inside += [one for state in states for one in alternatives_of(together(state.label))]
         goal = self._alternatives(self.goal)
         inside = self._alternatives(self.inside)
         if sought.nested is not None:
             self._grow(sought.nested)
+        automata, locations, edges = self._automata()
         self._refuse_too_large(len(self.inside))
         sections = [
             (4, [x for v in network.variables for x in (v.low, v.high, v.initial, v.is_bool)]),
@@ -156,10 +178,13 @@ class Plan:
             (3, self._extra(sought, timer + 1)),
             (4, self._tree),
             (3, self._pieces),
+            (4, _way_rows(states)),
+            (1, [arc for state in states for arc in state.arcs]),
         ]
-        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else 0
-        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer]
-        self.numbers = _packed([*head, sought.is_levelled, late or 0], sections)
+        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
+        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer, sought.is_levelled]
+        sets = 0 if sought.ways is None else sought.ways.sets
+        self.numbers = _packed([*head, int(late or 0), sets], sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
 
@@ -178,7 +203,7 @@ class Plan:
         edges: list[int] = []
         for index, automaton in enumerate(self._network.automata):
             automata += [len(locations) // 8, len(automaton.locations), automaton.initial]
-            bounds = location_bounds(self._network, automaton)
+            bounds = location_bounds(self._network, automaton, self._asked.get(index))
             for number, place in enumerate(automaton.locations):
                 first, limit = len(self.edges), len(self._limits) // 3
                 for k, edge in enumerate(automaton.edges):
@@ -231,6 +256,15 @@ class Plan:
         return first, len(self._atoms) // 4 - first
 
     def _alternatives(self, alternatives: Sequence[Alternative]) -> list[int]:
+        for one in alternatives:
+            places = list(_places_of(one.condition))
+            for compare in one.compares:
+                if compare.clock == len(self._network.clocks):
+                    continue  # the timer
+                # Best the place of an automaton that sets the clock: its edges forget the number.
+                chosen = [p for p in places if compare.clock in self._sets[p[0]]] or places
+                automaton, place = chosen[0] if chosen else (None, 0)
+                self._asked.setdefault(automaton, {}).setdefault(place, []).append(compare)
         return [
             number
             for one in alternatives
@@ -238,12 +272,9 @@ class Plan:
         ]
 
     def _extra(self, sought: Sought, timer: int) -> list[int]:
-        """What the query compares clocks with, in every location."""
-        bounds = no_bounds(len(self._network.clocks))
-        for formula in (sought.goal, sought.inside, sought.nested):
-            if formula is not None:
-                bounds = bounds.joined([formula_bounds(formula, self._network)])
-        rows = _limit_rows(bounds)
+        """What the query compares clocks with, wherever the automata are."""
+        everywhere = self._asked.get(None, {}).get(0, [])
+        rows = _limit_rows(compared_bounds(self._network, everywhere))
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             rows += [timer, 0, sought.bound]
         return rows
@@ -283,7 +314,7 @@ class Plan:
             case PathOp.EVERY_NEXT:
                 return self._row(_NOT, self._row(_NEXT, self._row(_NOT, body)))
             case _:
-                assert_never(op)
+                raise AssertionError(f"{op} speaks of one run")
 
     def _stay(self, body: int, left: int, bound: int) -> int:
         """A run on which the body holds for ever, or until both it and `left` end at once."""
@@ -307,6 +338,24 @@ def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) 
     for _, section in sections:
         numbers += section
     return array("i", numbers).tobytes()
+
+
+def _places_of(condition: Expression) -> Iterator[tuple[int, int]]:
+    """Automata and the locations in which they are wherever a condition holds."""
+    match condition:
+        case InLocation(automaton, location):
+            yield automaton, location
+        case BinaryOperation(BinaryOp.AND, left, right):
+            yield from _places_of(left)
+            yield from _places_of(right)
+
+
+def _way_rows(states: Iterable[WayState]) -> list[int]:
+    rows, arcs = list[int](), 0
+    for state in states:
+        rows += (state.starts, state.sets, arcs, len(state.arcs))
+        arcs += len(state.arcs)
+    return rows
 
 
 def _limit_rows(bounds: ClockBounds) -> list[int]:

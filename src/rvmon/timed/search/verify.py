@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.model.expressions import (
@@ -12,11 +12,12 @@ from rvmon.timed.model.expressions import (
     Expression,
     PathFormula,
 )
-from rvmon.timed.model.guards import normal_form, with_deadlock
-from rvmon.timed.model.network import LeadsToFormula, Network, Query
+from rvmon.timed.model.guards import is_linear, normal_form, with_deadlock
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
+from rvmon.timed.search.linear import check_linear, ways_of
 from rvmon.timed.search.lowered import Choose, Seek, Sought
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
@@ -98,7 +99,25 @@ class _Found:
     holds: bool | None = None
 
 
+_OUTERMOST = (
+    PathOp.POSSIBLY,
+    PathOp.INVARIANTLY,
+    PathOp.EVENTUALLY,
+    PathOp.POTENTIALLY_ALWAYS,
+)
+
+
 def _search(question: _Question, query: Query) -> _Found:
+    match query.formula:
+        case LeadsToFormula(left, right) if is_linear(left) or is_linear(right):
+            check_linear(PathFormula(PathOp.EVENTUALLY, left), query.span)
+        case LeadsToFormula():
+            pass
+        case Chance() | Mean():
+            fix = "simulate it: `rvmon verify` does, as does `sample`"
+            raise model_error("TA020", "statistics are no decision", query.span, fix)
+        case formula if is_linear(formula):
+            return _on_runs(question, query, formula)
     match query.formula:
         case LeadsToFormula(left, right, bound):
             if is_plain(left) and is_plain(right):
@@ -106,7 +125,14 @@ def _search(question: _Question, query: Query) -> _Found:
             answered = PathFormula(PathOp.EVENTUALLY, right, bound)
             implied = BinaryOperation(BinaryOp.IMPLY, left, answered)
             return _at_start(question, PathFormula(PathOp.INVARIANTLY, implied))
-        case PathFormula(op, body, bound, until) if until == TRUE:
+        case PathFormula(op, body, None, until) if (
+            until != TRUE and op in _OUTERMOST and is_plain(body) and is_plain(until)
+        ):
+            shows = op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS)
+            ends = op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
+            linear = PathFormula(PathOp.FINALLY if ends else PathOp.GLOBALLY, body, None, until)
+            return _Found(shows, _accepted(question, normal_form(linear, positive=shows)))
+        case PathFormula(op, body, bound, until) if until == TRUE and op in _OUTERMOST:
             if op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = normal_form(body), True
             else:
@@ -220,3 +246,26 @@ def _staying(
     if answer.run is None and not meter.stopped and answer.improper:
         answer = seek(network, sought, meter)
     return answer.run
+
+
+# Accepting.
+
+
+def _on_runs(question: _Question, query: Query, formula: Expression) -> _Found:
+    """Whether all runs satisfy a formula of LTL, or some run does."""
+    body, shows = formula, False
+    if isinstance(formula, PathFormula) and formula.op in (PathOp.EVERY_RUN, PathOp.SOME_RUN):
+        body, shows = formula.body, formula.op is PathOp.SOME_RUN
+    check_linear(body, query.span)
+    return _Found(shows, _accepted(question, normal_form(body, positive=shows)))
+
+
+def _accepted(question: _Question, formula: Expression) -> Run | None:
+    """A run that satisfies a normalised formula of LTL, if there is one on which time passes."""
+    network, meter = question.network, question.meter
+    sought = Sought(Seek.RUN, ways=ways_of(formula))
+    run = seek(network, sought, meter).run
+    if run is not None and run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
+        better = seek(network, replace(sought, progress=True), meter).run
+        return run if better is None else better
+    return run
