@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import os
 import random
@@ -101,15 +102,40 @@ def _tasks(rows: int, many: int, environment: Environment, folder: Path) -> Iter
     query = (str(environment.python), str(BY_DUCKDB), large)
     yield Task(what, "DuckDB", [query], _told, refusal=duckdb)
     yield Task(what, "rvmon run", [(*run, large)], _failures)
-    yield Task(what, "rvmon run", [(*run, large)], _failures)
+    plain = written(folder / "plain.csv", rows // 10, 0)
+    what = f"{rows // 10:,} rows"
+    yield Task(what, "rvmon run", [(*run, str(plain))], _failures)
+    for name, path in _odd(plain).items():
+        yield Task(what, f"rvmon run, {name}", [(*run, str(path))], _failures)
+    page = str(folder / "page")
+    yield Task(what, "rvmon run --report", [(*run, "--report", page, str(plain))], _failures)
     files = [str(written(folder / f"file{number:04}.csv", EACH, number)) for number in range(many)]
     what = f"{many:,} files of {EACH:,} rows"
     yield Task(what, "rvmon run", [(*run, *files)], _failures)
     yield Task(what, "rvmon run --jobs 2", [(*run, "--jobs", "2", *files)], _failures)
     tiny = str(written(folder / "tiny.csv", 10, 0))
     yield Task("10 rows", "rvmon run", [(*run, tiny)], _failures)
-    yield Task("10 rows", "rvmon run", [(*run, tiny)], _failures)
     yield Task("10 rows", "rvmon check", [(*rvmon, "check", str(spec))], None)
+
+
+def _odd(plain: Path) -> Mapping[str, Path]:
+    """The same recording as other programs write it, by what is odd about it."""
+    header, *rows = plain.read_text().splitlines()
+    texts = {
+        "quoted header": [",".join(f'"{name}"' for name in header.split(",")), *rows],
+        "a byte order mark": ["\ufeff" + header, *rows],
+        "quoted text in each row": [f"{header},note", *(f'{row},"a ""b"", c"' for row in rows)],
+        "a doubled row": [header, *rows[:9], *rows[8:]],
+        "ends of Windows": [line + "\r" for line in (header, *rows)],
+    }
+    found = {}
+    for number, (name, lines) in enumerate(texts.items()):
+        found[name] = plain.with_name(f"odd{number}.csv")
+        found[name].write_text("\n".join([*lines, ""]), newline="")
+    packed = plain.with_name("packed.csv.gz")
+    with gzip.open(packed, "wb", compresslevel=1) as file:
+        file.write(plain.read_bytes())
+    return {**found, "packed": packed}
 
 
 def written(path: Path, rows: int, seed: int) -> Path:

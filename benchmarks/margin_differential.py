@@ -85,6 +85,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--many", type=int, default=8, metavar="PERCENT")
     parser.add_argument("--crowded", type=int, default=0, metavar="PERCENT")
     parser.add_argument("--wide", type=int, default=0, metavar="PERCENT")
+    parser.add_argument("--amounts", type=int, default=12, metavar="N")
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
     parser.add_argument("--known", action="store_true", help="no unknown values in the traces")
     parser.add_argument("--show", type=int, default=3, help="disagreements printed at most")

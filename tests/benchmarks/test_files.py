@@ -17,7 +17,7 @@ def test_all_ways_find_the_same_failures(tmp_path: Path) -> None:
     lines = list(measure_files(30_000, 2, 1, absent, tmp_path))
     assert lines[-1] == "Not measured: DuckDB, 30,000 rows: not on this index."
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines[2:-2]]
-    assert len(cells) == 7
-    assert [ratio.endswith("×") for *_, ratio, _ in cells].count(True) == 3
+    assert len(cells) == 13
+    assert [ratio.endswith("×") for *_, ratio, _ in cells].count(True) == 8
     assert not any("others" in failures for *_, failures in cells)
     assert any(failures not in ("0", "–") for *_, failures in cells)

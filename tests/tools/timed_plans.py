@@ -10,7 +10,8 @@ from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
 from rvmon.timed.search.linear import ways_of
-from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
+from rvmon.timed.search.lowered import Plan
+from rvmon.timed.search.sought import Choose, Seek, Sought
 from tests.tools.timed_generate import random_model
 
 _LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"

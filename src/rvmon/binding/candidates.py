@@ -103,12 +103,17 @@ def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
     type_words = words_of(topic.type.rpartition("/")[2]) if is_listed(topic.type) else []
     around = tuple(dict.fromkeys([*words_of(topic.name), *frames, *type_words]))
     with_names = arrays_with_names(topic)
+    # In flight z points down: what is along it is no height, and no climbing.
+    is_down = topic.type.startswith("px4_msgs/") or "ned" in around
     for leaf, kind in topic.leaves.items():
         meaning = meaning_of(leaf, topic)
         if leaf.startswith("header.") or meaning.sort is Sort.ODD or "covariance" in leaf:
             continue
         for value, own, axis in _places(leaf, meaning, named, with_names):
-            words = (*own, *_along(meaning, axis))
+            if axis == "z" and is_down:
+                words: tuple[str, ...] = tuple(word for word in own if word not in ALONG)
+            else:
+                words = (*own, *_along(meaning, axis))
             yield Candidate(topic, value, kind, words, around, meaning, axis)
         if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
             turned = Meaning(Sort.MEASURED, (parse_unit("rad"),))

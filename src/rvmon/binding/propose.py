@@ -16,7 +16,7 @@ from rvmon.readers.messages.look import Looked, names_in
 from rvmon.readers.messages.meaning import Sort
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.schema import Kind
-from rvmon.units import base_unit, parse_unit
+from rvmon.units import base_unit, parse_unit, unit_table
 
 _MOST = 4
 """Places that are shown for a name."""
@@ -118,7 +118,7 @@ def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
         dimension = parse_unit(type_.unit).dimension
         units = [unit for unit in one.meaning.units if unit.dimension == dimension]
         own = units[0].symbol if units else one.unit.symbol if one.unit is not None else ""
-        symbol = own or base_unit(dict(dimension)).symbol or "1"
+        symbol = own or _plain_unit(dimension) or "1"
         remark = ""
         if not told:
             remark = (
@@ -133,6 +133,20 @@ def _signal_lines(type_: Type, one: Candidate, ranges: Ranges) -> Iterator[str]:
         there = f": it holds {', '.join(map(str, values))}" if values else ""
         listed = ", ".join(f"0 = {_text(label)}" for label in type_.labels[:1])
         yield f"# labels = {{ {listed} }}  # which number stands for which{there}"
+
+
+def _plain_unit(dimension: tuple[tuple[str, int], ...]) -> str:
+    """The unit without a factor: one that has a name of its own, or the product of base units.
+
+    >>> _plain_unit(parse_unit("mV").dimension), _plain_unit(parse_unit("km/h").dimension)
+    ('V', 'm/s')
+    """
+    named = [
+        name
+        for name, unit in unit_table().items()
+        if unit.dimension == dimension and unit.factor == 1 and name != "J"  # or is it a torque?
+    ]
+    return min(named, key=len, default=base_unit(dict(dimension)).symbol)
 
 
 def _event_lines(fields: Mapping[str, Type], one: Candidate) -> Iterator[str]:

@@ -177,6 +177,8 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
     if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
         better += 0.2  # a text says which label it is, a number does not
     worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
+    if wanted.type is not None and wanted.type.unit and candidate.topic.units:
+        worse += 0.2 * (not candidate.dimensions)  # of the others the recording says the unit
     return total / len(asked) + better - worse
 
 

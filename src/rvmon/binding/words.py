@@ -12,8 +12,10 @@ Dimension = tuple[tuple[str, int], ...]
 _SAME = {
     "speed": "velocity vel velocities groundspd spd",
     "acceleration": "acc accel accelerometer accelerations",
-    "command": "cmd commanded commands setpoint desired target goal reference ref teleop",
+    "command": "cmd commanded commands setpoint desired des target goal reference ref teleop",
     "distance": "dist range ranges",
+    "current": "curr",
+    "vibration": "vibe",
     "temperature": "temp temperatures thermistor",
     "voltage": "volt volts",
     "latitude": "lat",

@@ -113,9 +113,13 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return f"it is {'' if positive else 'not '}{what}"
         case Unary(op=UnaryOp.NOT, operand=operand):
             return in_words(operand, positive=not positive)
-        case Unary(op=UnaryOp.ONCE, operand=ProbeAtom(probe=Probe.UPDATED, name=name)) if (
-            length := _age(formula.interval)
-        ):
+        case Unary(
+            op=UnaryOp.ONCE,
+            operand=Binary(
+                left=ProbeAtom(probe=Probe.UPDATED, name=name),
+                right=BoundAtom(bound=Bound.START),
+            ),
+        ) if length := _age(formula.interval):
             verb = "was updated in the last" if positive else "has not been updated for"
             return f"{name} {verb} {length}"
         case Binary(op=BinaryOp.AND | BinaryOp.OR as op):

@@ -36,11 +36,10 @@ def endings_of(path: str) -> tuple[str, str]:
     >>> endings_of("runs/Monday.CSV.gz"), endings_of("https://host/a.mcap?version=3")
     (('.csv', '.gz'), ('.mcap', ''))
     """
-    name = Path(_path_in(path) if is_address(path) else path)
-    packed = name.suffix.lower()
-    if packed not in PACKED:
-        return packed, ""
-    return Path(name.stem).suffix.lower(), packed
+    stem, packed = os.path.splitext(_path_in(path) if is_address(path) else path)
+    if packed.lower() not in PACKED:
+        return packed.lower(), ""
+    return os.path.splitext(stem)[1].lower(), packed.lower()
 
 
 def name_of(path: str) -> str:

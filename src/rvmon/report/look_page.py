@@ -63,7 +63,7 @@ def _row(column: Column, profile: Profile) -> dict[str, object]:
     return {
         "name": column.name,
         "told": ", ".join(one for one in (kind, rate, gap and f"gap {gap}") if one),
-        "values": values,
+        "range": values,
         "drawing": None if is_constant(column) else _drawing(column, profile),
     }
 

@@ -33,17 +33,21 @@ def message_shapes(source: MessageFile) -> Shapes:
     declared: dict[str, Shape] = {}
     texts: dict[str, tuple[str, str]] = {}
     left_out: dict[str, str] = {}
+    faults = {topic.name: _fault(topic, source) for topic in source.topics.values()}
     for topic in source.topics.values():
         name = dotted(topic.name)
         leaves = {leaf: kind for leaf, kind in topic.leaves.items() if leaf[:7] != "header."}
-        if topic.fault:
-            left_out[name] = topic.fault
-        elif not leaves:
+        if faults[topic.name]:
+            left_out[name] = faults[topic.name]
+            continue
+        if not leaves:
             declared[name] = Shape(None, source=topic.name)
         plain = [leaf for leaf in leaves if "[" not in leaf]
         for leaf, kind in leaves.items():
             full = name if len(plain) == 1 and plain[0] == leaf else f"{name}.{leaf}"
             why = _reason(leaf, topic)
+            if leaf.startswith("stamp."):
+                continue
             if why:
                 left_out[full] = why
             elif kind is Kind.LABEL:
@@ -57,7 +61,23 @@ def message_shapes(source: MessageFile) -> Shapes:
     found = shapes_seen(seen)
     for full, shape in found.declared.items():
         declared[full] = replace(shape, source=texts[full][0])
-    return Shapes(declared, {**left_out, **found.left_out})
+    for topic in source.topics.values():  # of texts, and the like, each message is an event
+        sources = {shape.source for shape in declared.values()}
+        if not faults[topic.name] and topic.name not in sources:
+            declared[dotted(topic.name)] = Shape(None, source=topic.name)
+    left_out.update(found.left_out)
+    return Shapes(declared, {one: why for one, why in left_out.items() if one not in declared})
+
+
+def _fault(topic: Topic, source: MessageFile) -> str:
+    """Why the first message of a topic cannot be read; empty if it can."""
+    if topic.fault:
+        return topic.fault
+    try:
+        next(source.read({topic.name}), None)
+    except TraceError as error:
+        return str(error)
+    return ""
 
 
 def _reason(leaf: str, topic: Topic) -> str:

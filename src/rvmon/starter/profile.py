@@ -89,6 +89,7 @@ def followed(recording: FileRecording, shapes: Shapes) -> Profile:
         samples += 1
         for name, one in followed.items():
             one.take(sample.t, sample.values.get(name, _NOTHING), first=samples == 1)
+    end = max(end, recording.end or end)
     columns = [one.column(name, start, end) for name, one in followed.items()]
     silent = {one.name: "no value in the recording" for one in columns if not one.updates}
     kept = tuple(one for one in columns if one.updates)

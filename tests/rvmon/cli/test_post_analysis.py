@@ -158,3 +158,11 @@ def test_a_trigger_of_instances_hides_no_miss(tmp_path):
     path.write_text('{"t": 0, "p": false, "q": false}\n{"t": 1, "p": true}\n{"t": 2, "p": false}\n')
     report = judge(rvmon.loads(text), str(path), Options()).report
     assert report.misses == {"R2": "`q` was never true while `p` was (first at 1 s)"}
+
+
+def test_nothing_is_looked_up_for_nobody(tmp_path):
+    """Where only verdicts are counted a recording is not read once more."""
+    (tmp_path / "a.csv").write_text("t,p\n0,0\n1,0\n")
+    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  upon p then within 1 s not p\n")
+    assert judge(spec, str(tmp_path / "a.csv"), Options()).report.misses
+    assert not judge(spec, str(tmp_path / "a.csv"), Options(explains=False)).report.misses

@@ -32,6 +32,7 @@ from tests.tools.build import (
 from tests.tools.differential import disagreements
 
 import rvmon
+from rvmon import loads
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.formula import Captured
 from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
@@ -161,3 +162,27 @@ def test_what_is_read_twice_is_born_when_both_can_be_told():
     )
     report = spec.evaluate({"t_ns": [0], "v": [1.0]})
     assert report.verdicts == {"R1": "I", "R2": "P"}
+
+
+@pytest.mark.parametrize(("first", "expected"), [(0.5, "P"), (1.0, "P"), (1.1, "F")])
+def test_an_age_counts_from_the_beginning_before_the_first_update(first, expected):
+    """Nothing was due before; a sensor that begins too late has been silent."""
+    spec = loads("spec s\nsignal x, y : real\nrequirement R\n  always age(x) <= 1 s\n")
+    report = spec.evaluate([(0, {"y": 1.0}), (first, {"x": 1.0})])
+    assert report.verdicts["R"] == expected
+
+
+@pytest.mark.parametrize(
+    ("trigger", "expected"),
+    [
+        ("p and lost", "I"),
+        ("p and not lost", "I"),
+        ("not p and lost", "NT"),
+        ("lost since[1 s, inf) p", "I"),
+    ],
+)
+def test_a_trigger_that_reads_what_has_no_source_may_have_been_true(trigger, expected):
+    """It is neither false nor passed over, as what comes later would be."""
+    text = f"spec s\nsignal p, lost : bool\nrequirement R\n  upon {trigger}\n  then not p\n"
+    report = loads(text).evaluate({"t": [0, 1], "p": [True, True]}, allow_missing=["lost"])
+    assert report.verdicts["R"] == expected

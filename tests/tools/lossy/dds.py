@@ -182,7 +182,7 @@ def main() -> None:
         topic, *words = json.loads(line)
         match words:
             case []:
-                print(bool(writers[topic][0].get_matched_subscriptions()), flush=True)
+                print(_has_reader(writers[topic][0]), flush=True)
             case [name]:
                 kind = dds._idl_type(name, ())
                 writer = DataWriter(participant, DdsTopic(participant, f"rt{topic}", kind))
@@ -192,6 +192,13 @@ def main() -> None:
                 field = next(iter(kind.__annotations__))
                 is_empty = field != "data"
                 writer.write(kind(**{field: 0 if is_empty else value}))
+
+
+def _has_reader(writer: Any) -> bool:
+    try:
+        return bool(writer.get_matched_subscriptions())
+    except IndexError:  # one came while they were counted
+        return True
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from rvmon.diagnostics.span import Span
-from rvmon.spec.check.values import Age, AmountOf, Chosen, Extreme, Quantity, Value
+from rvmon.spec.check.values import Beside, Chosen, Quantity, Value
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
@@ -50,7 +50,7 @@ def decided(value: Value, span: Span) -> Formula:
     if isinstance(value, Chosen):
         chosen, otherwise = decided(value.chosen, span), decided(value.otherwise, span)
         return either(value.condition, chosen, otherwise, span)
-    if isinstance(value, Quantity | Age | AmountOf | Extreme):
+    if isinstance(value, Quantity | Beside):
         raise AssertionError("it was made of formulas")
     return value
 

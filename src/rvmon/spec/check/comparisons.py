@@ -5,15 +5,18 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil, floor
 
+from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.choices import decided, spread
 from rvmon.spec.check.operands import Operands
 from rvmon.spec.check.quantities import Placed, compare
-from rvmon.spec.check.values import Age, AmountOf, Extreme, Quantity, Scope, Value
+from rvmon.spec.check.values import Age, AmountOf, Beside, Extreme, Now, Quantity, Scope, Value
 from rvmon.spec.checked.formula import (
     Amount,
     Binary,
     BinaryOp,
+    Bound,
+    BoundAtom,
     Compare,
     CompareOp,
     Constant,
@@ -101,6 +104,10 @@ def _compared(node: Comparison, left: Value, right: Value) -> Formula:
         return _amount(left, node.op, _comparable(right, node.right.span), node.span)
     if isinstance(right, AmountOf):
         return _amount(right, node.op.mirrored, _comparable(left, node.left.span), node.span)
+    if isinstance(left, Now):
+        return _now(node.op, _comparable(right, node.right.span), node.span)
+    if isinstance(right, Now):
+        return _now(node.op.mirrored, _comparable(left, node.left.span), node.span)
     if isinstance(left, Extreme):
         return _extreme(left, node.op, _comparable(right, node.right.span), node.span)
     if isinstance(right, Extreme):
@@ -183,13 +190,22 @@ def _extreme(extreme: Extreme, op: CompareOp, limit: Placed, span: Span) -> Form
     return same if op is CompareOp.EQ else Unary(UnaryOp.NOT, same, None, span)
 
 
+def alone(value: Beside, span: Span) -> Diagnostic:
+    """What is wrong with what stands alone and may not."""
+    match value:
+        case Age():
+            return rules.age_alone(span)
+        case Now():
+            return rules.now_alone(span)
+        case AmountOf():
+            return rules.amount_alone(span)
+        case Extreme():
+            return rules.extreme_alone(span)
+
+
 def _comparable(value: Value, span: Span) -> Placed:
-    if isinstance(value, AmountOf):
-        raise Refusal(rules.amount_alone(span))
-    if isinstance(value, Extreme):
-        raise Refusal(rules.extreme_alone(span))
-    if isinstance(value, Age):
-        raise Refusal(rules.age_alone(span))
+    if isinstance(value, Beside):
+        raise Refusal(alone(value, span))
     if not isinstance(value, Quantity) or value.truth:
         raise Refusal(rules.compared_truth(span))
     return value, span
@@ -206,8 +222,21 @@ def _quantities(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compa
     return Compare(op, first.node, second.node, span)
 
 
+def _now(op: CompareOp, limit: Placed, span: Span) -> Formula:
+    """`now >= D` is: there was an instant D ago, or earlier."""
+    if op in _EQUALITY or limit[0].constant is None:
+        raise Refusal(rules.now_alone(span))
+    ticks = ticks_of(*limit) + (op in (CompareOp.GT, CompareOp.LE))
+    begun = Unary(UnaryOp.ONCE, Constant(True, span), Interval(ticks), span)
+    late = op in (CompareOp.GT, CompareOp.GE)
+    return begun if late else Unary(UnaryOp.NOT, begun, None, span)
+
+
 def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:
-    """`age(x) > D` is: no update within the last D. In whole ticks, `>= D` is `> D - 1 tick`."""
+    """`age(x) > D` is: neither an update within the last D, nor the beginning of the trace.
+
+    In whole ticks, `>= D` is `> D - 1 tick`.
+    """
     if op in _EQUALITY:
         raise Refusal(rules.age_alone(span))
     ticks = ticks_of(*limit)
@@ -216,5 +245,6 @@ def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:
     if window < 0:
         return Constant(older, span)
     updated = ProbeAtom(Probe.UPDATED, age.name, span)
-    recent = Unary(UnaryOp.ONCE, updated, Interval(0, window), span)
+    begun = Binary(BinaryOp.OR, updated, BoundAtom(Bound.START, span), None, span)
+    recent = Unary(UnaryOp.ONCE, begun, Interval(0, window), span)
     return Unary(UnaryOp.NOT, recent, None, span) if older else recent

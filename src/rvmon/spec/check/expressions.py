@@ -8,7 +8,7 @@ from typing import assert_never
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.choices import either, spread
-from rvmon.spec.check.comparisons import closed_interval, compared, ticks_of
+from rvmon.spec.check.comparisons import alone, closed_interval, compared, ticks_of
 from rvmon.spec.check.functions import applied
 from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.table import Table, close_name, close_unit
@@ -19,6 +19,7 @@ from rvmon.spec.check.values import (
     Chosen,
     Closure,
     Extreme,
+    Now,
     Quantity,
     Scope,
     Value,
@@ -71,6 +72,9 @@ from rvmon.spec.syntax.items import ConstItem, DefineItem
 from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
+NOW = "now"
+"""What is said of the time since the first instant; a name that is declared goes before."""
+
 
 def formula_of(value: Value, span: Span) -> Formula:
     """The value as a formula.
@@ -85,12 +89,8 @@ def formula_of(value: Value, span: Span) -> Formula:
             return Compare(CompareOp.EQ, node, Literal(True), span)
         case Quantity(labels=labels):
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
-        case Age():
-            raise Refusal(rules.age_alone(span))
-        case AmountOf():
-            raise Refusal(rules.amount_alone(span))
-        case Extreme():
-            raise Refusal(rules.extreme_alone(span))
+        case Age() | Now() | AmountOf() | Extreme():
+            raise Refusal(alone(value, span))
         case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
             return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
         case _:
@@ -108,12 +108,8 @@ def number_of(value: Value, span: Span) -> Quantity:
             return value
         case Quantity(truth=False):
             raise Refusal(rules.label_use(span))
-        case Age():
-            raise Refusal(rules.age_alone(span))
-        case AmountOf():
-            raise Refusal(rules.amount_alone(span))
-        case Extreme():
-            raise Refusal(rules.extreme_alone(span))
+        case Age() | Now() | AmountOf() | Extreme():
+            raise Refusal(alone(value, span))
         case Chosen():
             raise Refusal(rules.choice_alone(span))
         case _:
@@ -267,7 +263,12 @@ class Checker:
     def known(self, name: str, scope: Scope) -> bool:
         """Whether the name stands for anything but a label."""
         table = self.table
-        return name in scope.names or name in table.declared or table.field(name) is not None
+        return (
+            name == NOW
+            or name in scope.names
+            or name in table.declared
+            or table.field(name) is not None
+        )
 
     def _name(self, name: Name, scope: Scope) -> Value:
         local = scope.names.get(name.text)
@@ -292,6 +293,8 @@ class Checker:
             return self._typed(value, field.type.kind, field.type.labels, name)
         if name.text in table.declared or name.text in table.doubtful:
             raise Reported  # its declaration is wrong, and that is recorded
+        if name.text == NOW:
+            return Now()
         close = close_name(table, name.text, tuple(scope.names))
         raise Refusal(name_rules.unknown(name.span, name.text, close))
 

@@ -52,6 +52,11 @@ class Chosen:
 
 
 @dataclass(frozen=True, slots=True)
+class Now:
+    """`now`: the time since the first instant; only compared with durations."""
+
+
+@dataclass(frozen=True, slots=True)
 class AmountOf:
     """`count(φ, D)`, `duration(φ, D)`, `share(φ, D)`; only compared with constants.
 
@@ -85,7 +90,10 @@ class Extreme:
     window: int
 
 
-Value = Formula | Quantity | Age | AmountOf | Extreme | Chosen
+Beside = Age | Now | AmountOf | Extreme
+"""What only stands beside something else in a comparison."""
+
+Value = Formula | Quantity | Beside | Chosen
 
 
 @dataclass(frozen=True, slots=True)

@@ -76,6 +76,11 @@ def age_alone(span: Span) -> Diagnostic:
     )
 
 
+now_alone = Breach(
+    WRONG_TYPE,
+    "`{}` is not what `now` is for: it is compared with a constant duration, by < <= > >=",
+    "the time since an event is its age: `age(e) > 3 s`; a time ahead is `within D`",
+)
 amount_alone = Breach(
     WRONG_TYPE,
     "`{}` can only be compared with a constant",

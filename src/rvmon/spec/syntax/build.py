@@ -169,8 +169,8 @@ class Builder(ExpressionBuilder):
     def written(self, meta: Meta, children: Children) -> tuple[WrittenMonitor, Children]:
         return WrittenMonitor(self.span(meta)), []
 
-    def shown(self, meta: Meta, children: Children) -> CoverMonitor:
-        return CoverMonitor(self.span(meta))
+    def shown(self, meta: Meta, children: Children) -> tuple[CoverMonitor, Children]:
+        return CoverMonitor(self.span(meta)), []
 
     def text_clause(self, meta: Meta, children: Children) -> TextClause:
         return TextClause(str(children[0]), _string(children[1]), self.span(meta))

@@ -9,10 +9,10 @@ from math import prod
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
-from rvmon.timed.language.assumed import assuming
 from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.declare import Findings, Parts, declare, refuse_double
 from rvmon.timed.language.instantiate import processes_of
+from rvmon.timed.language.linear import assuming
 from rvmon.timed.language.parse import parse_query
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.syntax import SignalText

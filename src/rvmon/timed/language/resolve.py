@@ -11,6 +11,7 @@ from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
 from rvmon.timed.language.foreign import type_reason
+from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
 from rvmon.timed.language.symbols import clock_of, element_of, value_of
 from rvmon.timed.model.evaluate import apply_binary, apply_unary
 from rvmon.timed.model.expressions import (
@@ -27,8 +28,8 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete, is_linear
-from rvmon.timed.model.operators import BaseType, BinaryOp, PathOp, UnaryOp
+from rvmon.timed.model.guards import is_discrete
+from rvmon.timed.model.operators import BaseType, BinaryOp, UnaryOp
 from rvmon.timed.model.rules import model_error, refusal
 from rvmon.timed.model.scope import (
     AutomatonKey,
@@ -53,13 +54,6 @@ INT16 = (-32768, 32767)
 INT32 = (-(1 << 31), (1 << 31) - 1)
 """What a constant without a range may be."""
 
-_LINEAR = "AEGFX"
-_OF_CTL = {
-    ("A", PathOp.FINALLY): PathOp.EVENTUALLY,
-    ("A", PathOp.GLOBALLY): PathOp.INVARIANTLY,
-    ("E", PathOp.FINALLY): PathOp.POSSIBLY,
-    ("E", PathOp.GLOBALLY): PathOp.POTENTIALLY_ALWAYS,
-}
 _CONNECTIVES = {BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLY, BinaryOp.EQ, BinaryOp.NE}
 _COMPARISONS = {BinaryOp.LT, BinaryOp.LE, BinaryOp.EQ, BinaryOp.NE, BinaryOp.GE, BinaryOp.GT}
 _MIRRORED = {
@@ -97,8 +91,8 @@ class Resolver:
                 return Constant(value)
             case syntax.Name("deadlock", _) if self.automata and not scope.find("deadlock"):
                 return Deadlock()
-            case syntax.Call(name, (body,), span) if name in _LINEAR and self.automata:
-                return _linear(name, self.expression(body, scope), span)
+            case syntax.Call(name, (body,), span) if name in LINEAR_WORDS and self.automata:
+                return linear_of(name, self.expression(body, scope), span)
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
                 if (location := self._location(written, scope)) is not None:
                     return location
@@ -130,15 +124,14 @@ class Resolver:
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
                 until = TRUE if left is None else self.expression(left, scope)
-                holds = self.expression(body, scope)
-                return PathFormula(op, holds, self.limit(bound, scope), until)
+                return PathFormula(
+                    op, self.expression(body, scope), self.limit(bound, scope), until
+                )
             case syntax.LeadsTo(_, _, _, span):
                 fix = "write A[] (p imply A<> q)"
                 raise model_error("TA020", "`-->` can only stand outermost", span, fix)
-            case syntax.Chance() | syntax.Mean():
-                raise model_error("TA020", "statistics can only stand outermost", written.span)
-            case syntax.Assuming(_, _, span):
-                raise model_error("TA020", "`assuming` can only stand outermost", span)
+            case syntax.Assuming() | syntax.Chance() | syntax.Mean():
+                raise model_error("TA020", "this can only stand outermost", written.span)
             case _:
                 assert_never(written)
 
@@ -339,27 +332,6 @@ def compare_clock(clock: int, op: BinaryOp, bound: Expression, span: Span) -> Ex
             )
         case _:
             return ClockCompare(clock, ClockOp(op.value), bound)
-
-
-def _linear(name: str, body: Expression, span: Span) -> Expression:
-    """What `G (…)`, `F (…)`, `A (…)`, `E (…)` say; in CTL, if the last two can be said there."""
-    match name, body:
-        case "G", _:
-            return PathFormula(PathOp.GLOBALLY, body)
-        case "F", _:
-            return PathFormula(PathOp.FINALLY, body)
-        case "X", _:
-            fix = "EX p, AX p speak of the next action"
-            raise model_error("TA020", "time is dense: runs have no next instant", span, fix)
-        case _, PathFormula(op, inner, None, left) if (name, op) in _OF_CTL and not any(
-            map(is_linear, (inner, left))
-        ):
-            return PathFormula(_OF_CTL[name, op], inner, None, left)
-        case _ if is_linear(body):
-            return PathFormula(PathOp(name), body)
-        case _:
-            fix = f"as in {name} (G F p), {name} (p U q)"
-            raise model_error("TA020", f"`{name}` speaks of runs", span, fix)
 
 
 def _unary(op: UnaryOp, operand: Expression, span: Span) -> Expression:

@@ -4,49 +4,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-from lark import Token, Transformer, Tree, v_args
+from lark import Token, Tree, v_args
 from lark.tree import Meta
 
-from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
+from rvmon.timed.language.query_builder import QueryBuilder
 from rvmon.timed.language.syntax import TypeText
-from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, PathOp, UnaryOp
+from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 
 LARGEST = (1 << 31) - 1
 """The largest number that a model may contain, as in UPPAAL."""
 
-_CTL = {
-    "EF": PathOp.POSSIBLY,
-    "AG": PathOp.INVARIANTLY,
-    "AF": PathOp.EVENTUALLY,
-    "EG": PathOp.POTENTIALLY_ALWAYS,
-    "EX": PathOp.SOME_NEXT,
-    "AX": PathOp.EVERY_NEXT,
-    "G": PathOp.GLOBALLY,
-    "[]": PathOp.GLOBALLY,
-    "F": PathOp.FINALLY,
-    "<>": PathOp.FINALLY,
-}
-
 
 @v_args(meta=True)
-class SyntaxBuilder(Transformer[Token, Any]):
+class SyntaxBuilder(QueryBuilder):
     """One method per rule of the grammar; `place` maps offsets of the text to spans."""
-
-    def __init__(self, place: Callable[[int, int], Span]) -> None:
-        super().__init__()
-        self._place = place
-
-    def _span(self, meta: Meta) -> Span:
-        return self._place(0, 0) if meta.empty else self._place(meta.start_pos, meta.end_pos)
-
-    def _token_span(self, token: Token) -> Span:
-        return self._place(token.start_pos or 0, token.end_pos or 0)
 
     def _name(self, token: Token) -> syntax.Name:
         return syntax.Name(str(token), self._token_span(token))
@@ -325,78 +302,6 @@ class SyntaxBuilder(Transformer[Token, Any]):
 
     def call(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
         return syntax.Call(str(items[0]), items[1], self._span(meta))
-
-    # Queries.
-
-    def path(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        word, *bound, body = items
-        return syntax.Path(PathOp(word), body, bound[0] if bound else None, self._span(meta))
-
-    def path_prefix(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        word, *bound, body = items
-        return syntax.Path(_CTL[word], body, bound[0] if bound else None, self._span(meta))
-
-    def until(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        quantifier, left, word, *bound, right = items
-        span = self._span(meta)
-        ops = {"A": PathOp.EVENTUALLY, "E": PathOp.POSSIBLY}
-        if not isinstance(quantifier, syntax.Name) or quantifier.name not in ops:
-            raise model_error("TA001", "`U` without A or E", span, "write A[p U q] or E[p U q]")
-        weak = PathOp.INVARIANTLY if quantifier.name == "A" else PathOp.POTENTIALLY_ALWAYS
-        limit = bound[0] if bound else None
-        return _until((ops[quantifier.name], weak), left, word, right, span, limit)
-
-    def linear_until(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        left, word, right = items
-        return _until((PathOp.FINALLY, PathOp.GLOBALLY), left, word, right, self._span(meta))
-
-    def call_until(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
-        name, *parts = items
-        return syntax.Call(str(name), (self.linear_until(meta, parts),), self._span(meta))
-
-    def within(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, Any]:
-        return items[0], items[1] if len(items) > 1 else None
-
-    def chance(self, meta: Meta, items: Sequence[Any]) -> syntax.Chance:
-        name, (within, runs), word, body, *test = items
-        span = self._span(meta)
-        sign, level = (BinaryOp(test[0]), float(test[1])) if test else (None, 0.0)
-        if not isinstance(name, syntax.Name) or name.name != "Pr":
-            raise model_error("TA001", "a bound in runs", span, "write Pr[<=T](<> p)")
-        if test and (sign not in (BinaryOp.GE, BinaryOp.LE) or not 0 < level < 1):
-            fix = "a probability is >= or <= a number above 0 and below 1"
-            raise model_error("TA020", "this is no test", span, fix)
-        return syntax.Chance(_CTL[word], body, within, runs, sign, level, span)
-
-    def mean(self, meta: Meta, items: Sequence[Any]) -> syntax.Mean:
-        name, (within, runs), which, value = items
-        span = self._span(meta)
-        if not isinstance(name, syntax.Name) or name.name != "E" or which not in ("max", "min"):
-            fix = "write E[<=T; n](max: e) or (min: e)"
-            raise model_error("TA001", "this is no expected value", span, fix)
-        return syntax.Mean(which == "max", value, within, runs, span)
-
-    def assuming(self, meta: Meta, items: Sequence[Any]) -> syntax.Assuming:
-        return syntax.Assuming(items[0], items[1], self._span(meta))
-
-    def leads_to(self, meta: Meta, items: Sequence[Any]) -> syntax.LeadsTo:
-        left, *bound, right = items
-        return syntax.LeadsTo(left, right, bound[0] if bound else None, self._span(meta))
-
-
-def _until(
-    ops: tuple[PathOp, PathOp],
-    left: syntax.Expression,
-    word: str,
-    right: syntax.Expression,
-    span: Span,
-    bound: syntax.Expression | None = None,
-) -> syntax.Path:
-    """`left U right`, or `left W right`: never both of them false before the right one holds."""
-    if word == "U":
-        return syntax.Path(ops[0], right, bound, span, left)
-    stays = syntax.Binary(BinaryOp.OR, left, right, span)
-    return syntax.Path(ops[1], stays, bound, span, syntax.Unary(UnaryOp.NOT, right, span))
 
 
 def _is(item: object, rule: str) -> bool:

@@ -145,8 +145,16 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
 
 static void free_engine(engine *h)
 {
-    void *all[40];
-    size_t n = 0;
+    void *all[] = {
+        h->fields, h->bits, h->heads, h->table, h->delays, h->packed, h->nodes, h->chunks,
+        h->queue, h->heap, h->triggers, h->colours, h->exact, h->successors, h->frames, h->arrows,
+        h->into, h->out_of, h->pool, h->whose, h->tables, h->table_rooms, h->lower, h->upper,
+        h->lowers, h->uppers, h->test_entries, h->test_least, h->tightest, h->tightest_bound,
+        h->top, h->spare, h->inside, h->copy, h->between, h->been, h->allowed, h->rest_allowed,
+        h->rest_good, h->rest_on, h->rest_back, h->rank, h->open, h->roots, h->trail,
+        h->step_edges, h->failed_edges, h->crossings.at, h->last_crossings.at, h->alive.zones,
+        h->dead.zones, h->rest.zones, h->parts.zones, h->guards.zones, h->pending.zones,
+    };
     size_t i;
     uint32_t s;
     int32_t k;
@@ -162,62 +170,7 @@ static void free_engine(engine *h)
     }
     free_walk(&h->out);
     free_walk(&h->look);
-    free(h->fields);
-    free(h->bits);
-    free(h->heads);
-    free(h->table);
-    free(h->delays);
-    free(h->packed);
-    free(h->nodes);
-    free(h->chunks);
-    free(h->queue);
-    free(h->heap);
-    free(h->triggers);
-    free(h->colours);
-    free(h->exact);
-    free(h->successors);
-    free(h->frames);
-    free(h->arrows);
-    free(h->into);
-    free(h->out_of);
-    free(h->pool);
-    free(h->whose);
-    free(h->tables);
-    free(h->table_rooms);
-    all[n++] = h->lower;
-    all[n++] = h->upper;
-    all[n++] = h->lowers;
-    all[n++] = h->uppers;
-    all[n++] = h->test_entries;
-    all[n++] = h->test_least;
-    all[n++] = h->tightest;
-    all[n++] = h->tightest_bound;
-    all[n++] = h->top;
-    all[n++] = h->spare;
-    all[n++] = h->inside;
-    all[n++] = h->copy;
-    all[n++] = h->between;
-    all[n++] = h->been;
-    all[n++] = h->allowed;
-    all[n++] = h->rest_allowed;
-    all[n++] = h->rest_good;
-    all[n++] = h->rest_on;
-    all[n++] = h->rest_back;
-    all[n++] = h->rank;
-    all[n++] = h->open;
-    all[n++] = h->roots;
-    all[n++] = h->trail;
-    all[n++] = h->step_edges;
-    all[n++] = h->failed_edges;
-    all[n++] = h->crossings.at;
-    all[n++] = h->last_crossings.at;
-    all[n++] = h->alive.zones;
-    all[n++] = h->dead.zones;
-    all[n++] = h->rest.zones;
-    all[n++] = h->parts.zones;
-    all[n++] = h->guards.zones;
-    all[n++] = h->pending.zones;
-    for (i = 0; i < n; i++) {
+    for (i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
 }

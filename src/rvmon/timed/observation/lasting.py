@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from itertools import pairwise
 
 from rvmon.formula.core import And, Core, Next, Or, Release, Until
 from rvmon.timed.observation.observer import Observed, ObservedLink, ObservedSite, Phase
@@ -86,12 +87,31 @@ class Lasting:
                 for part, tick in self._split(site, zone):
                     to = self._meet(site, part, node, link, pending)
                     self._arcs[place].append((to, link, tick))
-        component = self._components()
+        return self._loop()
+
+    def _loop(self) -> tuple[_Node, int] | None:
+        """A loop on which time passes: one with a move that notes it, in one component."""
+        import networkx as nx
+
+        graph = nx.DiGraph()
         for place, arcs in enumerate(self._arcs):
-            for to, link, tick in arcs:
-                if tick and component[place] == component[to]:
-                    return self._round(place, to, link, component)
+            graph.add_edges_from((place, to, {"link": link}) for to, link, _ in arcs)
+        for members in nx.strongly_connected_components(graph):
+            for place in sorted(members):
+                for to, link, tick in self._arcs[place]:
+                    if tick and to in members:
+                        way = nx.shortest_path(graph, to, place)
+                        links = [link, *(graph.edges[pair]["link"] for pair in pairwise(way))]
+                        return self._round(place, way, links)
         return None
+
+    def _round(self, place: int, way: list[int], links: list[ObservedLink]) -> tuple[_Node, int]:
+        """The run to a node and on by some links to others, the last of which is the node again."""
+        node = self._nodes[place]
+        loop = len(node.path()) - 1
+        for to, link in zip(way, links, strict=True):
+            node = Node(self._nodes[to].site, self._nodes[to].zone, node, link)
+        return node, loop
 
     def _split(self, site: ObservedSite, zone: Zone) -> Iterator[tuple[Zone, bool]]:
         """A zone just behind a move, apart: where a unit of time has passed, and where not."""
@@ -123,56 +143,3 @@ class Lasting:
             self._arcs.append([])
             pending.append(place)
         return place
-
-    def _round(
-        self, place: int, to: int, link: ObservedLink, component: list[int]
-    ) -> tuple[_Node, int]:
-        """The run to a node and round its component, beginning with an arc."""
-        came: dict[int, tuple[int, ObservedLink]] = {}
-        pending = deque([to])
-        while pending and place != to and place not in came:
-            here = pending.popleft()
-            for after, step, _ in self._arcs[here]:
-                if component[after] == component[to] and after not in came and after != to:
-                    came[after] = here, step
-                    pending.append(after)
-        steps, here = [], place
-        while here != to:
-            here, step = came[here]
-            steps.append(step)
-        node = self._nodes[place]
-        loop = len(node.path()) - 1
-        here, node = to, Node(self._nodes[to].site, self._nodes[to].zone, node, link)
-        for step in reversed(steps):
-            here = next(after for after, own, _ in self._arcs[here] if own is step)
-            node = Node(self._nodes[here].site, self._nodes[here].zone, node, step)
-        return node, loop
-
-    def _components(self) -> list[int]:
-        """The number of each node's strongly connected component (Tarjan, without recursion)."""
-        size = len(self._arcs)
-        number, low, component = [0] * size, [0] * size, [-1] * size
-        open_nodes: list[int] = []
-        count = 0
-        for root in range(size):
-            frames = [] if number[root] else [(root, iter(self._arcs[root]))]
-            while frames:
-                place, arcs = frames[-1]
-                if not number[place]:
-                    count += 1
-                    number[place] = low[place] = count
-                    open_nodes.append(place)
-                for to, _, _ in arcs:
-                    if not number[to]:
-                        frames.append((to, iter(self._arcs[to])))
-                        break
-                    if component[to] < 0:
-                        low[place] = min(low[place], number[to])
-                else:
-                    frames.pop()
-                    if frames:
-                        low[frames[-1][0]] = min(low[frames[-1][0]], low[place])
-                    if low[place] == number[place]:
-                        while component[place] < 0:
-                            component[open_nodes.pop()] = place
-        return component

@@ -15,9 +15,10 @@ from rvmon.timed.runs.paths import PathStep, crossing_step, mark_step, move_step
 from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.runs.timing import timing_of
 from rvmon.timed.search.loops import time_passes
-from rvmon.timed.search.lowered import Alternative, Plan, Seek, Sought
+from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.nested import together
+from rvmon.timed.search.sought import Alternative, Seek, Sought
 from rvmon.timed.search.witness import make_run
 from rvmon.timed.zones.compile import atoms_of
 from rvmon.timed.zones.dbm import STRICT, Zone

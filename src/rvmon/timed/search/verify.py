@@ -18,12 +18,12 @@ from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.search.linear import check_linear, ways_of
-from rvmon.timed.search.lowered import Choose, Seek, Sought
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
 from rvmon.timed.search.nested import alternatives, lasting_part, together
 from rvmon.timed.search.outcome import Outcome, Policy
 from rvmon.timed.search.problem import UNLIMITED, Budget, Watch
+from rvmon.timed.search.sought import Choose, Seek, Sought
 from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.zone_unions import has_paths, is_plain
 

@@ -223,3 +223,20 @@ def test_first_specifications_are_made_of_it_and_pass(tmp_path, monkeypatch, nam
     monkeypatch.chdir(tmp_path)
     assert main(["init", str(path), "-o", "mine.rv"]) == 0
     assert main(["run", "mine.rv", str(path)]) == 0
+
+
+def test_what_points_down_is_no_height_and_no_climbing(tmp_path, capsys):
+    """In flight z is downwards: a climb rate of its velocity would have the wrong sign."""
+    mavlink = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
+    link = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+    with (tmp_path / "a.tlog").open("wb") as file:
+        for n in range(20):
+            packet = link.local_position_ned_encode(n, 0, 0, -n, 0, 0, -1.0).pack(link)
+            file.write((1_000_000 + n * 1_000).to_bytes(8, "big") + packet)
+    text = "spec s\nsignal climb_rate : real [m/s]\nsignal speed_z : real [m/s]\n"
+    text += "requirement R\n always climb_rate < 2 m/s and speed_z < 2 m/s\n"
+    (tmp_path / "a.rv").write_text(text)
+    assert main(["bind", str(tmp_path / "a.rv"), str(tmp_path / "a.tlog")]) == 1
+    told = capsys.readouterr()
+    assert 'value = "vz"' in told.out.partition("[bind.speed_z]")[2]
+    assert "`climb_rate` is left open" in told.err

@@ -35,6 +35,8 @@ def owed(text):
         ("max(x, 5 s) >= v", "once[0, 5 s] x >= v"),
         ("2 < min(x, 5 s)", "historically[0, 5 s] x > 2"),
         ("min(x, 5 s) != 2", "not ((once[0, 5 s] x <= 2) and historically[0, 5 s] x >= 2)"),
+        ("now > 5 s -> a", "(once[5000000001 ns, inf) true) -> a"),
+        ("5 s > now", "not once[5 s, inf) true"),
         ("max(d, 5 s) <= 6 s", "max(d, 5 s) <= 6 s"),
     ],
 )
@@ -55,6 +57,9 @@ def test_all_comparisons_are_made_of_a_few(text, printed):
         ("duration(a, 5 s) > 2", "`2` is no duration"),
         ("max(x, 5 s) <= x", "with a constant, or with a captured value"),
         ("max(x, 5 s) - 1 <= 2", "with a constant, or with a captured value"),
+        ("now >= d", "it is compared with a constant duration"),
+        ("now", "it is compared with a constant duration"),
+        ("now == 3 s", "it is compared with a constant duration"),
         ("mean(x, 5 s) <= 2", "`share(x > 2, 10 s) <= 10 %`"),
         ("variance(x, 5 s) <= 2", "bound the spread"),
         ("sum(x, 5 s) <= 2", "publish the sum as a signal"),

@@ -58,18 +58,18 @@ def test_intervals_in_ticks(checked, text, interval):
 @pytest.mark.parametrize(
     ("text", "printed"),
     [
-        ("age(d) > 200 ms", "not once[0, 200 ms] updated(d)"),
-        ("age(d) >= 200 ms", "not once[0, 199999999 ns] updated(d)"),
-        ("age(d) <= 200 ms", "once[0, 200 ms] updated(d)"),
-        ("age(d) < 200 ms", "once[0, 199999999 ns] updated(d)"),
-        ("200 ms < age(d)", "not once[0, 200 ms] updated(d)"),
+        ("age(d) > 200 ms", "not once[0, 200 ms] (updated(d) or start)"),
+        ("age(d) >= 200 ms", "not once[0, 199999999 ns] (updated(d) or start)"),
+        ("age(d) <= 200 ms", "once[0, 200 ms] (updated(d) or start)"),
+        ("age(d) < 200 ms", "once[0, 199999999 ns] (updated(d) or start)"),
+        ("200 ms < age(d)", "not once[0, 200 ms] (updated(d) or start)"),
         ("age(d) >= 0", "true"),
         ("age(d) < 0", "false"),
-        ("age(e) > 1 s", "not once[0, 1 s] updated(e)"),
+        ("age(e) > 1 s", "not once[0, 1 s] (updated(e) or start)"),
     ],
 )
 def test_age(owed, text, printed):
-    """An age is: no update within the last D."""
+    """An age is: neither an update within the last D, nor the beginning of the trace."""
     assert owed(text) == printed
 
 

@@ -1,0 +1,168 @@
+"""What a sample costs, by requirement: kinds that people write, published ones, nested windows.
+
+    python -m benchmarks.sample_cost [--rows 4000] [--time sampled] [--unknown 1] [WORD …]
+
+Kinds are demanded at every instant and upon an event that comes in 5 % of the samples, over values
+that are drawn anew and cross at every row, a second apart, of which `--unknown` per cent are NaN;
+then one for each of 1,000 keys that are all waiting. Published requirements stand in
+`benchmarks/published`, each with its source; numbers are drawn near those that they compare with.
+Windows within windows have 10 to 1,000 samples in the longer one. Processor time of `step`, all
+in, the least of three passes. With words, only lines that have one of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import random
+import re
+import statistics
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from rvmon import load, loads
+from rvmon.session import Spec
+from rvmon.trace.sample import Value
+from rvmon.trace.schema import Kind
+
+SECOND = 10**9
+PASSES = 3
+PUBLISHED = Path(__file__).with_name("published")
+_COMPARED = re.compile(r"[<>=]=? (\d+(?:\.\d+)?)(?! m?s)")
+
+Rows = Sequence[dict[str, Value]]
+
+KINDS = {
+    "respond": "x > 5 -> within 100 s x < 5",
+    "respond, then hold": "x > 8 -> within 50 s for 30 s x < 6",
+    "hold from now": "x > 9.9 -> for 20 s y < 9.9",
+    "hold after a while": "x > 9.9 -> G[5 s, 20 s] y < 9.9",
+    "delayed window": "x > 8 -> F[2 s, 5 s] y > 5",
+    "soon": "within 10 s x > 5",
+    "recur": "for 100 s within 10 s x > 5",
+    "stabilise": "within 30 s for 20 s y <= 9.9",
+    "until": "(y < 9.9) U[0 s, 20 s] x > 9",
+    "either": "(x < 4) or for 10 s y < 9",
+    "chain": "x > 9 -> within 10 s (y > 5 and within 10 s x < 5)",
+    "not before": "(y < 8) W x > 5",
+    "past": "x > 9 -> once[0 s, 50 s] y > 9",
+}
+
+NESTED = {
+    "F G": "upon x > 8 then F[0 s, {long} s] G[0 s, {short} s] x < 6",
+    "G F": "upon start then G[0 s, {long} s] F[0 s, {short} s] x > 5",
+    "stop": "upon e then F[0 s, {short} s] G[0 s, {long} s] x <= 9.9",
+    "recurrence": "always (x > 8 -> F[0 s, {long} s] G[0 s, {short} s] x < 6)",
+    "delayed": "whenever x > 8 then F[{short} s, {long} s] y > 5",
+    "either": "upon x > 8 then F[0 s, {long} s] (x < 4 | G[0 s, {short} s] y < 6)",
+    "until": "upon x > 8 then (F[0 s, {short} s] x < 6) U[0 s, {long} s] G[0 s, {short} s] y < 6",
+}
+"""Over windows of two lengths, the shorter a fifth of the longer."""
+
+WINDOWS = (10, 100, 1000)
+
+KEYED = """event ask(id : int)
+event done(id : int)
+requirement R
+  upon ask then within 5000 s done.id == i
+  for each i in ask.id
+"""
+
+
+def rows_of(count: int, unknown: float) -> Rows:
+    """Samples in which all values change, and now and then an event occurs."""
+    rng = random.Random("kinds")
+    rows: list[dict[str, Value]] = []
+    for _ in range(count):
+        row: dict[str, Value] = {
+            name: math.nan if rng.random() * 100 < unknown else rng.uniform(0, 10) for name in "xy"
+        }
+        if rng.random() < 0.05:
+            row["e"] = True
+        rows.append(row)
+    return rows
+
+
+def keyed_rows(count: int, keys: int = 1000) -> Rows:
+    """So many are asked; then one after the other is answered, and asked again at once."""
+    rng = random.Random("keys")
+    rows: list[dict[str, Value]] = [{"ask": {"id": key}} for key in range(keys)]
+    for _ in range(count):
+        payload = {"id": rng.randrange(keys)}
+        rows += [{"done": payload}, {"ask": payload}]
+    return rows
+
+
+def published_rows(spec: Spec, text: str, count: int) -> Rows:
+    """Samples whose numbers lie on both sides of those that a text compares with."""
+    rng = random.Random("published")
+    near = [float(number) for number in _COMPARED.findall(text)] or [1.0]
+    rows: list[dict[str, Value]] = []
+    for _ in range(count):
+        row: dict[str, Value] = {}
+        for name, signal in spec.checked.signals.items():
+            if signal.type.kind is not Kind.BOOL:
+                row[name] = rng.choice(near) + rng.choice((-1, 0, 1)) * rng.random()
+            elif not rows or rng.random() < 1 / 3:
+                row[name] = rng.random() < 0.5
+        rows.append(row)
+    return rows
+
+
+def measured(spec: Spec, rows: Rows, only: Sequence[str] | None = None) -> float:
+    """Nanoseconds per sample."""
+    best = float("inf")
+    for _ in range(PASSES):
+        step = spec.monitor(only=only).step_ns
+        began = time.process_time_ns()
+        for place, row in enumerate(rows):
+            step(place * SECOND, row)
+        spent = time.process_time_ns() - began
+        best = min(best, spent / len(rows))
+        if spent > SECOND:
+            break
+    return best
+
+
+def lines(count: int, model: str, unknown: float) -> Iterator[tuple[str, Spec, Rows, str | None]]:
+    """Name, specification and samples of each line, and the requirement that is meant."""
+    rows = rows_of(count, unknown)
+    head = f"time {model}\nsignal x, y : real\nevent e\nrequirement R\n  "
+    for name, formula in KINDS.items():
+        for when, text in (("always", f"always ({formula})"), ("upon", f"upon e then ({formula})")):
+            yield f"{name}, {when}", loads(f"{head}{text}\n"), rows, None
+    yield "each of 1,000 keys", loads(f"time {model}\n{KEYED}"), keyed_rows(count), None
+    for name, form in NESTED.items():
+        for window in WINDOWS:
+            text = form.format(long=window, short=window // 5)
+            yield f"nested: {name}, {window} samples", loads(f"{head}{text}\n"), rows, None
+    for file in sorted(PUBLISHED.glob("*.rv")):
+        spec = load(file)
+        own = published_rows(spec, file.read_text(), count // 2)
+        for name in spec.requirements:
+            yield f"published: {file.stem} {name}", spec, own, name
+
+
+def main(argv: Sequence[str]) -> int:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="What a sample costs, by requirement.")
+    parser.add_argument("--rows", type=int, default=4000)
+    parser.add_argument("--time", choices=("held", "sampled"), default="held")
+    parser.add_argument("--unknown", type=float, default=0, help="per cent of the values")
+    parser.add_argument("words", nargs="*")
+    options = parser.parse_args(argv)
+    print("| requirement | ns a sample |\n|---|---|")
+    figures: list[float] = []
+    for name, spec, rows, only in lines(options.rows, options.time, options.unknown):
+        if not options.words or any(word in name for word in options.words):
+            figures.append(measured(spec, rows, None if only is None else [only]))
+            print(f"| {name} | {figures[-1]:,.0f} |", flush=True)
+    print(f"{len(figures)} lines, median {statistics.median(figures):,.0f} ns", end="")
+    print(f", most {max(figures):,.0f} ns")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,204 @@
+/* Runs that end and are accepted: idle for ever, or stuck, while what holds then changes no more. */
+#ifndef RVMON_ZONES_REST_H
+#define RVMON_ZONES_REST_H
+
+#include "stay.h"
+
+#define MOVES ((uint32_t)1 << 29)
+#define TICKS ((uint32_t)1 << 30)
+#define CLOSED UINT32_MAX
+
+static const int32_t *way_of(const engine *h, int k)
+{
+    return plan_rows(h->plan, AT_WAYS) + (ptrdiff_t)WAY_SIZE * k;
+}
+
+static int32_t arc_at(const engine *h, int32_t a)
+{
+    return plan_rows(h->plan, AT_ARCS)[a];
+}
+
+/* What makes a component count. */
+static uint32_t wanted_flags(const engine *h)
+{
+    return (((uint32_t)1 << h->plan[HEAD_SETS]) - 1) | MOVES | ((h->timer != 0) ? TICKS : 0);
+}
+
+/* From which pieces the automaton accepts while only those that are allowed hold, for ever: `rest`. */
+static void find_rest(engine *h)
+{
+    const int32_t n = h->inside_count;
+    const uint32_t sets = wanted_flags(h) & ~(MOVES | TICKS);
+    int32_t r;
+    (void)memset(h->rest_good, 0, (size_t)n);
+    for (r = 0; r < n; r++) {
+        uint32_t met = 0;
+        int side;
+        int32_t k;
+        /* reached from r, and reaching r: both in rounds until nothing is new */
+        for (side = 0; side < 2; side++) {
+            uint8_t *found = side ? h->rest_back : h->rest_on;
+            bool changed = true;
+            (void)memset(found, 0, (size_t)n);
+            while (changed && (h->allowed[r] != 0)) {
+                changed = false;
+                labour(h);
+                for (k = 0; k < n; k++) {
+                    const int32_t *way = way_of(h, k);
+                    int32_t a;
+                    for (a = 0; (h->allowed[k] != 0) && (a < way[WAY_ARCS]); a++) {
+                        const int32_t m = arc_at(h, way[WAY_ARC] + a);
+                        const int32_t from = side ? m : k;
+                        const int32_t to = side ? k : m;
+                        if ((h->allowed[m] != 0) && (found[to] == 0)
+                            && ((from == r) || (found[from] != 0))) {
+                            found[to] = 1;
+                            changed = true;
+                        }
+                    }
+                }
+            }
+        }
+        for (k = 0; k < n; k++) {
+            if ((h->rest_on[k] != 0) && (h->rest_back[k] != 0)) {
+                met |= (uint32_t)way_of(h, k)[WAY_SETS];
+            }
+        }
+        if ((h->rest_on[r] != 0) && ((met & sets) == sets)) {
+            h->rest_good[r] = 1;
+            for (k = 0; k < n; k++) {
+                h->rest_good[k] |= h->rest_back[k];
+            }
+        }
+    }
+}
+
+/* Whether the automaton accepts from a piece on while only the pieces that are allowed hold. */
+static bool rests(engine *h, int k)
+{
+    const size_t n = (size_t)h->inside_count;
+    if (!h->rest_known || (memcmp(h->allowed, h->rest_allowed, n) != 0)) {
+        find_rest(h);
+        (void)memcpy(h->rest_allowed, h->allowed, n);
+        h->rest_known = true;
+    }
+    return (h->allowed[k] != 0) && (h->rest_good[k] != 0);
+}
+
+/* The valuations from which an atom, or for an upper bound its opposite, holds when time stops. */
+static bool reaches_atom(engine *h, bound *to, const int32_t *atom, bool delays, bool *upper)
+{
+    walk *w = &h->out;
+    int x;
+    int y;
+    bound b;
+    if (!atom_at(h, atom, w->places, w->values, &x, &y, &b)) {
+        return false;
+    }
+    *upper = x == 0;
+    universe(to, h->dim);
+    if (!cut_invariant(h, to, w->places, w->values)
+        || !(*upper ? constrain(to, h->dim, y, 0, negated(b)) : constrain(to, h->dim, x, y, b))) {
+        return false;
+    }
+    if (delays) {
+        before(to, h->dim);
+    }
+    return true;
+}
+
+/* Whether a piece holds when time stops, for a zone that no atom divides. */
+static bool holds_last(engine *h, const bound *z, int k, bool delays)
+{
+    const int32_t *piece = piece_at(h, k);
+    int32_t i;
+    for (i = 0; i < piece[ROW_ATOMS]; i++) {
+        bool upper = false;
+        bool met = reaches_atom(h, h->copy, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + i),
+                                delays, &upper)
+                   && cut_zone(h, h->copy, z);
+        if (h->failed || (met == upper)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether a run is accepted that gets stuck in piece k: then with `parts`. Time ends in each part of
+ * the zone in one and the same way. */
+static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
+{
+    walk *w = &h->out;
+    bound *reach = h->inside;
+    federation parts = {0, 0, NULL};
+    uint32_t i;
+    int32_t a;
+    int m;
+    bool found = false;
+    if (!find_dead(h, z, w->places, w->values)) {
+        return false;
+    }
+    for (m = 0; m < h->inside_count; m++) {
+        const int32_t *piece = piece_at(h, m);
+        for (a = 0; (h->allowed[m] != 0) && (a < piece[ROW_ATOMS]) && runs(h); a++) {
+            bool upper;
+            if (!reaches_atom(h, reach, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + a),
+                              delays, &upper)) {
+                continue;
+            }
+            parts.count = 0;
+            for (i = 0; i < h->dead.count; i++) {
+                copy_zone(h, h->copy, nth(h, &h->dead, i));
+                if (cut_zone(h, h->copy, reach)) {
+                    (void)push_zone(h, &parts, h->copy);
+                }
+            }
+            (void)subtract(h, &h->dead, reach);
+            for (i = 0; i < parts.count; i++) {
+                (void)push_zone(h, &h->dead, nth(h, &parts, i));
+            }
+        }
+    }
+    (void)memcpy(h->been, h->allowed, (size_t)h->inside_count);
+    for (i = 0; (i < h->dead.count) && !found && runs(h) && !h->failed; i++) {
+        for (m = 0; m < h->inside_count; m++) {
+            h->allowed[m] = (h->been[m] != 0) && holds_last(h, nth(h, &h->dead, i), m, delays);
+        }
+        if (rests(h, k)) {
+            h->parts.count = 0;
+            found = push_zone(h, &h->parts, nth(h, &h->dead, i));
+        }
+    }
+    (void)memset(h->been, 0, (size_t)h->inside_count);
+    give_back(h, &parts);
+    return found;
+}
+
+/* Whether an accepted run can end at a node: it idles for ever, or is stuck. */
+static bool ends_here(engine *h, uint32_t n)
+{
+    const bound *z = zone_of(h, n);
+    const bool delays = h->delays[h->nodes[n].state] != 0;
+    const int k = piece_of(h, n);
+    walk *w = &h->out;
+    bool open;
+    int m;
+    unpack(h, h->nodes[n].state, w->places, w->values);
+    open = delays && (invariant_of(h, w->places, w->values) == 0);
+    for (m = 0; m < h->inside_count; m++) {
+        const int32_t *piece = piece_at(h, m);
+        int32_t i;
+        h->allowed[m] = holds(h, piece[ROW_CONDITION], w->places, w->values);
+        for (i = 0; open && (i < piece[ROW_ATOMS]); i++) {
+            h->allowed[m] &= h->atoms[ATOM_SIZE * (piece[ROW_ATOM] + i) + ATOM_OP] > 1;
+        }
+    }
+    if (h->failed || !rests(h, k)) {
+        return false;
+    }
+    h->ending = open ? END_IDLE : END_STUCK;
+    h->parts.count = 0;
+    return open || ((h->timer == 0) && look_for_stuck(h, z, k, delays));
+}
+
+#endif
