@@ -91,10 +91,9 @@ def spec_and_options(
 
 def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
     """Whether all that is shown of reports is how many verdicts there are."""
-    files = ("out", "report", "junit", "mcap", "evidence")
-    is_kept = any(getattr(arguments, name, None) for name in files)
-    is_quiet = getattr(arguments, "quiet", False)  # which `rvmon evidence` never is
-    return bool(is_quiet and arguments.format == "text" and not is_kept)
+    asked = vars(arguments)  # evidence that is evaluated again has none of these
+    is_kept = any(asked.get(name) for name in ("out", "report", "junit", "mcap", "evidence"))
+    return bool(asked.get("quiet") and asked.get("format") == "text" and not is_kept)
 
 
 class RecordingCoverage:
