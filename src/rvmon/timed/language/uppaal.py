@@ -4,8 +4,8 @@ Read: declarations, templates with parameters, locations (invariant, urgent, com
 (select, guard, synchronisation, assignment), instances, the system line, queries. Rates of
 locations without invariant (`exponentialrate`), colours, coordinates and test code do not change
 which runs there are: they are passed over. Refused, with place and reason: branch points,
-functions, stop-watches, and what `ta.lark` has no rule for. A query that cannot be read is a
-warning, and left out.
+stop-watches, and what `ta.lark` has no rule for. A query that cannot be read, or that names what is
+not there, is a warning, and left out.
 
 A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
 comments as `export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and
@@ -18,14 +18,14 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from rvmon.diagnostics import Diagnostic, Severity, Source
+from rvmon.diagnostics import Diagnostic, Source
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
 from rvmon.timed.language.declare import Findings
 from rvmon.timed.language.parse import parse_part
 from rvmon.timed.language.xml_tree import Element, read_xml
 from rvmon.timed.model.operators import LocationKind
-from rvmon.timed.model.rules import finding, model_error
+from rvmon.timed.model.rules import finding, left_out, model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _UNIT = re.compile(r"^[ \t]*//[ \t]*unit[ \t]+([1-9]\d{0,9})[ \t]+(\w+)[ \t]*$", re.MULTILINE)
@@ -132,7 +132,7 @@ def _location(element: Element, findings: Findings) -> syntax.LocationText:
     labels = _labels(element)
     name = element.first("name")
     span = element.span() if name is None else name.place(0, len(name.text))
-    invariant = _part(labels.get("invariant"), "expression", findings, None)
+    invariant = _part(labels.get("invariant"), "conditions", findings, None)
     return syntax.LocationText(_location_name(element), kind, invariant, span)
 
 
@@ -165,7 +165,7 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
         _reference(element.first("target"), names) or nowhere,
         element.span(),
         _part(labels.get("select"), "selections", findings, ()),
-        _part(labels.get("guard"), "expression", findings, None),
+        _part(labels.get("guard"), "conditions", findings, None),
         _part(labels.get("synchronisation"), "sync", findings, None),
         _part(labels.get("assignment"), "updates", findings, ()),
         float(weight[1]) if weight else 1.0,
@@ -175,7 +175,7 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
 
 def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.QueryText]:
     queries = root.first("queries")
-    for number, element in enumerate([] if queries is None else queries.all("query"), start=1):
+    for element in [] if queries is None else queries.all("query"):
         formula = element.first("formula")
         if formula is None or not formula.text.strip():
             continue
@@ -185,11 +185,7 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
         try:
             read = parse_part(formula.text, "query", formula.place)
         except ModelError as error:
-            why = "; ".join(diagnostic.message for diagnostic in error.diagnostics)
-            span = error.diagnostics[0].spans[0].span if error.diagnostics[0].spans else None
-            message = f"query {number} is left out: {why}"
-            fix = error.diagnostics[0].help or "E<>, A[], A<>, E[] and --> are understood"
-            warnings.append(finding("TA020", message, span, fix, severity=Severity.WARNING))
+            warnings.append(left_out(formula.text, error.diagnostics[0]))
             continue
         length = len(formula.text.rstrip())
         text = formula.text.strip()

@@ -15,8 +15,11 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    Invoke,
+    Lookup,
     PathFormula,
     UnaryOperation,
+    VariableValue,
 )
 from rvmon.timed.model.network import Guard
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
@@ -51,6 +54,10 @@ def parts_of(expression: Expression) -> Iterator[Expression]:
                 waiting += (otherwise, then, condition)
             case PathFormula(_, body, _):
                 waiting.append(body)
+            case VariableValue(slot) | Lookup(_, slot):
+                waiting += slot.indices
+            case Invoke(_, arguments):
+                waiting += arguments
             case _:
                 pass
 
@@ -59,6 +66,19 @@ def is_discrete(expression: Expression) -> bool:
     """Whether locations and variables alone give the expression a value."""
     of_runs = ClockCompare | Deadlock | PathFormula
     return not any(isinstance(part, of_runs) for part in parts_of(expression))
+
+
+def refuse_changes(expression: Expression, span: Span) -> None:
+    """Refuse a condition or number that changes variables when it is asked for.
+
+    Raises:
+        ModelError: it calls a function that does.
+    """
+    for part in parts_of(expression):
+        if isinstance(part, Invoke) and part.function.changes:
+            message = f"`{part.function.name}` changes variables or clocks"
+            fix = "call it in an update; conditions are only looked at"
+            raise model_error("TA009", message, span, fix)
 
 
 def normal_form(expression: Expression, positive: bool = True) -> Expression:

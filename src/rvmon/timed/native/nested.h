@@ -79,7 +79,7 @@ static federation *reaching(engine *h, int32_t row);
 
 /* Add the valuations of a state that satisfy its invariant and a row of the tree. */
 static void satisfy(engine *h, int32_t row, uint32_t s, const int32_t *places,
-                    const int32_t *values, federation *out)
+                    int32_t *values, federation *out)
 {
     const int32_t *r = plan_rows(h->plan, AT_TREE) + (ptrdiff_t)3 * row;
     federation *reach;
@@ -248,7 +248,7 @@ static federation *reaching(engine *h, int32_t row)
     return found;
 }
 
-static bool in_nested(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t *values)
 {
     federation sought = {0, 0, NULL};
     uint32_t *at;

@@ -5,7 +5,7 @@
 #include "programs.h"
 
 /* The bits of a discrete state; `mark` distinguishes what else a search distinguishes. */
-static void pack(const engine *h, const int32_t *places, const int32_t *values, uint32_t mark,
+static void pack(const engine *h, const int32_t *places, int32_t *values, uint32_t mark,
                  uint32_t *to)
 {
     const int n = h->automaton_count + h->variable_count;

@@ -18,7 +18,7 @@ from rvmon.timed.model.expressions import (
     PathFormula,
 )
 from rvmon.timed.model.guards import is_discrete, normal_form
-from rvmon.timed.model.network import Assignment, Edge, Network, Reset
+from rvmon.timed.model.network import Edge, Network
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.search.programs import Programs
@@ -109,9 +109,8 @@ class Plan:
 
     def __init__(self, network: Network, sought: Sought) -> None:
         self._network = network
-        self._programs = Programs()
+        self._programs = Programs(len(network.variables) + len(network.locals))
         self._atoms: list[int] = []
-        self._updates: list[int] = []
         self._limits: list[int] = []
         self._tree: list[int] = []
         self._pieces: list[int] = []
@@ -128,13 +127,13 @@ class Plan:
         if sought.nested is not None:
             self._grow(sought.nested)
         self._refuse_too_large(len(self.inside))
+        variables = (*network.variables, *network.locals)
         sections = [
-            (4, [x for v in network.variables for x in (v.low, v.high, v.initial, v.is_bool)]),
+            (4, [x for v in variables for x in (v.low, v.high, v.initial, v.is_bool)]),
             (3, automata),
             (8, locations),
-            (11, edges),
+            (10, edges),
             (4, self._atoms),
-            (5, self._updates),
             (3, self._limits),
             (1, self._programs.code),
             (1, self._programs.table),
@@ -146,7 +145,8 @@ class Plan:
         ]
         late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else 0
         head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer]
-        self.numbers = _packed([*head, sought.is_levelled, late or 0], sections)
+        head += [sought.is_levelled, late or 0, len(network.locals)]
+        self.numbers = _packed(head, sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
 
@@ -182,10 +182,7 @@ class Plan:
     def _edge(self, automaton: int, edge: Edge) -> list[int]:
         row = [automaton, edge.target, self._data(edge.guard.data)]
         row += self._compares(edge.guard.clocks)
-        first = len(self._updates) // 5
-        for update in edge.updates:
-            self._updates += self._update(update)
-        row += [first, len(self._updates) // 5 - first]
+        row.append(self._programs.add_updates(edge.updates) if edge.updates else -1)
         if edge.sync is None:
             return [*row, -1, 0, 0, 0]
         slot = edge.sync.slot
@@ -193,13 +190,6 @@ class Plan:
         flags = edge.sync.sends | channel.broadcast << 1 | channel.urgent << 2
         last = slot.first + prod(map(len, slot.extents))
         return [*row, self._programs.add_index(slot), slot.first, last, flags]
-
-    def _update(self, update: Assignment | Reset) -> list[int]:
-        if isinstance(update, Reset):
-            return [1, -1, update.clock + 1, 1, self._programs.add(update.value)]
-        slot = update.slot
-        offset, size = self._programs.add_offset(slot), prod(map(len, slot.extents))
-        return [0, offset, slot.first, size, self._programs.add(update.value)]
 
     def _data(self, expression: Expression) -> int:
         return -1 if expression == TRUE else self._programs.add(expression)

@@ -125,7 +125,7 @@ def test_unit_weight_and_label_come_from_comments():
         (wrap(ONE.replace('ref="a"', 'ref="b"')), ("TA002", "<init")),
         (wrap('<location id="a"/>'), ("TA013", "T")),
         (wrap(ONE + '<branchpoint id="b"/>'), ("TA016", "<branchpoint")),
-        (wrap(ONE, declaration="int f() { return 1; }"), ("TA016", "(")),
+        (wrap(ONE, declaration="hybrid clock x;"), ("TA016", ";")),
         (wrap(ONE, declaration="clock x, y;") .replace(
             "</location>", "<label kind='invariant'>x' == 0</label></location>"), ("TA016", "'")),
         (wrap(ONE + edge(guard="x - y &lt; 3"), declaration="clock x, y;"),
