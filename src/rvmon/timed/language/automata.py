@@ -13,7 +13,6 @@ from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
 from rvmon.timed.language.layout import MAX_VALUES, refuse_double, values_of
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.model.expressions import ClockOp
 from rvmon.timed.model.guards import refuse_changes, split_guard
 from rvmon.timed.model.network import (
     Automaton,
@@ -57,7 +56,7 @@ def automaton_of(
         invariant = Guard()
         with findings.collect():
             if written.invariant is not None:
-                invariant = _invariant(written.invariant, scope, resolver)
+                invariant = _guard(written.invariant, scope, resolver)
         locations.append(Location(written.name, written.kind, invariant, written.span))
     edges: list[Edge] = []
     for edge in template.edges:
@@ -86,14 +85,6 @@ def _guard(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Guar
     condition = resolver.expression(written, scope)
     refuse_changes(condition, written.span)
     return split_guard(condition, written.span)
-
-
-def _invariant(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Guard:
-    guard = _guard(written, scope, resolver)
-    if any(compare.op in (ClockOp.GE, ClockOp.GT) for compare in guard.clocks):
-        fix = "put it on the guards of the edges that lead here"
-        raise model_error("TA009", "an invariant bounds a clock from below", written.span, fix)
-    return guard
 
 
 def _edges(
@@ -125,10 +116,24 @@ def _edges(
         if sync is not None:
             _refuse_clock_guard(guard, parts.channels[sync.slot.first], sync, written.span)
         updates = updates_of(written.updates, inner, resolver)
+        weight = _weight(written, inner, resolver)
+        if weight == 0:
+            continue
         yield Edge(
-            source, target, guard, sync, updates, written.weight, written.label,
+            source, target, guard, sync, updates, weight, written.label,
             _edge_text(written, selected), written.span,
         )  # fmt: skip
+
+
+def _weight(written: syntax.EdgeText, scope: Scope, resolver: Resolver) -> float:
+    """The share of the runs that take an edge: written by itself, or among its branches."""
+    if written.shares is None:
+        return written.weight
+    own, *every = (resolver.constant(w, scope) for w in (written.shares[0], *written.shares[1]))
+    if min(every) < 0 or max(every) == 0:
+        fix = "weights are whole numbers, one of them above 0"
+        raise model_error("TA017", "the branches of this edge have no share", written.span, fix)
+    return own / sum(every)
 
 
 def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol]) -> str:

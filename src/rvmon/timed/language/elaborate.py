@@ -14,6 +14,7 @@ from rvmon.timed.language.declare import Findings, Parts, declare
 from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import processes_of
 from rvmon.timed.language.layout import refuse_double
+from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.parse import parse_query
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.syntax import SignalText
@@ -63,6 +64,9 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
     )
     signals = _signals(document.signals if complete else (), names, findings)
     _check_channels(parts, automata, findings)
+    findings.raise_errors()
+    with findings.collect():
+        automata = list(without_lower_bounds(automata, parts.channels))
     findings.raise_errors()
     return Network(
         document.name,

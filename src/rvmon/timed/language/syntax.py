@@ -309,7 +309,11 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class EdgeText:
-    """An edge of a template; `label` names the action for people and recordings."""
+    """An edge of a template; `label` names the action for people and recordings.
+
+    Attributes:
+        shares: of a branch: its weight, and that of all branches together with it.
+    """
 
     source: Name
     target: Name
@@ -320,6 +324,7 @@ class EdgeText:
     updates: tuple[UpdateText | Call, ...] = ()
     weight: float = 1.0
     label: str = ""
+    shares: tuple[Expression, tuple[Expression, ...]] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,9 +3,9 @@
 Read: declarations, templates with parameters, locations (invariant, urgent, committed), edges
 (select, guard, synchronisation, assignment), instances, the system line, queries. Rates of
 locations without invariant (`exponentialrate`), colours, coordinates and test code do not change
-which runs there are: they are passed over. Refused, with place and reason: branch points,
-stop-watches, and what `ta.lark` has no rule for. A query that cannot be read, or that names what is
-not there, is a warning, and left out.
+which runs there are: they are passed over. Refused, with place and reason: stop-watches, and what
+`ta.lark` has no rule for. A query that cannot be read, or that names what is not there, is a
+warning, and left out.
 
 A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
 comments as `export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and
@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from rvmon.diagnostics import Diagnostic, Source
@@ -104,10 +105,6 @@ def _template(element: Element, findings: Findings) -> syntax.Template:
     names = {
         place.attributes.get("id", ""): _location_name(place) for place in element.all("location")
     }
-    for branch in element.all("branchpoint"):
-        fix = "make one edge for each branch, with its probability as weight"
-        message = "branch points (probabilities) are not supported"
-        findings.add(finding("TA016", message, branch.span(), fix))
     locations = tuple(_location(place, findings) for place in element.all("location"))
     return syntax.Template(
         _text(name).strip(),
@@ -115,7 +112,7 @@ def _template(element: Element, findings: Findings) -> syntax.Template:
         _part(element.first("declaration"), "declarations", findings, ()),
         locations,
         _reference(element.first("init"), names),
-        tuple(_edge(edge, names, findings) for edge in element.all("transition")),
+        tuple(_edges(element, names, findings)),
         span,
     )
 
@@ -148,6 +145,33 @@ def _reference(element: Element | None, names: Mapping[str, str]) -> syntax.Name
     return syntax.Name(names.get(reference, reference), element.span())
 
 
+def _edges(
+    template: Element, names: Mapping[str, str], findings: Findings
+) -> Iterator[syntax.EdgeText]:
+    """The edges; one to a branch point is one for each of its branches."""
+    branches: dict[str, list[tuple[syntax.EdgeText, syntax.Expression]]] = {
+        point.attributes.get("id", ""): [] for point in template.all("branchpoint")
+    }
+    entering: list[tuple[str, syntax.EdgeText]] = []
+    for element in template.all("transition"):
+        edge = _edge(element, names, findings)
+        source, target = (element.first(end) for end in ("source", "target"))
+        start = "" if source is None else source.attributes.get("ref", "")
+        end = "" if target is None else target.attributes.get("ref", "")
+        if start in branches:
+            weight = _part(_labels(element).get("probability"), "conditions", findings, None)
+            branches[start].append((edge, weight or syntax.Number(1, edge.span)))
+        elif end in branches:
+            entering.append((end, edge))
+        else:
+            yield edge
+    for point, edge in entering:
+        every = tuple(weight for _, weight in branches[point])
+        for branch, weight in branches[point]:
+            updates = (*edge.updates, *branch.updates)
+            yield replace(edge, target=branch.target, updates=updates, shares=(weight, every))
+
+
 def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syntax.EdgeText:
     labels = _labels(element)
     nowhere = syntax.Name("", element.span())
@@ -157,9 +181,6 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
         message, fix = f"weight {weight[1]}", "a weight is a share: above 0, at most 1"
         findings.add(finding("TA017", message, labels["comments"].span(), fix))
         weight = None
-    if "probability" in labels:
-        message = "probabilities of branches are not supported"
-        findings.add(finding("TA016", message, labels["probability"].span()))
     return syntax.EdgeText(
         _reference(element.first("source"), names) or nowhere,
         _reference(element.first("target"), names) or nowhere,

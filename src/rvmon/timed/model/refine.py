@@ -9,13 +9,10 @@ from rvmon.timed.model.expressions import (
     ClockCompare,
     Constant,
     Expression,
-    Invoke,
     Reset,
     Statement,
-    expressions_of,
-    statements_in,
 )
-from rvmon.timed.model.guards import parts_of
+from rvmon.timed.model.guards import resets_in
 from rvmon.timed.model.network import Automaton, Edge, Guard, Location, Network
 from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
@@ -54,22 +51,10 @@ def _edge(edge: Edge, factor: int) -> Edge:
 def _update(update: Statement, factor: int) -> Statement:
     if isinstance(update, Reset):
         return replace(update, value=_times(update.value, factor))
-    if _sets_clocks(update):
+    if any(reset.value != Constant(0) for reset in resets_in([update])):
         fix = "set clocks in the updates of edges, not in functions"
         raise model_error("TA016", "a function sets a clock to a number of units", None, fix)
     return update
-
-
-def _sets_clocks(update: Statement) -> bool:
-    """Whether functions that an update calls set clocks to more than 0."""
-    for statement in statements_in([update]):
-        if isinstance(statement, Reset) and statement.value != Constant(0):
-            return True
-        calls = (part for e in expressions_of(statement) for part in parts_of(e))
-        for part in calls:
-            if isinstance(part, Invoke) and any(map(_sets_clocks, part.function.body)):
-                return True
-    return False
 
 
 def _guard(guard: Guard, factor: int) -> Guard:
