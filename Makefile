@@ -40,7 +40,7 @@ sanitize: $(VENV)/.dev  ## run the tests of the native core with what watches me
 
 docs: $(VENV)/.docs  ## make the documentation site, without warnings: out/docs/index.html
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
-	@$(BIN)/python -m tests.tools.pages
+	@$(BIN)/python -m tests.docs.pages
 	@echo "out/docs/index.html"
 
 format: $(VENV)/.dev  ## lay the code out and sort imports

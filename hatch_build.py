@@ -2,10 +2,11 @@
 
 The binding, `src/rvmon/core/module.c`, and all other `src/rvmon/core/*.c` as one unit, which makes
 them faster, are compiled and linked to one extension, `rvmon.native._core`; the files of
-`src/rvmon/timed/native`, each by itself, to another, `rvmon.native._zones`. The compiler is `$CC`,
-Python's own, `cc`, `gcc` or `clang`; where none works, the build asks for the package `ziglang`,
-which brings one. Where Python's headers are missing, the C takes its own declarations
-(`python_abi.h`). `$CFLAGS` and `$LDFLAGS` are added.
+`src/rvmon/timed/native`, each by itself, to another, `rvmon.native._zones`, and likewise those of
+`src/rvmon/readers/native` to `rvmon.native._csv`. The compiler is `$CC`, Python's own, `cc`, `gcc`
+or `clang`; where none works, the build asks for the package `ziglang`, which brings one. Where
+Python's headers are missing, the C takes its own declarations (`python_abi.h`). `$CFLAGS` and
+`$LDFLAGS` are added.
 """
 
 from __future__ import annotations
@@ -32,7 +33,11 @@ except ImportError:  # run as a program, which needs Python alone
     BuildHookInterface = object
 
 CORE = Path(__file__).resolve().parent / "src" / "rvmon" / "core"
-ZONES = CORE.with_name("timed") / "native"
+BESIDE = {
+    "_zones": CORE.with_name("timed") / "native",
+    "_csv": CORE.with_name("readers") / "native",
+}
+"""The other extensions and the folders of their sources."""
 NATIVE = CORE.with_name("native")
 ZIG = "ziglang>=0.13,<1"
 LIMITED_API = "0x030B0000"
@@ -54,12 +59,10 @@ class CoreBuildHook(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Compile before the files of the wheel are collected."""
         if version == "editable":
-            build(NATIVE)
-            build_zones(NATIVE)
+            build_all(NATIVE)
             return
         self._made = tempfile.TemporaryDirectory()
-        for make in (build, build_zones):
-            made = make(Path(self._made.name))
+        for made in build_all(Path(self._made.name)):
             build_data["force_include"][str(made)] = f"rvmon/native/{made.name}"
         build_data["pure_python"] = False
         build_data["tag"] = wheel_tag()
@@ -128,11 +131,16 @@ def build(folder: Path) -> Path:
         return _extension(folder / file_name(), CORE, ["module.c", str(unit)], Path(made))
 
 
-def build_zones(folder: Path) -> Path:
-    """Compile the search through zones into a folder, likewise."""
+def build_all(folder: Path) -> list[Path]:
+    """Compile the core and the extensions beside it into a folder, likewise."""
+    return [build(folder), *(_build_beside(folder, name) for name in BESIDE)]
+
+
+def _build_beside(folder: Path, module: str) -> Path:
+    home = BESIDE[module]
     with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made:
-        sources = sorted(source.name for source in ZONES.glob("*.c"))
-        return _extension(folder / file_name("_zones"), ZONES, sources, Path(made))
+        sources = sorted(source.name for source in home.glob("*.c"))
+        return _extension(folder / file_name(module), home, sources, Path(made))
 
 
 def _extension(target: Path, home: Path, sources: Sequence[str], made: Path) -> Path:
@@ -211,4 +219,4 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Compile the native core.")
     parser.add_argument("--into", type=Path, default=NATIVE, metavar="FOLDER", help="else in place")
     into = parser.parse_args().into
-    print(build(into), build_zones(into), sep="\n")
+    print(*build_all(into), sep="\n")

@@ -349,7 +349,7 @@ static told by_rows(rv_monitor *m, const story *s)
     return x;
 }
 
-static void lack(rv_monitor *m, const story *s)
+static void mark_absent(rv_monitor *m, const story *s)
 {
     int64_t i;
     for (i = 0; i < s->absent_count; i++) {
@@ -381,7 +381,7 @@ static void judge(const story *s)
     if (m == NULL) {
         exit(3); /* the plan is of another version */
     }
-    lack(m, s);
+    mark_absent(m, s);
     whole = by_steps(m, s, true);
     (void)rv_reset(m);
     other = by_steps(m, s, false);
@@ -397,7 +397,7 @@ static void judge(const story *s)
         own.size = size;
         m = rv_new(s->plan, s->size, own);
         if (m != NULL) {
-            lack(m, s);
+            mark_absent(m, s);
             other = by_steps(m, s, true);
             other.sum = rv_spoilt(m) ? whole.sum : other.sum;
             blame_other(&whole, &other, 'm');

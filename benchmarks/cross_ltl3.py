@@ -26,8 +26,7 @@ from rvmon.session import Spec
 from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula
-from rvmon.testing.generate.rng import Rng, chance
-from rvmon.testing.generate.vocabulary import BOOLS
+from rvmon.testing.generate.choices import BOOLS, Rng, chance
 from rvmon.trace.schema import Kind
 from rvmon.verdict.verdict import Verdict
 

@@ -98,6 +98,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
         metavar="PERCENT",
         help="traces in which names are lost",
     )
+    parser.add_argument(
+        "--amounts",
+        type=int,
+        default=12,
+        metavar="N",
+        help="how often counts and durations come, beside about 120 of all other operators",
+    )
     parser.add_argument("--online-every", type=int, default=10, metavar="N")
     parser.add_argument("--show", type=int, default=5, help="disagreements printed at most")
     parser.add_argument("--without", nargs="*", choices=FEATURES, default=[], metavar="FEATURE")
@@ -125,6 +132,7 @@ def profile_of(options: argparse.Namespace) -> Profile:
         many=options.many,
         crowded=options.crowded,
         wide=options.wide,
+        amounts=options.amounts,
     )
     return replace(whole, **without)
 

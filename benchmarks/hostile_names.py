@@ -36,10 +36,10 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.explain.graph import quoted
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.report.junit import junit_xml
-from rvmon.report.markup import data, e, page, to_html
+from rvmon.report.markup import e
+from rvmon.report.pages import component, data, table_html
 from rvmon.report.run_text import print_reports
 from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
-from rvmon.report.table_html import table_html
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.timed.language.load import loads_network
 from rvmon.trace.health import Health, HealthKind
@@ -127,16 +127,17 @@ class Documents:
 
     def script_data(self) -> bool:
         """Data for the script of a page: it reads back as what the page shows."""
-        text = to_html(data("run", {"panels": {name: [name] for name in self.names}}))
-        read = json.loads(text[text.index(">") + 1 : text.rindex("<")])
-        return _calm(text) and read == {
-            "panels": {shown(name): [shown(name)] for name in self.names}
-        }
+        text = data({"panels": {name: [name] for name in self.names}})
+        return (
+            "<" not in text
+            and _calm(text)
+            and json.loads(text) == {"panels": {shown(name): [shown(name)] for name in self.names}}
+        )
 
     def html_page(self) -> str:
         """A page with the table, texts and attributes."""
-        texts = (e("p", {"title": name}, name) for name in self.names)
-        return page(self.names[0], [table_html(self.table), *texts], styles=(), scripts=())
+        texts = [(e("p", {"title": name}, name), name) for name in self.names]
+        return component("facts", texts) + table_html(self.table)
 
     def strings(self) -> bool:
         """Strings of DOT and HOA."""

@@ -39,7 +39,7 @@ from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula
 from rvmon.testing.case import Case
-from rvmon.testing.generate.vocabulary import BOOLS
+from rvmon.testing.generate.choices import BOOLS
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Decision

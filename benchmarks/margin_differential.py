@@ -14,18 +14,17 @@ import time
 from collections import Counter
 
 from benchmarks.differential import FEATURES, MODELS, profile_of
+from benchmarks.margin_ways import WAYS, Way
 from tests.tools.differential import cases_of
 from tests.tools.judgement import Judgement
-from tests.tools.margin_ways import WAYS, Way
 from tests.tools.shrink import shrink
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case
+from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.margins import margins
-from rvmon.testing.show import show_case
 
 
 class Specs:

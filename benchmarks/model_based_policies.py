@@ -17,7 +17,7 @@ from handover.driver import run_test
 from handover.generator.model_based import model_based
 from rvmon.cdv.checker import Checker
 from rvmon.cdv.template import PolicyName
-from rvmon.loading import load
+from rvmon.session import load
 
 POLICIES: tuple[PolicyName, ...] = ("likely", "shortest", "fastest")
 

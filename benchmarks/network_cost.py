@@ -14,7 +14,7 @@ import sys
 import time
 from collections.abc import Iterator
 
-from rvmon.loading import loads
+from rvmon.session import loads
 
 FORMS = {
     "F G": "upon x > 8 then F[0 s, {long}] G[0 s, {short}] x < 6",

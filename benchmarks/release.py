@@ -33,7 +33,7 @@ DOORS = {
     "mcap": "rvmon.readers.messages.mcap mcap.reader",
     "dds": "rvmon.adapters.dds cyclonedds",
     "gym": "rvmon.adapters.gym gymnasium",
-    "lsp": "rvmon.lsp.server pygls",
+    "lsp": "rvmon.cli.lsp.server pygls",
     "dask": "rvmon.execute.on_dask distributed",
     "mqtt": "rvmon.adapters paho.mqtt.client",
     "zstd": "rvmon.readers.places",

@@ -23,10 +23,9 @@ from tests.tools.sound import Tried, is_spoken_of, narrowed, overturned
 
 from rvmon.execute.parallel import execute
 from rvmon.spec.checked.specification import TimeModel
-from rvmon.testing.case import Case
+from rvmon.testing.case import Case, show_case, show_spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.testing.show import show_case, show_spec
 
 
 def try_seed(

@@ -96,8 +96,8 @@ static uint64_t read_note(const rv_monitor *m, const rv_record *record)
         for (i = 0; i < note.count; i++) {
             sum = mixed(sum, note.words[i]);
         }
-        for (i = 0; i < note.standing_count; i++) {
-            sum = mixed(sum, note.standing[i]);
+        for (i = 0; i < note.state_count; i++) {
+            sum = mixed(sum, note.state[i]);
         }
         while (piece != NULL) {
             int32_t count;

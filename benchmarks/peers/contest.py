@@ -23,9 +23,8 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     Unary,
 )
+from rvmon.testing.generate.choices import CARRIER, EVENTS, FURTHER, NUMBERS, chance, pick
 from rvmon.testing.generate.formula import Shape, formula
-from rvmon.testing.generate.rng import chance, pick
-from rvmon.testing.generate.vocabulary import CARRIER, EVENTS, FURTHER, NUMBERS
 
 
 @dataclass(frozen=True, slots=True)

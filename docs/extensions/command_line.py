@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 
 from handover.cli import _parser as handover_parser
+from rvmon.cli import GROUPS
 from rvmon.cli import _parser as rvmon_parser
 
 
@@ -15,7 +16,15 @@ def commands(program: str) -> str:
     """Every subcommand of a program with its usage, arguments and example."""
     os.environ["COLUMNS"] = "80"
     parser = rvmon_parser([]) if program == "rvmon" else handover_parser()
-    return "\n".join(line for command in _subcommands(parser) for line in _section(command))
+    groups = GROUPS if program == "rvmon" else {}
+    parts = [f"* {group}: {', '.join(map(_link, names))}" for group, names in groups.items()]
+    return "\n".join(
+        [*parts, "", *(line for command in _subcommands(parser) for line in _section(command))]
+    )
+
+
+def _link(name: str) -> str:
+    return f"[{name}](#rvmon-{name})"
 
 
 def _subcommands(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:

@@ -20,6 +20,7 @@ from sphinx.util.docutils import SphinxDirective
 _MADE: dict[str, Callable[[], str]] = {
     "codes": codes.codes,
     "grammar": specification_language.grammar,
+    "operations": specification_language.operations,
     "grammar-of-models": specification_language.model_grammar,
     "patterns": pattern_library.patterns,
     "words": specification_language.reserved_words,

@@ -10,6 +10,7 @@ from grammar import productions
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, String, Whitespace
 
+from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.functions import FUNCTIONS
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, OPERATOR_TERMINALS, RESERVED
 
@@ -46,6 +47,16 @@ def ebnf(text: str) -> str:
         for name, right in productions(text)
     ]
     return "```text\n" + "\n".join(shown) + "\n```\n"
+
+
+def operations() -> str:
+    """What operations on numbers take and yield, from their table."""
+    rows = [
+        f"| `{op}` | {op.entry.unit.value} | {op.entry.exactness} |"
+        for op in NumericOp
+        if op is not NumericOp.NEG
+    ]
+    return "\n".join(("| | takes; gives | result |", "|---|---|---|", *rows))
 
 
 def reserved_words() -> str:

@@ -96,6 +96,12 @@ campaign = cdv.Campaign(
     robots={"base": cdv.Robot(Corridor, HERE / "people.rv")},
     code=cdv.Code(cdv.blocks_of(HERE / "base.py")),
     states=("drive", "slow", "wait", "arrived"),
+    closing=cdv.Closing(
+        unreachable=[
+            cdv.Unreachable("transitions", f"arrived → {state}", "it stays where it has arrived")
+            for state in ("drive", "slow", "wait")
+        ]
+    ),
     sources=(HERE,),
 )
 

@@ -23,22 +23,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rvmon.diagnostics.diagnostic import Diagnostic
-    from rvmon.errors import (
-        CoverageError,
-        MissingNameError,
-        ModelError,
-        OverlapError,
-        RvmonError,
-        SnapshotError,
-        SpecError,
-        TimeOrderError,
-        TraceError,
-        UnknownNameError,
-        WorkerLostError,
-    )
-    from rvmon.loading import load, loads
+    from rvmon.errors import RvmonError, SpecError, TraceError
     from rvmon.monitor import Monitor
-    from rvmon.session import Spec
+    from rvmon.session import Spec, load, loads
     from rvmon.spec.checked.specification import Requirement
     from rvmon.trace.sample import Sample
     from rvmon.verdict.attempt import Attempt
@@ -49,24 +36,16 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Attempt",
-    "CoverageError",
     "Diagnostic",
-    "MissingNameError",
-    "ModelError",
     "Monitor",
-    "OverlapError",
     "Report",
     "Requirement",
     "RvmonError",
     "Sample",
-    "SnapshotError",
     "Spec",
     "SpecError",
-    "TimeOrderError",
     "TraceError",
-    "UnknownNameError",
     "Verdict",
-    "WorkerLostError",
     "__version__",
     "load",
     "loads",
@@ -82,8 +61,8 @@ _HOMES = {
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",
     "Verdict": "rvmon.verdict.verdict",
-    "load": "rvmon.loading",
-    "loads": "rvmon.loading",
+    "load": "rvmon.session",
+    "loads": "rvmon.session",
     **{name: "rvmon.errors" for name in __all__ if name.endswith("Error")},
 }
 

@@ -98,19 +98,27 @@ class CoreError(RvmonError, ImportError):
 
 
 EXTRAS = {
+    "asammdf": "mdf",
     "backports.zstd": "zstd",
+    "cantools": "can",
+    "cbor2": "mcap",
     "coverage": "cdv",
     "cyclonedds": "dds",
     "distributed": "dask",
     "fsspec": "remote",
     "gymnasium": "gym",
+    "h5py": "h5",
     "mcap": "mcap",
     "mcap-protobuf-support": "mcap",
     "paho-mqtt": "mqtt",
     "pyarrow": "arrow",
     "pygls": "lsp",
+    "pymavlink": "mavlink",
     "pymunk": "handover",
+    "python-can": "can",
+    "pyulog": "px4",
     "rosbags": "ros",
+    "scipy": "h5",
 }
 """The extra of rvmon that brings a package."""
 

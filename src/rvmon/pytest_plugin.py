@@ -110,8 +110,7 @@ def rv(request: pytest.FixtureRequest) -> Any:
     The test fails at its end where a requirement failed, with the explanation. A path is that of a
     file beside the test, or from where pytest began.
     """
-    from rvmon.loading import load
-    from rvmon.session import Spec
+    from rvmon.session import Spec, load
 
     judges = request.node.stash.setdefault(_judges, [])
 
@@ -196,7 +195,7 @@ class SpecFile(pytest.File):
     def collect(self) -> Iterator[RequirementItem]:
         """The tests."""
         from rvmon.errors import RvmonError
-        from rvmon.loading import load
+        from rvmon.session import load
 
         try:
             spec = load(self.path)

@@ -5,7 +5,7 @@ import sys
 from importlib import import_module
 
 import pytest
-from tests.tools.pages import PAGES, ROOT
+from tests.docs.pages import PAGES, ROOT
 
 from rvmon.cli import COMMANDS
 

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from tests.tools.pages import OWN_TESTS, PAGES, ROOT, Runner, blocks, own_test
+from tests.docs.pages import OWN_TESTS, PAGES, ROOT, Runner, blocks, own_test
 
 import rvmon
 
@@ -70,3 +70,21 @@ def test_links_lead_somewhere(page):
     text = re.sub(r"```.*?```|`[^`\n]*`", "", (ROOT / page).read_text("utf-8"), flags=re.DOTALL)
     for address in re.findall(r"\]\(([^)#]+)", text):
         assert re.match("https?:", address) or (ROOT / Path(page).parent / address).exists()
+
+
+NEWCOMERS = [page for page in PAGES if page.startswith("docs/how-to/add-a")]
+NEW = {"src/rvmon/explain/pages/RV063.md", "src/rvmon/readers/tsv_rows.py"}
+"""Files that the examples of these pages would add."""
+
+
+@pytest.mark.parametrize("page", NEWCOMERS)
+def test_what_a_newcomer_is_led_to_is_there(page):
+    """Each file of the project exists, and has the names that stand in brackets behind it."""
+    text = (ROOT / page).read_text("utf-8")
+    named = re.findall(r"`((?:src|tests|fuzz)/[\w/.-]+)`(?:\s\(((?:`\w+`(?:, )?)+)\))?", text)
+    assert named
+    for path, names in named:
+        assert (ROOT / path).exists() or path in NEW, path
+        for name in re.findall(r"\w+", names):
+            assert name in (ROOT / path).read_text("utf-8"), path
+    assert not any((ROOT / path).exists() for path in NEW)

@@ -124,6 +124,6 @@ def test_wrong_specifications_and_recordings_are_told(folder):
 def test_without_settings_specifications_are_no_tests(folder):
     """A project that has some is as it was; nothing is imported for it."""
     folder.makepyfile(
-        "def test_light():\n    import sys\n    assert 'rvmon.loading' not in sys.modules"
+        "def test_light():\n    import sys\n    assert 'rvmon.session' not in sys.modules"
     )
     folder.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)

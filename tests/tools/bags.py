@@ -114,7 +114,13 @@ def write_csv(path: Path, sent: Sequence[Sent], header: Sequence[str]) -> Path:
     return path
 
 
-def write_ros1(path: Path, sent: Sequence[Sent], types: Types = TYPES, own: Types = NONE) -> Path:
+def write_ros1(
+    path: Path,
+    sent: Sequence[Sent],
+    types: Types = TYPES,
+    own: Types = NONE,
+    compression: str = "",
+) -> Path:
     """A bag of ROS 1.
 
     Args:
@@ -122,12 +128,16 @@ def write_ros1(path: Path, sent: Sequence[Sent], types: Types = TYPES, own: Type
         sent: its messages.
         types: by topic.
         own: definitions of messages that ROS does not bring along.
+        compression: of its chunks.
     """
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores
 
     store = _store(Stores.ROS1_NOETIC, own)
-    return _write_ros(path, sent, Writer(path), store, store.serialize_ros1, types)
+    writer = Writer(path)
+    if compression:
+        writer.set_compression(Writer.CompressionFormat[compression.upper()])
+    return _write_ros(path, sent, writer, store, store.serialize_ros1, types)
 
 
 def write_ros2(path: Path, sent: Sequence[Sent], plugin: str, version: Any = 9) -> Path:
@@ -200,10 +210,24 @@ def _array(store: Any, element: Any, size: int, given: Sequence[Any]) -> Any:
 
 
 def write_json_mcap(
-    path: Path, sent: Sequence[Sent], *, schemas: bool = True, **options: Any
+    path: Path,
+    sent: Sequence[Sent],
+    *,
+    schemas: bool = True,
+    encoding: str = "json",
+    **options: Any,
 ) -> Path:
-    """An MCAP file of JSON."""
+    """An MCAP file of JSON, or of MessagePack or CBOR."""
     from mcap.writer import Writer
+
+    def packed(content: Any) -> bytes:
+        if encoding == "json":
+            return json.dumps(content).encode()
+        from importlib import import_module
+
+        module = import_module("cbor2" if encoding == "cbor" else "msgspec.msgpack")
+        made: bytes = (module.dumps if encoding == "cbor" else module.encode)(content)
+        return made
 
     kinds = {bool: "boolean", int: "integer", float: "number", str: "string"}
     with path.open("wb") as file:
@@ -224,8 +248,8 @@ def write_json_mcap(
                 if schemas:
                     data = json.dumps(described).encode()
                     schema = writer.register_schema(topic, "jsonschema", data)
-                channels[topic] = writer.register_channel(topic, "json", schema)
-            writer.add_message(channels[topic], t, json.dumps(content).encode(), t)
+                channels[topic] = writer.register_channel(topic, encoding, schema)
+            writer.add_message(channels[topic], t, packed(content), t)
         writer.finish()
     return path
 

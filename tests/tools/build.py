@@ -32,7 +32,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
 )
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
-from rvmon.testing.generate.vocabulary import (
+from rvmon.testing.generate.choices import (
     BOOLS,
     CARRIER,
     FIELD,
@@ -42,7 +42,7 @@ from rvmon.testing.generate.vocabulary import (
     events,
     signals,
 )
-from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.attempts import is_pulse
 from rvmon.trace.sample import Sample, Value
 
 p, q, r = (SignalAtom(name) for name in BOOLS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     BoundAtom,
@@ -69,3 +70,5 @@ def to_core(formula: Formula) -> Formula:
             return replace(formula, operand=to_core(formula.operand))
         case Unary() | Binary():
             return read(formula, to_core, Formulas())
+        case Amount():
+            raise ValueError("it counts")

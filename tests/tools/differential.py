@@ -10,11 +10,10 @@ from functools import partial
 
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.testing.case import Case
+from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.law.walk import intervals
-from rvmon.testing.show import show_case
 from rvmon.verdict.attempt import Attempt, Decision
 from tests.tools.chains import random_chain
 from tests.tools.compare import differences

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.readers import line_chunks, parquet, recording
+from rvmon.readers import line_chunks, parquet
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.generate.rng import Rng, chance
+from rvmon.testing.generate.choices import Rng, chance
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind
@@ -304,9 +304,9 @@ def bare(report: Report) -> tuple[object, ...]:
 @contextmanager
 def in_pieces(size: int) -> Iterator[None]:
     """Files are read in pieces of so many bytes, however short they are."""
-    kept = recording.TINY, line_chunks.BLOCK, parquet.ROWS
-    recording.TINY, line_chunks.BLOCK, parquet.ROWS = 0, size, 5
+    kept = line_chunks.BLOCK, parquet.ROWS
+    line_chunks.BLOCK, parquet.ROWS = size, 5
     try:
         yield
     finally:
-        recording.TINY, line_chunks.BLOCK, parquet.ROWS = kept
+        line_chunks.BLOCK, parquet.ROWS = kept

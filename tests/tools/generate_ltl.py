@@ -11,8 +11,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.generate.rng import Rng, chance, pick
-from rvmon.testing.generate.vocabulary import BOOLS
+from rvmon.testing.generate.choices import BOOLS, Rng, chance, pick
 
 _EVER = Interval(0, None)
 _UNARY = (UnaryOp.NOT, UnaryOp.NEXT, UnaryOp.EVENTUALLY, UnaryOp.ALWAYS)

@@ -9,7 +9,7 @@ from rvmon.spec.checked.specification import Requirement
 from rvmon.testing.case import Case
 from rvmon.testing.law.attempts import is_upon_end
 from rvmon.testing.law.follow import Followed, Followings
-from rvmon.testing.law.kleene import Truth
+from rvmon.testing.law.word import Truth
 from rvmon.testing.oracle import judge_views, report_on
 from rvmon.trace.health import Health
 from rvmon.verdict.report import Report

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.generate.vocabulary import WIDE
+from rvmon.testing.generate.choices import WIDE
 from rvmon.testing.law.walk import numerics
 from rvmon.verdict.report import Report
 from tests.tools.health import names_in

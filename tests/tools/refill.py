@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.specification import CheckedSpec, Event, Type
 from rvmon.testing.case import Case
-from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.generate.choices import Rng, chance, pick
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from tests.tools.law import word

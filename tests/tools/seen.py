@@ -8,9 +8,9 @@ from rvmon.spec.checked.formula import BoundAtom, Compare, EventAtom, Formula, P
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print.printer import format_formula
 from rvmon.testing.law.attempts import Start
-from rvmon.testing.law.kleene import Truth
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.walk import subformulas
+from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Scalar
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

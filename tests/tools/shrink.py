@@ -18,7 +18,7 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
 from rvmon.testing.case import Case
-from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.law.walk import numerics
 from rvmon.trace.sample import Sample
 

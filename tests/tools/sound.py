@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.case import Case
-from rvmon.testing.generate.rng import Rng
+from rvmon.testing.generate.choices import Rng
 from rvmon.testing.law.walk import parts_of, subformulas
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report

@@ -10,7 +10,7 @@ from typing import Any
 from rvmon.spec.checked.formula import Binary, BinaryOp
 from rvmon.spec.checked.specification import CheckedSpec, Event, Requirement, Signal
 from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
-from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.generate.choices import Rng, chance, pick
 from rvmon.trace.schema import Kind
 
 _SYNONYMS = {

@@ -10,11 +10,10 @@ import pytest
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import UnaryOp
-from rvmon.testing.case import Case
+from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.walk import subformulas
-from rvmon.testing.show import show_case
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.report import Report, report_of

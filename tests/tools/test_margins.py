@@ -6,11 +6,10 @@ from rvmon import loads
 from rvmon.monitor.robustness.monitor import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
-from rvmon.testing.case import Case
+from rvmon.testing.case import Case, show_case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.margins import margins
-from rvmon.testing.show import show_case
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Decision
 from rvmon.verdict.verdict import Verdict

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import PathFormula
+from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import normal_form
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
+from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Choose, Plan, Seek, Sought
 from tests.tools.timed_generate import random_model
+
+_LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"
+_NESTS = "AG (EF[<=2] P0.l1 or A[not P0.l0 U[<=3] deadlock] or EX AF x > 1)"
 
 
 def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
@@ -27,5 +33,17 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
             Sought(Seek.LATE, None, other, bound=2),
             Sought(Seek.LATE_AFTER, some, other, bound=2),
             Sought(Seek.NESTED, nested=nested),
+            *(
+                Sought(Seek.RUN, ways=ways_of(normal_form(linear)), progress=progress)
+                for linear in (_formula(network, text) for text in _LINEAR)
+                for progress in (False, True)
+            ),
+            Sought(Seek.START, nested=normal_form(_formula(network, _NESTS))),
         ):
             yield Plan(network, sought)
+
+
+def _formula(network: Network, text: str) -> Expression:
+    formula = query_on(network, text).formula
+    assert not isinstance(formula, LeadsToFormula | Chance | Mean)
+    return formula

@@ -5,16 +5,22 @@ from __future__ import annotations
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
+from handover.campaign.closing import UNREACHABLE, closing
+from handover.campaign.system import Handover
+from handover.campaign.tables import witness_test
 from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest
-from rvmon.cdv import Test
+from rvmon.cdv import Observer, Test
+from rvmon.cdv.close.witnesses import EDGES, Witness, Witnesses
+from rvmon.cdv.measured import hits_of_states
 from rvmon.cdv.presentation import RobotTest
 from rvmon.execute import parallel
-from rvmon.report.coverage_summary import counted
 from rvmon.report.markup import Child, e
+from rvmon.report.proportion import interval_text
 from rvmon.report.table import checked_text
 
 if TYPE_CHECKING:
@@ -25,6 +31,9 @@ SUFFIX = "_all"
 
 ROBOT = "correct"
 """The robot that the model is of."""
+
+SIMULATED, SIMULATED_UNITS = 1000, 1200
+"""Random runs of the model for each query, and their length: a minute, in which it is over."""
 
 Addresses = Mapping[RobotTest, str]
 """Of pages."""
@@ -48,26 +57,40 @@ def model_sections(
         return []
     chosen = [test for several in strategies.values() for test in several[:count]]
     jobs = os.cpu_count() or 1
+    edges = list(parallel.execute(edge_tests(), _follower, jobs=jobs, what="run of the model"))
     rows = list(parallel.execute(claims(), _verifier, jobs=jobs, what="query"))
+    for requirement, row in zip(claims(), rows, strict=True):
+        witness = addresses.get((ROBOT, witness_test(requirement.removesuffix(SUFFIX))))
+        if witness is not None:
+            row[1].append(e("a", {"href": witness}, " its witness, played"))
     found = list(parallel.execute(chosen, _conformer, jobs=jobs, what="run"))
-    lines = [
-        _line([pair for pair in zip(chosen, found, strict=True) if pair[0] in several], addresses)
+    both = _edge_rows(frozenset().union(*edges))
+    both += [
+        _row([pair for pair in zip(chosen, found, strict=True) if pair[0] in several], addresses)
         for several in strategies.values()
     ]
-    titles = ("", "some run shows it", "all runs keep to it", "that is")
-    head = e("tr", None, *(e("th", None, title) for title in titles))
+    titles = ("", "some run shows it", "random runs that do", "all runs keep to it", "that is")
     return [
         e(
             "section",
             None,
             e("h2", None, "The model"),
-            e("div", {"class": "scroll", "tabindex": 0, "role": "group"},
-              e("table", {"class": "verdicts"}, e("thead", None, head), e("tbody", None, *rows))),
-            e("p", {"class": "soft"}, "Runs of the correct robot held against it, of each strategy "
-              f"the first {count}; when the human is ready is an input:"),
-            e("ul", None, *lines),
+            _table(titles, rows),
+            e("p", {"class": "soft"}, "Random runs choose among edges by the weights of the model, "
+              f"{SIMULATED:,} of {SIMULATED_UNITS * 0.05:g} s for each, with the 95 % interval."),
+            e("h3", None, "The model and the code"),
+            e("p", {"class": "soft"}, "Tests follow runs of the model that take all edges there "
+              "are, and the correct robot plays them; runs of it are held against the model, of "
+              f"each strategy the first {count}; when the human is ready is an input."),
+            _table(("", "there are", "so it is", "the others"), both),
         )
     ]  # fmt: skip
+
+
+def _table(titles: Sequence[str], rows: Sequence[ET.Element]) -> ET.Element:
+    head = e("thead", None, e("tr", None, *(e("th", None, title) for title in titles)))
+    table = e("table", {"class": "verdicts"}, head, e("tbody", None, *rows))
+    return e("div", {"class": "scroll", "tabindex": 0, "role": "group"}, table)
 
 
 def claims() -> list[str]:
@@ -83,6 +106,7 @@ def claims() -> list[str]:
 
 def _verifier() -> Callable[[str], ET.Element]:
     from handover.model import handover_network
+    from rvmon.timed.runs.simulate import estimate
     from rvmon.timed.search.verify import verify
 
     network = handover_network()
@@ -90,15 +114,19 @@ def _verifier() -> Callable[[str], ET.Element]:
 
     def row(name: str) -> ET.Element:
         requirement = name.removesuffix(SUFFIX)
-        answers = (verify(network, queries[query]).holds for query in (requirement, name))
-        claim = queries[name]
+        some, every = (verify(network, queries[query]).holds for query in (requirement, name))
+        claim, query = queries[name], queries[requirement]
+        found = estimate(network, query, runs=SIMULATED, seed=1, until=SIMULATED_UNITS)
         return e(
             "tr",
             None,
             e("th", {"scope": "row"}, requirement),
-            *(e("td", None, checked_text(holds)) for holds in answers),
+            e("td", None, checked_text(some)),
+            e("td", None, f"{found.successes / found.runs:.1%} "
+              f"({interval_text(found.successes, found.runs)} %)"),
+            e("td", None, checked_text(every)),
             e("td", {"class": "text", "title": claim.text}, claim.remark),
-        )
+        )  # fmt: skip
 
     return row
 
@@ -110,17 +138,75 @@ def _conformer() -> Callable[[AbstractTest], Conformance]:
     return lambda test: check_run(network, run_test(test, robot=ROBOT))
 
 
-def _line(pairs: Sequence[tuple[AbstractTest, Conformance]], addresses: Addresses) -> ET.Element:
+def edge_tests() -> list[str]:
+    """Edges of the model of which each has a run of its own; these runs take all that any takes."""
+    witnesses = _witnesses()
+    answers = {name: witnesses.answer((EDGES, name)) for name in witnesses.groups[0].items}
+    runs = {id(one.run): name for name, one in answers.items() if isinstance(one, Witness)}
+    return [*runs.values()]
+
+
+@cache
+def _witnesses() -> Witnesses:
+    model = closing().model
+    assert model is not None  # noqa: S101 - it has one
+    return Witnesses(model, describes=True)
+
+
+def _follower() -> Callable[[str], frozenset[str]]:
+    """What plays a test of a run of the model, and tells which edges it has shown."""
+    witnesses = _witnesses()
+
+    def shown(edge: str) -> frozenset[str]:
+        witness = witnesses.answer((EDGES, edge))
+        assert isinstance(witness, Witness)  # noqa: S101 - it is one of `edge_tests`
+        test = witnesses.test(witness, edge, 1)
+        assert isinstance(test, AbstractTest)  # noqa: S101 - the campaign's model makes no other
+        run = Handover(ROBOT).play(test, Observer(()))
+        return frozenset(witnesses.shown(witness, hits_of_states(run)).get(EDGES, ()))
+
+    return shown
+
+
+def _edge_rows(shown: frozenset[str]) -> list[ET.Element]:
+    """By automaton, how many of its edges the robot's runs have shown, and the others."""
+    argued = {one.item: one.reason for one in UNREACHABLE if one.group == EDGES}
+    edges: dict[str, list[str]] = {}
+    for name in _witnesses().groups[0].items:
+        edges.setdefault(name.partition(":")[0], []).append(name)
+    return [
+        e(
+            "tr",
+            None,
+            e("th", {"scope": "row"}, f"edges of {automaton}"),
+            e("td", None, str(len(names))),
+            e("td", None, f"{sum(name in shown for name in names)} played"),
+            e("td", {"class": "text"}, "; ".join(
+                f"{name.partition(': ')[2]} ({argued.get(name, 'not shown')})"
+                for name in names if name not in shown
+            )),
+        )
+        for automaton, names in edges.items()
+    ]  # fmt: skip
+
+
+def _row(pairs: Sequence[tuple[AbstractTest, Conformance]], addresses: Addresses) -> ET.Element:
     """How many runs of a strategy conform, and where the others leave the model."""
     conforming = sum(found.conforms is True for _, found in pairs)
-    text = f"{pairs[0][0].strategy}: {conforming} of {counted(len(pairs), 'run')} conform"
-    parts: list[Child] = [text]
+    parts: list[Child] = []
     for test, found in pairs:
         if found.conforms is not True:
             address = addresses.get((ROBOT, test.name))
             name: Child = test.name if address is None else e("a", {"href": address}, test.name)
-            parts += ["; ", name, f" does not: {_where(found)}"]
-    return e("li", None, *parts)
+            parts += ["; " if parts else "", name, f" does not: {_where(found)}"]
+    return e(
+        "tr",
+        None,
+        e("th", {"scope": "row"}, f"runs, {pairs[0][0].strategy}"),
+        e("td", None, str(len(pairs))),
+        e("td", None, f"{conforming} conform"),
+        e("td", {"class": "text"}, *parts),
+    )
 
 
 def _where(found: Conformance) -> str:

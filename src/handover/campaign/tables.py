@@ -41,8 +41,14 @@ def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
             control_title="The same without the fitted loss of signals",
             sources=(f"paper: {SOURCE}", spread_text()) if name == "legacy" else (),
             remark=_fitted(own, control) if control is not None else "",
+            witnesses={name: witness_test(name) for name, holds in checked.items() if holds},
         )
     return shown
+
+
+def witness_test(requirement: str) -> str:
+    """The name of the test that follows the likeliest witness of a requirement."""
+    return f"model-based-{requirement}"
 
 
 def checked_of(summary: CampaignSummary) -> dict[str, bool | None]:

@@ -145,7 +145,7 @@ def begun(
         human_node,
         world.human,
         (lambda *limits: rng.choice(limits)) if at_limits else rng.uniform,
-        start_s=draws.human_start_s,
+        start_s=draws.human_start_s if test.arrives_s is None else test.arrives_s,
         connected=draws.connected,
     )
     process = Process(world.schedule, robot_node, machine.run(), around_robot_step or nullcontext)

@@ -86,6 +86,7 @@ class AbstractTest(Test, frozen=True, kw_only=True):
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
         postures: drawn from their ranges, or at the ends of these, where sensors may err.
         horizon_s: simulated seconds.
+        arrives_s: when the human begins; default: drawn, once the robot listens.
         startup_loss: whether the human's signals may get lost as the processes start.
         faults: what is wrong with the sensors.
         scene: what the scene has in store for the robot.
@@ -96,6 +97,7 @@ class AbstractTest(Test, frozen=True, kw_only=True):
     robot: Literal["correct", "legacy"] | None = None
     postures: Literal["in_range", "at_limits"] = "in_range"
     horizon_s: Annotated[float, msgspec.Meta(gt=0, le=3600)] = 200.0
+    arrives_s: Annotated[float, msgspec.Meta(ge=0, le=60)] | None = None
     startup_loss: bool = True
     faults: SensorFaults = SensorFaults()
     scene: SceneFaults = SceneFaults()

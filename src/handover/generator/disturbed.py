@@ -39,6 +39,14 @@ P_HIDDEN: Final = 0.08
 HIDDEN: Final = (0.2, 0.8)
 """Of looks for the piece, past a person who moves about it; as often in vain as plans are."""
 
+P_RAISED: Final = 0.1
+RAISED_M: Final = (0.01, 0.06)
+"""Heights of what a piece may stand on: from a tray to a box."""
+
+P_EARLY: Final = 0.1
+EARLY_S: Final = (0.0, 3.0)
+"""The human's process is up before the robot listens: its first signal comes two seconds later."""
+
 P_IN_PLANE: Final = 0.5
 """The hand beside the gripper as often as in front of it: the plane says neither."""
 
@@ -65,6 +73,7 @@ def _test(rng: random.Random, index: int) -> AbstractTest:
         postures="at_limits" if rng.random() < P_AT_LIMITS else "in_range",
         faults=_sensor_faults(rng) if rng.random() < P_SENSORS else SensorFaults(),
         scene=_scene_faults(rng),
+        arrives_s=round(rng.uniform(*EARLY_S), 2) if rng.random() < P_EARLY else None,
     )
 
 
@@ -87,4 +96,5 @@ def _scene_faults(rng: random.Random) -> SceneFaults:
         plan_failure=round(rng.uniform(*PLAN_FAILURE), 2) if planner else 0.0,
         hand_in_plane=rng.random() < P_IN_PLANE,
         hidden=round(rng.uniform(*HIDDEN), 2) if rng.random() < P_HIDDEN else 0.0,
+        raised_m=round(rng.uniform(*RAISED_M), 3) if rng.random() < P_RAISED else 0.0,
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from handover.robot.handover import END, HandoverRobot
 from handover.robot.ports import Steps
 
@@ -80,6 +82,26 @@ class EndsSilently(HandoverRobot):
         return END
 
 
+class DropsWhatItWithholds(HandoverRobot):
+    """Decides to keep the piece, and opens the gripper."""
+
+    def decide(self) -> Steps[str]:
+        """Open the gripper all the same."""
+        next_state = yield from super().decide()
+        if next_state == "done":
+            self.gripper.open()
+        return next_state
+
+
+class Hurries(HandoverRobot):
+    """Goes to its start pose a hundredth faster than it may near a person."""
+
+    def reset(self) -> Steps[str]:
+        """Take less time for it."""
+        self.behaviour = replace(self.behaviour, reset_s=1.6)
+        return (yield from super().reset())
+
+
 class Crashes(HandoverRobot):
     """Divides by zero when it should sense."""
 
@@ -91,8 +113,10 @@ class Crashes(HandoverRobot):
 
 MUTATIONS: dict[str, type[HandoverRobot]] = {
     "crashes": Crashes,
+    "drops-what-it-withholds": DropsWhatItWithholds,
     "ends-silently": EndsSilently,
     "forgets-to-release": ForgetsToRelease,
+    "hurries": Hurries,
     "ignores-pressure": IgnoresPressure,
     "minds-no-hand": MindsNoHand,
     "never-decides": NeverDecides,

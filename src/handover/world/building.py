@@ -33,10 +33,10 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     space.gravity = (0.0, -p.GRAVITY)
     space.iterations = p.ITERATIONS
     space.collision_slop = 0.0005
-    _add_scenery(space)
+    _add_scenery(space, faults.raised_m)
     links, joint_motors = _add_arm(space, pose)
     fingers, finger_motors = _add_fingers(space, links[2])
-    piece = _add_piece(space, faults.friction)
+    piece = _add_piece(space, faults.friction, faults.raised_m)
     hand, hand_target, hand_pull = _add_hand(space)
     if faults.hand_in_plane:
         for part in (links[2], *fingers):
@@ -88,14 +88,23 @@ def palm_corners() -> tuple[tuple[float, float], ...]:
     return ((-length, -width), (length, -width), (length, width), (-length, width))
 
 
-def _add_scenery(space: pymunk.Space) -> None:
+def _add_scenery(space: pymunk.Space, raised_m: float) -> None:
     table = pymunk.Poly(space.static_body, table_corners())
     # A thick segment, so that nothing falls through within one step.
     floor = pymunk.Segment(space.static_body, (-2.0, p.FLOOR_Z - 0.1), (3.0, p.FLOOR_Z - 0.1), 0.1)
-    for shape in (table, floor):
+    shapes: list[pymunk.Shape] = [table, floor]
+    if raised_m:
+        shapes.append(pymunk.Poly(space.static_body, _block_corners(raised_m)))
+    for shape in shapes:
         shape.friction = p.TABLE_FRICTION
         shape.filter = _filter(_SCENERY, _PIECE, _GRIPPER, _HAND)
-    space.add(table, floor)
+    space.add(*shapes)
+
+
+def _block_corners(height: float) -> tuple[tuple[float, float], ...]:
+    """A block on the table under the piece, as wide as that."""
+    left, right = p.PIECE_X - p.PIECE_SIZE[0] / 2, p.PIECE_X + p.PIECE_SIZE[0] / 2
+    return (left, 0.0), (right, 0.0), (right, height), (left, height)
 
 
 def _add_arm(
@@ -167,9 +176,9 @@ def _add_fingers(
     return (fingers[0], fingers[1]), (motors[0], motors[1])
 
 
-def _add_piece(space: pymunk.Space, friction: float) -> pymunk.Body:
+def _add_piece(space: pymunk.Space, friction: float, raised_m: float) -> pymunk.Body:
     piece = pymunk.Body(p.PIECE_MASS, pymunk.moment_for_box(p.PIECE_MASS, p.PIECE_SIZE))
-    piece.position = (p.PIECE_X, p.PIECE_SIZE[1] / 2)
+    piece.position = (p.PIECE_X, raised_m + p.PIECE_SIZE[1] / 2)
     shape = pymunk.Poly.create_box(piece, p.PIECE_SIZE)
     shape.friction = friction
     shape.filter = _filter(_PIECE, _SCENERY, _GRIPPER, _HAND)

@@ -34,6 +34,7 @@ class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_
         friction: of the piece's surface; a slippery piece gets lost on the way.
         plan_failure: probability that the arm's planner finds no path where there is one.
         hidden: probability that the robot's camera does not see the piece when it looks for it.
+        raised_m: height of a block that the piece stands on, metres.
         hand_in_plane: whether the hand is beside the gripper, so that they collide, and not in
             front of it.
     """
@@ -41,4 +42,5 @@ class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_
     friction: Annotated[float, msgspec.Meta(ge=0.01, le=2)] = FRICTION
     plan_failure: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
     hidden: Annotated[float, msgspec.Meta(ge=0, le=1)] = 0.0
+    raised_m: Annotated[float, msgspec.Meta(ge=0, le=0.1)] = 0.0
     hand_in_plane: bool = False

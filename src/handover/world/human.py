@@ -8,7 +8,7 @@ from collections.abc import Callable
 from handover.world import parameters as p
 from handover.world.grasp import Grasp
 from handover.world.limb import Limb
-from handover.world.measures import contact_force, gripper_force, seen_piece
+from handover.world.measures import contact_forces, gripper_force, seen_piece
 from handover.world.scene import Scene
 
 
@@ -76,7 +76,7 @@ class Human:
         if self._grasp is not None:
             if self._grasp.has_slipped():
                 self._let_go()
-        elif self._wants_hold() and contact_force(self._scene.hand, self._scene.piece) > 0.0:
+        elif self._wants_hold() and self._touch_force() > 0.0:
             self._grasp = Grasp(self._scene)
 
     def is_moving(self) -> tuple[bool, bool]:
@@ -86,16 +86,19 @@ class Human:
 
     def holding_force(self) -> float:
         """N between hand and piece, by grasp and by touch."""
-        return self._grasp_force() + contact_force(self._scene.hand, self._scene.piece)
+        return self._grasp_force() + self._touch_force()
 
     def hand_force(self) -> float:
         """N with which one body presses on the hand, the most of the robot's and the piece.
 
         Fingers that clamp it press from both sides, each as hard as the other: that is no more.
         """
+        forces = contact_forces(self._scene.hand)
+        if not forces and self._grasp is None:
+            return 0.0
         parts = (self._scene.links[2], *self._scene.fingers)
-        by_robot = (contact_force(self._scene.hand, part) for part in parts)
-        return max(self.holding_force(), *by_robot)
+        by_piece = self._grasp_force() + forces.get(self._scene.piece, 0.0)
+        return max(by_piece, *(forces.get(part, 0.0) for part in parts))
 
     def holds(self) -> bool:
         """Whether the hand has taken hold of the piece."""
@@ -103,7 +106,11 @@ class Human:
 
     def shares_piece(self) -> bool:
         """Whether robot and human both hold the piece, by the forces between them and it."""
-        return min(gripper_force(self._scene), self.holding_force()) >= p.PRESSURE_MIN
+        enough = self.holding_force() >= p.PRESSURE_MIN
+        return enough and gripper_force(self._scene) >= p.PRESSURE_MIN
+
+    def _touch_force(self) -> float:
+        return contact_forces(self._scene.hand).get(self._scene.piece, 0.0)
 
     def _grasp_force(self) -> float:
         return 0.0 if self._grasp is None else self._grasp.force()

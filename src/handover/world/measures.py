@@ -14,21 +14,21 @@ _BETWEEN_PADS = (p.WRIST_TO_GRIP - p.PALM_LENGTH / 2, 0.0)
 """On the palm, from its centre, metres."""
 
 
-def contact_force(body: pymunk.Body, other: pymunk.Body) -> float:
-    """N between two bodies in the last physics step, by contact alone; 0 without any.
+def contact_forces(body: pymunk.Body) -> dict[pymunk.Body, float]:
+    """N between a body and each that touches it, in the last physics step, by contact alone.
 
-    They may touch at several places: these forces add up as vectors.
+    Two may touch at several places: these forces add up as vectors.
     """
-    impulses: list[pymunk.Vec2d] = []
+    impulses: dict[pymunk.Body, pymunk.Vec2d] = {}
 
     def collect(arbiter: pymunk.Arbiter) -> None:
-        if other in arbiter.bodies:
-            impulse = arbiter.total_impulse
-            impulses.append(impulse if arbiter.bodies[0] is body else -impulse)
+        first, second = arbiter.bodies
+        impulse = arbiter.total_impulse
+        other, own = (second, impulse) if first is body else (first, -impulse)
+        impulses[other] = impulses[other] + own if other in impulses else own
 
     body.each_arbiter(collect)
-    whole = sum(impulses, pymunk.Vec2d.zero())
-    return float(whole.length / (p.STEP_NS / p.NS))
+    return {other: whole.length / (p.STEP_NS / p.NS) for other, whole in impulses.items()}
 
 
 def seen_piece(scene: Scene) -> tuple[float, float]:
@@ -89,7 +89,8 @@ def location_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
 
 def gripper_force(scene: Scene) -> float:
     """N with which the weaker of both fingers presses on the piece."""
-    return min(contact_force(scene.piece, finger) for finger in scene.fingers)
+    forces = contact_forces(scene.piece)
+    return min(forces.get(finger, 0.0) for finger in scene.fingers)
 
 
 def gripper_opening(scene: Scene) -> float:

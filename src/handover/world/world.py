@@ -13,7 +13,7 @@ from handover.world.bus import Bus, Value
 from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.film import Film
 from handover.world.human import Human
-from handover.world.measures import hand_is_seen, seen_piece
+from handover.world.measures import seen_piece
 from handover.world.poses import Poses
 from handover.world.reading import Reading
 from handover.world.recorder import Recorder, SampleValue
@@ -136,8 +136,7 @@ class World:
             self.scene.space.step(p.STEP_NS / p.NS)
             self._step += 1
             self._stepped += 1
-            if hand_is_seen(self.scene):  # at the chest it touches nothing
-                self._truth.step()
+            self._truth.step()
             if self._step % p.WATCH_STEPS == 0 and not self._at_rest:
                 self._at_rest = self._step >= self._planned_until and self._is_still()
                 self._watch()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from threading import Thread
+from threading import Lock, Thread
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -67,6 +67,8 @@ class DdsSource:
         self._readers: dict[str, tuple[Any, Topic]] = {}
         self._found: dict[str, str] = {}
         self._reported: set[str] = set()
+        self._losses: dict[str, int] = {}  # by topic, until what waited then is taken
+        self._lock = Lock()
         self._stops = False
         # To be called for each message would hold up the thread of DDS that receives them, until
         # the socket drops some and nobody learns of it; a loss is rare.
@@ -90,9 +92,9 @@ class DdsSource:
         if self._verdicts is not None:
             self._writer = self._written(self._verdicts)
         self._finder = BuiltinDataReader(self._participant, BuiltinTopicDcpsPublication)
-        self._stop = GuardCondition(self._participant)
+        self._wake = GuardCondition(self._participant)
         self._waiting = WaitSet(self._participant)
-        self._waiting.attach(self._stop)
+        self._waiting.attach(self._wake)
         self._wait_for(self._finder)
         self._thread = Thread(target=self._drive, name="rvmon.dds", daemon=True)
         self._thread.start()
@@ -101,14 +103,26 @@ class DdsSource:
     def _drive(self) -> None:
         while not self._stops:
             self._waiting.wait(_LONG_NS)
+            self._wake.set(False)
             for reader, topic in self._readers.values():
+                losses, taken = self._losses.get(topic.name), []
                 try:
-                    for content in reader.take(N=_AT_ONCE):
+                    taken = reader.take(N=_AT_ONCE)
+                    for content in taken:
                         if content.sample_info.valid_data:
                             self._feed.take(topic, content)
                 except Exception as error:  # noqa: BLE001 - what others sent does not fit its type
                     self._feed.lose(topic.name, f"cannot be unpacked ({error})", before=True)
+                if losses is not None and len(taken) < _AT_ONCE:
+                    self._end_of(topic.name, losses)
             self._find()
+
+    def _end_of(self, topic: str, losses: int) -> None:
+        """All that waited when something was lost is taken, if no more was since."""
+        with self._lock:
+            if self._losses[topic] == losses:
+                del self._losses[topic]
+                self._feed.find(topic)
 
     def _wait_for(self, reader: Any) -> None:
         """Have the thread wake when there is something to be taken."""
@@ -118,9 +132,13 @@ class DdsSource:
         self._waiting.attach(ReadCondition(reader, anything))
 
     def _lose(self, reader: Any, _: object) -> None:
+        """Have a topic lost: what waits now was sent before, and ends no loss."""
         for known, topic in tuple(self._readers.values()):
             if known is reader:
-                self._feed.lose(topic.name, "DDS has lost some before it", before=True)
+                with self._lock:
+                    self._losses[topic.name] = self._losses.get(topic.name, 0) + 1
+                    self._feed.lose(topic.name, "DDS has lost some", before=True, for_good=True)
+                self._wake.set(True)
 
     def _written(self, topic: str) -> Any:
         from cyclonedds.pub import DataWriter
@@ -177,8 +195,10 @@ class DdsSource:
         trace: TracebackType | None,
     ) -> None:
         self._stops = True
-        self._stop.set(True)
+        self._wake.set(True)
         self._thread.join()
+        for reader, _ in self._readers.values():
+            reader.set_listener(None)  # one that is freed would be called: readers live on longer
 
 
 @cache

@@ -120,22 +120,31 @@ class MessageFeed:
             why: it cannot be read, or did not come.
             before: whether it was sent before now, so that it may have said something at any
                 instant since the last one that was read.
-            for_good: whether no message of the topic can be read from now on.
+            for_good: whether no message of the topic can be read from now on, unless `find` says
+                otherwise.
         """
         _log.warning("a message of %s is not taken: %s", topic, why)
         since = self._heard.get(topic, self._began) + 1
-        declared = self._driver.spec.schema  # of the specification that holds now
         self._driver.lose(
-            [
-                name
-                for name in self._fed.get(topic) or self._may_feed(topic)
-                if name in declared.signals or name in declared.events
-            ],
+            self._names_of(topic),
             robot=self._robot,
             since_ns=since if before or topic in self._stamped else None,
             is_over=not for_good,
             why=f"{topic} cannot be read" if for_good else f"a message of {topic} was not taken",
         )
+
+    def find(self, topic: str) -> None:
+        """Say that messages of a topic are heard again, as those were before it was lost."""
+        self._driver.found(self._names_of(topic), robot=self._robot)
+
+    def _names_of(self, topic: str) -> list[str]:
+        """What a topic feeds, or may feed, of the specification that holds now."""
+        declared = self._driver.spec.schema
+        return [
+            name
+            for name in self._fed.get(topic) or self._may_feed(topic)
+            if name in declared.signals or name in declared.events
+        ]
 
     def _may_feed(self, topic: str) -> list[str]:
         """The names that a topic may feed which was never read."""

@@ -87,8 +87,8 @@ class MqttSource:
 
     The levels of a topic behind the filter's prefix are names before that of the fields: with
     `robots/+/#`, `0.3` under `robots/left/arm/speed` is `arm.speed` of the robot `left`, as is
-    `{"speed": 0.3}` under `robots/left/arm`. Where the connection is lost, all names are unknown
-    until their next value: what was published meanwhile is not known.
+    `{"speed": 0.3}` under `robots/left/arm`. Where the connection is lost, all names are lost since
+    the last message, as nobody knows how much later it broke, until it is back.
 
     Args:
         objects: get what is published.
@@ -113,7 +113,7 @@ class MqttSource:
         self._verdicts = verdicts
         self._connected = Event()
         self._dropped: int | None = None
-        self._told = objects.driver.now_ns
+        self._told = self._heard = objects.driver.now_ns
         self._refusal = ""
         self._client = Client(CallbackAPIVersion.VERSION2)
         self._client.max_queued_messages_set(0)
@@ -156,6 +156,7 @@ class MqttSource:
     def _on_subscribe(self, *_: object) -> None:
         if self._connected.is_set():  # again
             self._objects.driver.found()
+        self._heard = self._objects.driver.now_ns
         self._connected.set()
 
     def _on_disconnect(self, _: object, __: object, ___: object, reason: Any, ____: object) -> None:
@@ -163,10 +164,11 @@ class MqttSource:
         if reason.is_failure:
             why = "the connection to the broker is lost"
             _log.warning("%s (%s): what is published is not known until it is back", why, reason)
-            self._objects.driver.lose(why=why)
+            self._objects.driver.lose(since_ns=self._heard, why=why)
 
     def hear(self, topic: str, payload: bytes) -> None:
         """Offer what a message says."""
+        self._heard = self._objects.driver.now_ns
         if topic == _DROPPED:
             self._hear_of_drops(payload)
             return

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from threading import Event, Thread
 from types import TracebackType
 from typing import Any
 
@@ -14,11 +15,15 @@ from rvmon.live.robot import Judgement
 from rvmon.readers.messages.ros import bag_readers, ros_topic
 from rvmon.readers.messages.topic import Topic
 
+_TURN_S = 0.2
+"""Seconds between two looks at the connections: rospy makes lost ones anew, and tells nobody."""
+
 
 class Ros1Source:
     """A node that offers what the topics of a feed say, from `with` on.
 
-    Messages bring their definition along: packages of their types need not be installed.
+    Messages bring their definition along: packages of their types need not be installed. While the
+    connection to a publisher is lost that has not left, what its topic feeds is unknown.
 
     Args:
         feed: gets the messages.
@@ -41,6 +46,10 @@ class Ros1Source:
         self._verdicts = verdicts
         self._publisher: Any = None
         self._subscribers: list[Any] = []
+        self._links: dict[tuple[str, str], Mapping[str, str]] = {}  # by topic and node
+        self._down: set[tuple[str, str]] = set()
+        self._ends = Event()
+        self._looking = Thread(target=self._look, name="rvmon.ros1", daemon=True)
         self._decoders: dict[tuple[str, str], tuple[Topic, Callable[[bytes], Any]]] = {}
 
     def __enter__(self) -> Ros1Source:
@@ -65,6 +74,7 @@ class Ros1Source:
             from rosgraph_msgs.msg import Clock  # rospy reads it, too: there is one type per topic
 
             self._subscribers.append(rospy.Subscriber(CLOCK, Clock, self._tick, tcp_nodelay=True))
+        self._looking.start()
         return self
 
     def _subscribe(self) -> None:
@@ -96,6 +106,49 @@ class Ros1Source:
             return
         self._feed.take(known, content)
 
+    def _look(self) -> None:
+        while not self._ends.wait(_TURN_S):
+            for subscriber in tuple(self._subscribers):
+                if subscriber.resolved_name != CLOCK:
+                    self._look_at(subscriber)
+
+    def _look_at(self, subscriber: Any) -> None:
+        """Have lost what a topic feeds where a connection of it was lost, or made anew."""
+        topic = subscriber.resolved_name
+        made = [one.header for one in tuple(subscriber.impl.connections) if one.socket is not None]
+        now = {header["callerid"]: header for header in made if header}
+        for name, node in [link for link in self._links if link[0] == topic]:
+            link, header = (name, node), now.get(node)
+            if header is self._links[link]:
+                continue
+            if link in self._down:
+                if header is not None or not self._publishes(topic, node):
+                    self._end_of(link)
+            elif header is not None:
+                self._feed.lose(topic, f"{node} was not heard for a while", before=True)
+            elif self._publishes(topic, node):
+                self._down.add(link)
+                why = f"the connection to {node} is lost"
+                self._feed.lose(topic, why, before=True, for_good=True)
+            else:
+                del self._links[link]
+        self._links |= {(topic, node): header for node, header in now.items()}
+
+    def _end_of(self, link: tuple[str, str]) -> None:
+        """A publisher is heard again, or has left."""
+        del self._links[link]
+        self._down.remove(link)
+        if all(topic != link[0] for topic, _ in self._down):
+            self._feed.find(link[0])
+
+    def _publishes(self, topic: str, node: str) -> bool:
+        """Whether a node is listed as one that publishes a topic; it is if no master answers."""
+        try:
+            _, _, (publishers, _, _) = self._rospy.get_master().getSystemState()
+        except OSError:
+            return True
+        return any(name == topic and node in nodes for name, nodes in publishers)
+
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
         if self._publisher is not None:
@@ -107,6 +160,8 @@ class Ros1Source:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self._ends.set()
+        self._looking.join()
         for subscriber in self._subscribers:
             subscriber.unregister()
         self._rospy.signal_shutdown("rvmon ends")

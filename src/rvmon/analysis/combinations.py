@@ -223,7 +223,7 @@ def _nodes(states: Iterable[State]) -> list[State]:
 
 def _is_free(node: State) -> bool:
     """Whether a node is a leaf or remembers."""
-    return node.op in (StateOp.LEAF, StateOp.PREVIOUS, StateOp.SINCE)
+    return node.op in (StateOp.LEAF, StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT)
 
 
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
@@ -261,7 +261,7 @@ def _value(node: State, values: Mapping[State, bool]) -> bool:
             return values[node.args[0]]
         case StateOp.OR:
             return any(values[arg] for arg in node.args)
-        case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT:
+        case StateOp.LEAF | StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT:
             raise AssertionError("leaves and what remembers have a value already")
         case _:
             assert_never(node.op)

@@ -20,8 +20,7 @@ from rvmon.readers.messages.look import Looked
 from rvmon.readers.messages.meaning import UNKNOWN, Meaning, Sort, is_listed, meaning_of
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.schema import Kind
-from rvmon.units.table import parse_unit
-from rvmon.units.unit import Unit
+from rvmon.units import Unit, parse_unit
 
 _AXES = ("x", "y", "z")
 

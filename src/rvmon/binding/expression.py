@@ -6,9 +6,10 @@ import operator
 import re
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
-from rvmon.binding.functions import CONNECTIVES, greatest, least, number, yaw
+from rvmon.binding.functions import CONNECTIVES, every, greatest, least, number, some, yaw
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Source
 from rvmon.errors import RvmonError
@@ -38,6 +39,8 @@ _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 
 _OF_TEXTS: Mapping[str, Callable[..., Any]] = {"number": number}
+
+_OF_ELEMENTS: Mapping[str, Callable[..., Any]] = {"any": some, "all": every}
 
 _ROTATION = ("x", "y", "z", "w")
 
@@ -92,6 +95,10 @@ def _term(expression: Expression) -> Term:
             return Applied(CONNECTIVES[op], (_term(left), _term(right)), op.value)
         case Prefix(op=UnaryOp.NOT, operand=operand):
             return Applied(operator.not_, (_term(operand),), "not")
+        case Call(function=function, args=[Comparison() as compared]) if (
+            function.text in _OF_ELEMENTS
+        ):
+            return _of_elements(function.text, compared)
         case Call(function=function, args=args):
             return _applied(function.text, args)
     raise RvmonError(
@@ -111,6 +118,15 @@ def _number(value: Fraction | None, unit: str) -> Constant:
         raise RvmonError("a number is too large") from None
 
 
+def _of_elements(name: str, compared: Comparison) -> Term:
+    """A comparison of each element of an array with a number."""
+    left, right = _term(compared.left), _term(compared.right)
+    if not isinstance(left, Field) or not isinstance(right, Constant):
+        raise RvmonError(f"`{name}` compares an array with a number: `{name}(ranges < 0.3)`")
+    operation = partial(_OF_ELEMENTS[name], holds=compared.op.holds, limit=right.value)
+    return Applied(operation, (Elements(left),), name)
+
+
 def _applied(name: str, args: Sequence[Expression]) -> Term:
     terms = tuple(map(_term, args))
     if name == "yaw":
@@ -124,9 +140,11 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
         return Applied(_OF_TEXTS[name], terms, name)
     if name in _OF_ARRAYS and len(terms) == 1 and isinstance(terms[0], Field):
         return Applied(_OF_ARRAYS[name], (Elements(terms[0]),), name)
+    if name in _OF_ELEMENTS:
+        raise RvmonError(f"`{name}` compares an array with a number: `{name}(ranges < 0.3)`")
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:
-        names = [*known, *_OF_TEXTS, "yaw"]
+        names = [*known, *_OF_TEXTS, *_OF_ELEMENTS, "yaw"]
         meant = did_you_mean(name, names, f"there are {', '.join(names)}")
         raise RvmonError(f"no function `{name}` in a value: {meant}")
     wanted = len(FUNCTIONS[name].arguments)

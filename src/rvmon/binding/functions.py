@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -49,6 +50,26 @@ def greatest(values: Iterable[float]) -> float | None:
 def _known(values: Iterable[float]) -> list[float]:
     listed = values.tolist() if isinstance(values, np.ndarray) else values
     return [value for value in listed if value == value]
+
+
+def some(values: Iterable[float], *, holds: Callable[[float, float], bool], limit: float) -> Any:
+    """Whether a comparison holds of an element; unknown if of none that is known, and one is not.
+
+    >>> some([2.0, 0.1], holds=operator.lt, limit=0.3), some([], holds=operator.lt, limit=0.3)
+    (True, False)
+    """
+    known = _known(values)
+    if any(holds(value, limit) for value in known):
+        return True
+    return False if len(known) == len(list(values)) else None
+
+
+def every(values: Iterable[float], *, holds: Callable[[float, float], bool], limit: float) -> Any:
+    """Whether a comparison holds of all elements; unknown if it does but for unknown ones."""
+    known = _known(values)
+    if not all(holds(value, limit) for value in known):
+        return False
+    return True if len(known) == len(list(values)) else None
 
 
 def both(first: float, second: float) -> bool:

@@ -1,6 +1,16 @@
-"""Bindings from TOML files."""
+"""Bindings from TOML files, and the schema that a specification has under one."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING, Unpack
+
+from rvmon.readers.naming import read_as
+from rvmon.trace.schema import Schema
+
+if TYPE_CHECKING:
+    from rvmon.readers.reading import SchemaArguments
+    from rvmon.spec.checked.specification import CheckedSpec
+
 
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,13 +23,14 @@ from rvmon.binding.expression import term_of
 from rvmon.diagnostics.nearest import cannot_read, did_you_mean
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import RvmonError
+from rvmon.readers.messages.forms import DATABASES
 from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
+from rvmon.units import UnknownUnitError, parse_unit
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 
@@ -31,7 +42,7 @@ class On(StrEnum):
     CHANGE = "change"
 
 
-_TOP = ("clock", "definitions", "bind")
+_TOP = ("clock", "definitions", "robot", "bind")
 _SIGNAL = ("topic", "type", "value", "unit", "labels", "on", "clock")
 _EVENT = ("topic", "type", "value", "fields", "on", "clock")
 
@@ -72,8 +83,11 @@ def _binding(content: Mapping[str, Any], spec: CheckedSpec, folder: Path) -> Bin
     listed = content.get("definitions", [])
     if not isinstance(listed, list) or not all(isinstance(one, str) for one in listed):
         raise RvmonError('`definitions` is a list of files: ["shop_msgs/msg/Pick.msg"]')
+    robot = content.get("robot", "")
+    if not isinstance(robot, str):
+        raise RvmonError('`robot` stands for `*` in topics: robot = "robot_1"')
     clock = _choice(content, "clock", Clock) or Clock.LOG
-    return Binding(bounds, clock, dict(_definition(folder / one) for one in listed))
+    return Binding(bounds, clock, dict(_definition(folder / one) for one in listed), robot)
 
 
 def _tables(content: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -168,15 +182,21 @@ def _scaled(value: Term, factor: Fraction) -> Term:
 
 
 def _definition(path: Path) -> tuple[str, str]:
-    """Type and text of a definition; the last folders say the package: `shop_msgs/msg/Pick.msg`."""
-    if path.suffix != ".msg" or len(path.parts) < 3 or path.parts[-2] != "msg":
-        raise RvmonError(f"definition {path}: expected PACKAGE/msg/NAME.msg")
+    """Type and text of a definition; the last folders say the package: `shop_msgs/msg/Pick.msg`.
+
+    A database of CAN is called by its file.
+    """
+    is_database = path.suffix.lower() in DATABASES
+    is_message = path.suffix == ".msg" and len(path.parts) >= 3 and path.parts[-2] == "msg"
+    if not is_message and not is_database:
+        listed = ", ".join(DATABASES)
+        raise RvmonError(f"definition {path}: expected PACKAGE/msg/NAME.msg, or one of {listed}")
     try:
         text = text_of_file(path)
     except (OSError, UnicodeDecodeError) as error:
         reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
         raise RvmonError(f"definition {path}: {reason}") from None
-    return "/".join((*path.parts[-3:-1], path.stem)), text
+    return path.name if is_database else "/".join((*path.parts[-3:-1], path.stem)), text
 
 
 def _table(content: Mapping[str, Any], key: str, what: str) -> Mapping[str, Any]:
@@ -207,3 +227,27 @@ def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any], what: st
         if key not in known:
             listed = f"there are {', '.join(known)}" if known else "it has none"
             raise RvmonError(f"no {what} `{key}` is declared: {did_you_mean(key, known, listed)}")
+
+
+def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:
+    """A schema for recordings that are read with other options.
+
+    Args:
+        spec: the specification.
+        schema: of it; what no option gives stays as it says.
+        **options: see `rvmon.session.Spec.reading`; so are the errors.
+    """
+    binding = None
+    if (path := options.get("binding")) is not None:
+        from rvmon.binding.load import load_binding
+
+        binding = load_binding(path, spec)
+    return read_as(
+        schema,
+        time=options.get("time"),
+        columns=options.get("columns"),
+        nan=options.get("nan"),
+        no_update=options.get("no_update"),
+        binding=binding,
+        clock=options.get("clock"),
+    )

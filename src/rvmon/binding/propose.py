@@ -16,7 +16,7 @@ from rvmon.readers.messages.look import Looked, names_in
 from rvmon.readers.messages.meaning import Sort
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.trace.schema import Kind
-from rvmon.units.table import base_unit, parse_unit
+from rvmon.units import base_unit, parse_unit
 
 _MOST = 4
 """Places that are shown for a name."""

@@ -21,7 +21,7 @@ from rvmon.readers.messages.meaning import Sort
 from rvmon.readers.messages.topic import Topic
 from rvmon.spec.checked.specification import Type
 from rvmon.trace.schema import Kind
-from rvmon.units.table import parse_unit
+from rvmon.units import parse_unit
 
 _FITTING = {
     Kind.BOOL: {Kind.BOOL},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from rvmon.units.table import parse_unit
+from rvmon.units import parse_unit
 
 Dimension = tuple[tuple[str, int], ...]
 

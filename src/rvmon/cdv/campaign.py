@@ -101,7 +101,9 @@ class Campaign:
         robots: by name.
         code: whose coverage is measured.
         states: that the robot has; what is not listed is counted, and is no goal.
-        transitions: that its code allows, likewise.
+        transitions: that its code allows, likewise, and with them every pair of two that follow
+            each other; default: from each of `states` to each other one, where those that cannot be
+            are for `Closing.unreachable`.
         control: what is played beside a test.
         expected_failures: that do not fail it.
         gates: by strategy, what its tests have to bring; those of all strategies without one are
@@ -121,7 +123,7 @@ class Campaign:
     robots: Mapping[str, Robot]
     code: Code | None = None
     states: Sequence[str] = ()
-    transitions: Sequence[tuple[str, str]] = ()
+    transitions: Sequence[tuple[str, str]] | None = None
     control: Control | None = None
     expected_failures: Sequence[ExpectedFailure] = ()
     gates: Mapping[str, Gate] = field(default_factory=dict)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
+from xml.etree.ElementTree import Element
+
+from markupsafe import Markup
 
 from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.examples import Cell
 from rvmon.cdv.presentation import Presentation
-from rvmon.cdv.summary import BlockCoverage, CampaignSummary, KnownAnswer, RobotSummary
+from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import INTERVALS, RobotTables
-from rvmon.report.coverage_summary import counted, share_text
-from rvmon.report.markup import Child, e, page, scroll
-from rvmon.report.percent import percent_text
-from rvmon.report.style import MARKS
-from rvmon.report.table_html import legend, table_html
+from rvmon.report.pages import render, table_html
+from rvmon.report.table import VerdictTable
 from rvmon.verdict.verdict import Verdict
 
 
@@ -27,7 +26,7 @@ def campaign_page(
     examples: Mapping[Cell, str],
     tests: Mapping[tuple[str, str], str],
     coverage: Mapping[str, CoverageFigures],
-    further: Sequence[ET.Element] = (),
+    further: Sequence[Element | Markup] = (),
 ) -> str:
     """Write the page.
 
@@ -41,187 +40,79 @@ def campaign_page(
         coverage: by robot, what was covered.
         further: sections of the campaign's own.
     """
-    body: list[Child] = [_header(summary, presentation)]
-    body.extend(
-        _verdicts(robot, figures, tables[robot], examples)
-        for robot, figures in summary.robots.items()
-        if figures.requirements and figures.strategies
-    )
-    body.append(_covered(summary, coverage))
-    body.extend(
-        _coverage(figures, presentation, summary.kind)
-        for figures in summary.robots.values()
-        if any(one.statements or one.states for one in figures.strategies.values())
-    )
-    body.extend(
-        _known(robot, figures, tests) for robot, figures in summary.robots.items() if figures.known
-    )
-    body.extend(further)
-    body.append(
-        e(
-            "footer",
-            None,
-            e("p", None, "Run it again: ", e("code", None, command)),
-            legend(),
-            e("p", {"class": "soft"}, INTERVALS),
-        )
-    )
-    title = presentation.title or summary.name
-    return page(title, body, styles=["base.css", "report.css"], scripts=[])
-
-
-def _header(summary: CampaignSummary, presentation: Presentation) -> ET.Element:
-    robots = " and ".join(robot.title.lower() for robot in summary.robots.values())
-    partial = None
-    if summary.cut_short:
-        partial = e(
-            "p",
-            {"class": "partial", "role": "alert"},
-            f"Partial: {summary.cut_short} after {summary.finished} of {summary.planned} tests.",
-        )
     robots_of: dict[tuple[str, str], list[str]] = {}
     for robot in summary.robots.values():
         for requirement in robot.requirements.items():
             robots_of.setdefault(requirement, []).append(robot.title.lower())
     common = [one for one, of in robots_of.items() if len(of) == len(summary.robots)]
     others = [one for one in robots_of if one not in common]
-    more = None
-    if others:
-        whose = " and ".join(dict.fromkeys(of for one in others for of in robots_of[one]))
-        more = e(
-            "details", None, e("summary", None, f"{len(others)} more of {whose}"), _list(others)
-        )
-    return e(
-        "header",
-        None,
-        e(
-            "h1",
-            None,
-            f"{summary.finished} {presentation.tests}, {len(robots_of)} requirements",
-        ),
-        e(
-            "p",
-            {"class": "soft"},
-            f"{robots}; seed {summary.seed}; {presentation.page_work(summary)} "
-            f"in {summary.seconds:.1f} s",
-        ),
-        partial,
-        _list(common),
-        more,
+    return render(
+        "campaign.html",
+        title=presentation.title or summary.name,
+        summary=summary,
+        presentation=presentation,
+        count=len(robots_of),
+        about=" and ".join(robot.title.lower() for robot in summary.robots.values()),
+        common=common,
+        others=others,
+        whose=" and ".join(dict.fromkeys(of for one in others for of in robots_of[one])),
+        robots=[
+            (
+                figures.title,
+                figures.spec,
+                tables[robot],
+                *_tables(robot, tables[robot], examples, tests),
+                _silent(robot, tables[robot].own, examples),
+            )
+            for robot, figures in summary.robots.items()
+            if figures.requirements and figures.strategies
+        ],
+        coverage=coverage,
+        measured=[
+            figures
+            for figures in summary.robots.values()
+            if any(one.statements or one.states for one in figures.strategies.values())
+        ],
+        directed=[one for one in summary.robots.items() if one[1].known],
+        tests=tests,
+        further=further,
+        command=command,
+        intervals=INTERVALS,
     )
 
 
-def _list(requirements: Sequence[tuple[str, str]]) -> ET.Element:
-    listed: list[Child] = []
-    for name, text in requirements:
-        listed += [e("dt", None, name), e("dd", None, text)]
-    return e("dl", {"class": "facts"}, *listed)
-
-
-def _verdicts(
-    robot: str, figures: RobotSummary, tables: RobotTables, examples: Mapping[Cell, str]
-) -> ET.Element:
-    def link(strategy: str, requirement: str, verdict: Verdict) -> str | None:
-        return examples.get((robot, strategy, requirement, verdict))
-
-    parts: list[Child] = [
-        e("h2", None, figures.title),
-        e("p", {"class": "soft"}, "checked against ", e("code", None, figures.spec)),
-        table_html(tables.own, beside=tables.beside, link=link),
-    ]
-    remarks = (*tables.own.notes, *tables.sources, tables.remark)
-    parts.extend(e("p", {"class": "soft"}, remark) for remark in remarks if remark)
-    if tables.control is not None and tables.control_label:
-        summary_line = e("summary", None, tables.control_title)
-        table = table_html(tables.control, beside=tables.beside)
-        parts.append(e("details", None, summary_line, table))
-    return e("section", None, *parts)
-
-
-def _covered(summary: CampaignSummary, coverage: Mapping[str, CoverageFigures]) -> ET.Element:
-    """What of the coverage models was seen, each with the way to its page."""
-    lines = []
-    for robot, found in coverage.items():
-        link = e("a", {"href": found.page}, f"{share_text(found.share)} covered")
-        rest: list[Child] = [f", {counted(found.holes, 'hole')}"]
-        if found.illegal:
-            hits = f", {counted(len(found.illegal), 'illegal item')} hit"
-            rest.append(e("b", {"data-verdict": "F"}, hits))
-        lines.append(e("li", None, f"{summary.robots[robot].title}: ", link, *rest))
-    return e("section", None, e("h2", None, "Coverage"), e("ul", None, *lines))
-
-
-def _coverage(figures: RobotSummary, presentation: Presentation, kind: str) -> ET.Element:
-    charts = [
-        e(
-            "figure",
-            None,
-            e(
-                "figcaption",
-                None,
-                e("b", None, name),
-                f" {strategy.tests} tests",
-                _share_of_statements(strategy.total) if kind else None,
-            ),
-            presentation.chart(strategy),
-        )
-        for name, strategy in figures.strategies.items()
-    ]
-    return e(
-        "section",
-        None,
-        e("h2", None, f"{figures.title}: {f'statement coverage by {kind}' if kind else 'states'}"),
-        e("p", {"class": "soft"}, presentation.chart_legend),
-        e("div", {"class": "charts"}, *charts),
-    )
-
-
-def _share_of_statements(total: BlockCoverage) -> str:
-    """The share that ran; a line does not end before its sign."""
-    share = percent_text(total.covered, total.statements).replace(" ", "\N{NO-BREAK SPACE}")
-    return f", {share} of {total.statements} statements"
-
-
-def _known(robot: str, figures: RobotSummary, tests: Mapping[tuple[str, str], str]) -> ET.Element:
-    ids = list(figures.requirements)
-    faults = any(one.mutation for one in figures.known)
-    titles = ["test", "purpose", *(["planted fault"] if faults else []), *ids]
-    head = e("tr", None, *(e("th", None, title) for title in titles))
-    rows = [_known_row(robot, one, ids, tests, faults=faults) for one in figures.known]
-    right = sum(one.as_expected for one in figures.known)
-    grid = e("table", {"class": "verdicts"}, e("thead", None, head), e("tbody", None, *rows))
-    return e(
-        "section",
-        None,
-        e("h2", None, f"{figures.title}: directed tests"),
-        e("p", {"class": "soft"}, f"{right} of {len(figures.known)} ended as they should."),
-        scroll(grid),
-    )
-
-
-def _known_row(
+def _tables(
     robot: str,
-    one: KnownAnswer,
-    ids: list[str],
+    tables: RobotTables,
+    examples: Mapping[Cell, str],
     tests: Mapping[tuple[str, str], str],
-    *,
-    faults: bool,
-) -> ET.Element:
-    address = tests.get((robot, one.test))
-    name: Child = one.test if address is None else e("a", {"href": address}, one.test)
-    cells = [_verdict_cell(one, requirement, address) for requirement in ids]
-    purpose = e("td", {"class": "text purpose"}, one.text, *(f" – {what}" for what in one.missed))
-    fault = e("td", {"class": "text"}, one.mutation or "") if faults else None
-    return e("tr", None, e("th", {"scope": "row"}, name), purpose, fault, *cells)
+) -> tuple[Markup, Markup | None]:
+    """The table of a robot, whose counts lead to examples, and that of its control."""
+    own = table_html(
+        tables.own,
+        beside=tables.beside,
+        link=lambda *cell: examples.get((robot, *cell)),
+        witnesses={
+            name: tests[robot, test]
+            for name, test in tables.witnesses.items()
+            if (robot, test) in tests
+        },
+    )
+    if tables.control is None or not tables.control_label:
+        return own, None
+    return own, table_html(tables.control, beside=tables.beside)
 
 
-def _verdict_cell(one: KnownAnswer, requirement: str, address: str | None) -> ET.Element:
-    verdict = one.verdicts[requirement]
-    expected = one.expected.get(requirement)
-    text = f"{verdict.value} {MARKS[verdict].sign}"
-    if expected is not None and expected != verdict:
-        text += f" ≠ {expected}"
-    shown: Child = text
-    if address is not None and verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
-        shown = e("a", {"href": f"{address}#{requirement}"}, text)
-    return e("td", {"data-verdict": verdict.value}, shown)
+def _silent(
+    robot: str, table: VerdictTable, examples: Mapping[Cell, str]
+) -> list[tuple[str, str | None]]:
+    """The requirements that no test triggered, each with a run that says what it lacked."""
+    found: list[tuple[str, str | None]] = []
+    for name in table.requirements:
+        groups = [group for group in table.groups if name in group.counts]
+        counts = [group.counts[name] for group in groups]
+        tests = sum(sum(one.values()) for one in counts)
+        if tests and sum(one.get(Verdict.NOT_TRIGGERED, 0) for one in counts) == tests:
+            shown = (examples.get((robot, one.name, name, Verdict.NOT_TRIGGERED)) for one in groups)
+            found.append((name, next((one for one in shown if one is not None), None)))
+    return found

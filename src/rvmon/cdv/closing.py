@@ -13,6 +13,9 @@ from rvmon.cdv.witness_templates import Edge
 if TYPE_CHECKING:
     from rvmon.timed.model.network import Network
 
+STRATEGY = "closed"
+"""That of all tests that are made to close holes."""
+
 _Option = TypeVar("_Option", bound=Hashable)
 
 

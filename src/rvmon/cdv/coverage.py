@@ -16,9 +16,9 @@ from rvmon.coverage.hits import merged, share
 from rvmon.coverage.model import Group, Item, Model, model_of, without
 from rvmon.coverage.record import TestRecord
 from rvmon.errors import RvmonError
-from rvmon.loading import load
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
+from rvmon.session import load
 from rvmon.spec.checked.goals import BinKind
 from rvmon.writing import write_whole
 

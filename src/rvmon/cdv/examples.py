@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from msgspec import structs
@@ -32,13 +32,16 @@ class Examples:
     by_cell: dict[Cell, Job]
 
 
-def choose_examples(played: Sequence[Played], *, every: bool = False) -> Examples:
+def choose_examples(
+    played: Sequence[Played], *, also: Collection[str] = (), every: bool = False
+) -> Examples:
     """The first test behind each count, every test with a known answer, and every crash.
 
     A test that hung, or ended its process, has no page: it cannot be played again here.
 
     Args:
         played: of the campaign.
+        also: names of tests that get a page whatever became of them.
         every: whether all others are shown as well.
     """
     by_cell: dict[Cell, Job] = {}
@@ -47,7 +50,8 @@ def choose_examples(played: Sequence[Played], *, every: bool = False) -> Example
         job, outcome = one.job, one.outcome
         if outcome.ending in (Ending.HUNG, Ending.LOST):
             continue
-        wanted = every or bool(job.test.expected) or outcome.error is not None
+        wanted = every or job.test.name in also
+        wanted |= bool(job.test.expected) or outcome.error is not None
         if job.test.mutation is None:
             for requirement, verdict in outcome.verdicts.items():
                 cell = (job.robot, job.test.strategy, requirement, verdict)

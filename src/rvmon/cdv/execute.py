@@ -17,7 +17,7 @@ from rvmon.cdv.unfinished import Unfinished
 from rvmon.coverage.record import Ending
 from rvmon.execute import parallel
 from rvmon.execute.ended import Ended
-from rvmon.loading import load
+from rvmon.session import load
 from rvmon.verdict.verdict import Verdict
 
 INTERRUPTED = "interrupted"

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import Campaign, ExpectedFailure, Gate
+from rvmon.cdv.closing import STRATEGY
 from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.expected import accepted_failures, is_about
 from rvmon.cdv.outcome import Played, Results
@@ -15,7 +16,7 @@ from rvmon.cdv.summary import differences, missed
 from rvmon.cdv.unreachable import unreachable_items
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError
-from rvmon.loading import load
+from rvmon.session import load
 from rvmon.verdict.verdict import Verdict
 
 RobotRequirement = tuple[str, str]
@@ -262,7 +263,7 @@ def refuse_unknown(campaign: Campaign) -> None:
     specs = [load(robot.spec) for robot in campaign.robots.values() if robot.spec is not None]
     there_is = {
         "requirement": {name for spec in specs for name in spec.requirements},
-        "strategy": {"", *campaign.strategies},
+        "strategy": {"", STRATEGY, *campaign.strategies},
         "robot": {"", *campaign.robots},
     }
     named = [
@@ -278,5 +279,5 @@ def refuse_unknown(campaign: Campaign) -> None:
         ]
     for what, kind, name in named:
         if name not in there_is[kind]:
-            names = ", ".join(sorted(there_is[kind] - {""}))
+            names = ", ".join(sorted(there_is[kind] - {"", STRATEGY}))
             raise UnknownNameError(f"{what} `{name}`: there are {names}")

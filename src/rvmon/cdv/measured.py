@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import permutations
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.meter import code_groups
@@ -19,11 +20,12 @@ def measured_groups(campaign: Campaign) -> list[Group]:
     Raises:
         RvmonError: code is measured, and coverage.py is not installed, or a file is no Python.
     """
-    transitions = [_ARROW.join(pair) for pair in campaign.transitions]
+    declared = campaign.transitions
+    transitions = permutations(campaign.states, 2) if declared is None else declared
     return [
         group_of(STATES, Subject.STATES, [*map(Item, campaign.states)]),
-        group_of(TRANSITIONS, Subject.TRANSITIONS, [*map(Item, transitions)]),
-        group_of(PAIRS, Subject.TRANSITIONS, [*map(Item, _pairs(campaign.transitions))]),
+        group_of(TRANSITIONS, Subject.TRANSITIONS, [Item(_ARROW.join(one)) for one in transitions]),
+        group_of(PAIRS, Subject.TRANSITIONS, [*map(Item, _pairs(declared or ()))]),
         *(code_groups(campaign.code) if campaign.code is not None else ()),
     ]
 

@@ -22,7 +22,7 @@ from rvmon.coverage.hits import Hits
 from rvmon.coverage.record import Ending
 from rvmon.diagnostics.shown import shown_line
 from rvmon.errors import RvmonError
-from rvmon.loading import load
+from rvmon.session import load
 from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:

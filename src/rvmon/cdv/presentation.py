@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from markupsafe import Markup
 
 from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.documents import table_document
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, StrategySummary
 from rvmon.cdv.tables import RobotTables, robot_tables
-from rvmon.report.markup import e
+from rvmon.report.pages import component
 from rvmon.report.percent import percent_text
 from rvmon.report.table import VerdictTable
 
@@ -21,35 +23,21 @@ def work_done(summary: CampaignSummary) -> str:
     return f"{summary.simulated_s:,.0f} s simulated"
 
 
-def block_chart(figures: StrategySummary) -> ET.Element:
+def block_chart(figures: StrategySummary) -> Markup:
     """Tables of one strategy: shares of the blocks, tests that entered states, and went on."""
     blocks = [
-        _row(name, _share(one), _share(figures.branches.get(name, NOTHING)))
+        (name, _share(one), _share(figures.branches.get(name, NOTHING)))
         for name, one in figures.statements.items()
     ]
-    states = [_row(state, str(tests)) for state, tests in figures.states.items()]
     transitions = [
-        _row(f"{source} → {target}", str(tests))
-        for (source, target), tests in figures.transitions.items()
+        (f"{source} → {target}", tests) for (source, target), tests in figures.transitions.items()
     ]
-    return e(
-        "div",
-        None,
-        _table(("", "statements", "branches"), blocks),
-        _table(("state", "tests"), states),
-        _table(("transition", "tests"), transitions),
+    tables = (
+        (("", "statements", "branches"), blocks),
+        (("state", "tests"), [*figures.states.items()]),
+        (("transition", "tests"), transitions),
     )
-
-
-def _table(titles: Sequence[str], rows: Sequence[ET.Element]) -> ET.Element | None:
-    if not rows:
-        return None
-    head = e("tr", None, *(e("th", None, title) for title in titles))
-    return e("table", None, e("thead", None, head), e("tbody", None, *rows))
-
-
-def _row(name: str, *cells: str) -> ET.Element:
-    return e("tr", None, e("th", {"scope": "row"}, name), *(e("td", None, cell) for cell in cells))
+    return component("headed_tables", tables)
 
 
 def _share(block: BlockCoverage) -> str:
@@ -70,7 +58,7 @@ RobotTest = tuple[str, str]
 
 def _no_sections(
     _tests: Mapping[RobotTest, Test], _pages: Mapping[RobotTest, str]
-) -> list[ET.Element]:
+) -> list[Element | Markup]:
     """Show nothing more."""
     return []
 
@@ -104,13 +92,13 @@ class Presentation:
     document: Callable[[CampaignSummary], Mapping[str, object]] = table_document
     work: Callable[[CampaignSummary], str] = work_done
     page_work: Callable[[CampaignSummary], str] = work_done
-    chart: Callable[[StrategySummary], ET.Element] = block_chart
+    chart: Callable[[StrategySummary], Element | Markup] = block_chart
     chart_legend: str = (
         "The share of statements that ran and of branches that were taken; how many tests entered "
         "a state, and went from one to another."
     )
     sections: Callable[
-        [Mapping[RobotTest, Test], Mapping[RobotTest, str]], Sequence[ET.Element]
+        [Mapping[RobotTest, Test], Mapping[RobotTest, str]], Sequence[Element | Markup]
     ] = _no_sections
     foremost: Sequence[str] = ()
     robot_words: Callable[[str], Sequence[str]] = _option_of_robot

@@ -12,8 +12,8 @@ from rvmon.cdv.outcome import Outcome
 from rvmon.cdv.play import outcome_of, run_of, system_of
 from rvmon.cdv.system import Observer, Run, Values
 from rvmon.report.markup import Child
+from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
-from rvmon.report.run_page import JudgedRun, RunPage
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report

@@ -84,7 +84,8 @@ class Observer:
 
         Args:
             t_ns: its instant.
-            values: what changed or occurred; a name that the requirements lack is passed over.
+            values: what changed or occurred; a name that the requirements lack is passed over. An
+                event that occurred several times is a tuple of its fields, `({}, {})` without any.
         """
         for take in self._takers:
             take(t_ns, values)

@@ -30,6 +30,7 @@ class RobotTables:
         control_title: heads that table of the page.
         sources: remarks of the page on what stands beside.
         remark: below the tables.
+        witnesses: by requirement, the test that follows the run by which model checking shows it.
     """
 
     own: VerdictTable
@@ -39,6 +40,7 @@ class RobotTables:
     control_title: str = ""
     sources: tuple[str, ...] = ()
     remark: str = ""
+    witnesses: Mapping[str, str] = field(default_factory=dict)
 
 
 def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:

@@ -26,10 +26,10 @@ from rvmon.cdv.shrink import Shrunk, failure_of, shrink
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.execute import parallel
-from rvmon.loading import load
 from rvmon.report.folder import made
 from rvmon.report.markup import Child, e
-from rvmon.report.run_page import JudgedRun
+from rvmon.report.panels import JudgedRun
+from rvmon.session import load
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
 

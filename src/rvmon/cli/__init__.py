@@ -16,33 +16,43 @@ from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli.options import at_most
+from rvmon.cli.output import rendered, spell, warn
 from rvmon.cli.reading import with_values
 from rvmon.cli.reproduced import relax
-from rvmon.cli.say import rendered, spell, warn
 from rvmon.errors import EXTRAS, DiagnosedError, RvmonError, not_installed
 from rvmon.execute.ended import interrupted_by_sigterm
 
 if TYPE_CHECKING:
     import argparse
 
-COMMANDS = {
-    "check": "find what is wrong in specifications",
-    "run": "check recordings against a specification",
-    "watch": "monitor a running robot: verdicts as they are decided",
-    "format": "lay specifications out in the canonical form",
-    "lsp": "the language server that editors start",
-    "explain": "a requirement, or a diagnostic's code, in plain words",
-    "why": "an attempt taken apart: why it passed, failed or stayed open",
-    "clip": "a recording cut around an attempt; a file that reproduces it",
-    "init": "a starter specification from a recording",
-    "bind": "which topics of a recording feed a specification: a proposal",
-    "compile": "a specification as C that runs alone, or as automata",
-    "compare": "what has changed between two files of verdicts",
-    "evidence": "whether evidence that was kept still holds",
-    "cover": "what tests have covered, what is missing, and what each test is good for",
-    "verify": "model-check a network of timed automata",
-    "conform": "hold recorded runs against a network of timed automata",
+GROUPS = {
+    "write requirements": {
+        "look": "what a recording holds, over time",
+        "init": "a starter specification from a recording, or a campaign",
+        "bind": "which topics of a recording feed a specification: a proposal",
+        "check": "what is wrong in specifications, or can never hold together",
+        "explain": "a requirement, or a diagnostic's code, in plain words",
+        "format": "the canonical layout",
+    },
+    "evaluate": {
+        "run": "check recordings against a specification",
+        "watch": "monitor a running robot: verdicts as they are decided",
+        "why": "an attempt taken apart: why it passed, failed or stayed open",
+        "clip": "a recording cut around an attempt; a file that reproduces it",
+        "compare": "what has changed between two files of verdicts",
+        "cover": "what tests have covered, and what is missing",
+        "evidence": "whether evidence that was kept still holds",
+    },
+    "models, and elsewhere": {
+        "verify": "model-check a network of timed automata",
+        "conform": "whether recordings are runs of such a network",
+        "compile": "a specification as C that runs alone, or as automata",
+    },
 }
+"""What each command is for, as `rvmon --help` lists them."""
+
+COMMANDS = (*(name for group in GROUPS.values() for name in group), "lsp")
+"""All of them: `lsp` is started by editors."""
 
 
 _MANY = 50_000
@@ -138,16 +148,28 @@ def _interrupted() -> int:
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """The parser with the named subcommand only, or with all for help and for errors."""
+    import argparse
+
     from rvmon.cli.parser import Parser
     from rvmon.verdict.verdict import LAW
 
+    listed = [
+        line
+        for group, commands in GROUPS.items()
+        for line in (f"{group}:", *(f"  {name:<9} {text}" for name, text in commands.items()))
+    ]
     parser = Parser(
         prog="rvmon",
-        description="Temporal requirements in, verdicts about robots out.",
+        usage="rvmon [--version] COMMAND ...",
+        description="\n".join(["Temporal requirements in, verdicts about robots out.", *listed]),
         epilog="example: rvmon run examples/base.rv examples/base.csv",
+        add_help=False,
     )
-    parser.add_argument("--version", action="version", version=f"rvmon {__version__}, law {LAW}")
-    subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
+    hidden = argparse.SUPPRESS
+    version = f"rvmon {__version__}, law {LAW}"
+    parser.add_argument("-h", "--help", action="help", help=hidden)
+    parser.add_argument("--version", action="version", version=version, help=hidden)
+    subparsers = parser.add_subparsers(metavar="COMMAND", required=True, help=hidden, prog="rvmon")
     named = [word for word in words[:1] if word in COMMANDS]
     for command in named or COMMANDS:
         module = import_module(f"rvmon.cli.{command}")

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.reading import allowed_names, opened, reading_spec
-from rvmon.loading import load
 from rvmon.readers.recording import FileRecording, can_be_read_again
-from rvmon.session import Spec
+from rvmon.session import Spec, load
 from rvmon.trace.sample import Sample
 from rvmon.verdict.covered import IllegalHit
 
@@ -34,6 +33,7 @@ class Options:
         allow_missing: the names that recordings in columns may lack; `True`: all.
         coverage: whether all that the coverage model has is watched; default: coverpoints and
             crosses alone.
+        explains: whether anybody is told why there is no attempt, and what came late.
     """
 
     only: tuple[str, ...] | None = None
@@ -42,6 +42,7 @@ class Options:
     robustness: bool = False
     allow_missing: bool | tuple[str, ...] = False
     coverage: bool = False
+    explains: bool = True
 
 
 def spec_and_options(
@@ -62,7 +63,15 @@ def spec_and_options(
         arguments.robustness,
         allowed_names(arguments.allow_missing),
         arguments.coverage is not None,
+        not _shows_counts_alone(arguments),
     )
+
+
+def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
+    """Whether all that is shown of reports is how many verdicts there are."""
+    asked = vars(arguments)  # evidence that is evaluated again has none of these
+    is_kept = any(asked.get(name) for name in ("out", "report", "junit", "mcap", "evidence"))
+    return bool(asked.get("quiet") and asked.get("format") == "text" and not is_kept)
 
 
 class Beside:

@@ -6,15 +6,13 @@ import argparse
 import shlex
 
 from rvmon.cli.options import add_const, constants_of
-from rvmon.cli.progress import busy
-from rvmon.cli.say import say, warn
+from rvmon.cli.output import busy, say, warn
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "bind",
-        help="which topics and fields of a recording feed a specification: a proposal",
         description="Print a binding (TOML): which topics and fields of a bag or MCAP file feed "
         "the signals and events of a specification, by what messages mean, by units, types and "
         "words, with the values that they have there. What nothing fits clearly is left open, and "
@@ -30,8 +28,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Look at the topics, print the binding, and return the exit code."""
     from rvmon.binding.propose import propose
-    from rvmon.loading import load
     from rvmon.readers.recording import messages_of
+    from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     with busy(f"reading {arguments.data}"):

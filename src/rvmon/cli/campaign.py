@@ -8,11 +8,14 @@ not, 2 wrong input, 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 from __future__ import annotations
 
 import argparse
+from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.gate import CampaignJudgement
+from rvmon.cdv.junit import junit_xml
 from rvmon.cli import evidence, guarded
 from rvmon.cli.campaign_options import (
     add_campaign_options,
@@ -22,9 +25,35 @@ from rvmon.cli.campaign_options import (
     add_replay_options,
     add_shrink_options,
 )
+from rvmon.cli.output import warn
 from rvmon.cli.parser import Parser
 from rvmon.errors import UnknownNameError
-from rvmon.report.folder import refuse_no_file
+from rvmon.report.folder import refuse_no_file, write_file
+from rvmon.report.percent import counted
+
+SHOWN = 20
+"""Lines about what is wrong; `--junit` has all of them."""
+
+
+def held(campaign: Campaign, judgement: CampaignJudgement, arguments: Namespace) -> bool:
+    """Print, and write as JUnit XML, what a campaign came to; return whether all is as expected.
+
+    Args:
+        campaign: what it was about.
+        judgement: on its tests.
+        arguments: with `junit`, the path of a file or `None`.
+    """
+    if arguments.junit is not None:
+        write_file(arguments.junit, junit_xml(campaign.name, judgement))
+    for what, count in judgement.known.items():
+        warn(f"{what} ({counted(count, 'test')})")
+    wrong = judgement.wrong
+    for what in wrong[:SHOWN]:
+        warn(f"not as expected: {what}")
+    if len(wrong) > SHOWN:
+        warn(f"not as expected: … and {len(wrong) - SHOWN:,} more: --junit FILE has all")
+    return not wrong
+
 
 INTERRUPTED = 130
 """The exit code of a campaign that was interrupted."""
@@ -178,7 +207,6 @@ def run_tests(
         words: the command that runs it again, and its options but those.
         robots: of its robots those that are tested; default: all.
     """
-    from rvmon.cli.campaign_gate import held
     from rvmon.cli.campaign_run import conduct, show
 
     campaign = _as_asked(campaign, arguments)
@@ -227,7 +255,6 @@ def close_holes(
     """
     from rvmon.cdv.execute import INTERRUPTED as BY_HAND
     from rvmon.cli.campaign_close import conduct_closing
-    from rvmon.cli.campaign_gate import held
 
     campaign = _as_asked(campaign, arguments)
     words = [*words, *_given(arguments, "spec", "timeout")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ from rvmon.cdv.campaign_files import TESTS, TEXT_COLUMNS, dated_files, left_over
 from rvmon.cdv.close import Budget, Closed, close
 from rvmon.cdv.close.close import MARGIN
 from rvmon.cdv.close.document import closed_document
+from rvmon.cdv.close.faults import with_mutants
 from rvmon.cdv.close.text import print_closed
 from rvmon.cdv.documents import to_json
 from rvmon.cdv.gate import CampaignJudgement
@@ -22,8 +24,7 @@ from rvmon.cdv.outcome import Results
 from rvmon.cdv.plan import Plan
 from rvmon.cdv.program import typed
 from rvmon.cli.campaign_run import specs_of, written
-from rvmon.cli.progress import bar
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
 from rvmon.writing import write_whole
@@ -63,10 +64,18 @@ def conduct_closing(
             jobs=arguments.dask or arguments.jobs,
             progress=lambda met, goals: show(met / goals),
         )
+    if arguments.mutants is not None:
+        jobs = arguments.jobs or os.cpu_count() or 1
+        with bar("mutants", 1.0) as show:
+            closed = with_mutants(
+                campaign, robot, closed, arguments.mutants, jobs=jobs, progress=show
+            )
     amount: list[object] = ["--tests", arguments.tests, "--seed", arguments.seed]
     amount += ["--strategy", ",".join(strategies)] if strategies else []
     if arguments.margin != MARGIN:
         amount += ["--margin", arguments.margin]
+    if arguments.mutants is not None:
+        amount += ["--mutants", arguments.mutants]
     if arguments.seconds is not None:
         amount += ["--seconds", arguments.seconds]
     command, *others = words

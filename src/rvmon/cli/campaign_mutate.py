@@ -16,8 +16,7 @@ from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.documents import to_json
 from rvmon.cdv.files import load
 from rvmon.cdv.plan import plan
-from rvmon.cli.progress import bar
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.report.folder import made
 from rvmon.writing import write_whole

@@ -95,6 +95,13 @@ def add_closing_options(parser: argparse.ArgumentParser) -> None:
         help="keep so many tests that show each goal, where so many were found (2): one covers it, "
         "more see more faults",
     )
+    parser.add_argument(
+        "--mutants",
+        metavar="N",
+        type=positive,
+        help="keep also the fewest tests that kill what the suite does not of so many mutants of "
+        "the code, and show what each choice of tests sees of them and of those held out",
+    )
     add_playing_options(parser)
     add_judging_options(parser)
 

@@ -14,14 +14,13 @@ from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import Job
 from rvmon.cdv.program import typed
 from rvmon.cdv.run_pages import Replay, play_again, replay_page
-from rvmon.cli.say import say_json, warn
+from rvmon.cli.output import say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
-from rvmon.loading import load
 from rvmon.report.folder import made, refuse_no_file
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
-from rvmon.session import Spec
+from rvmon.session import Spec, load
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
 

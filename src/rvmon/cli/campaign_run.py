@@ -27,13 +27,11 @@ from rvmon.cdv.text import print_summary
 from rvmon.cdv.unfinished import unfinished
 from rvmon.cdv.write_pages import write_pages
 from rvmon.cli.campaign_evidence import begun, write_campaign
-from rvmon.cli.progress import bar, busy
-from rvmon.cli.say import say_json, warn
+from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError
-from rvmon.loading import load
 from rvmon.report.folder import made
 from rvmon.report.terminal import Terminal
-from rvmon.session import Spec
+from rvmon.session import Spec, load
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +188,8 @@ def written(
         write_tests(folder, results)
         played = frozenset(one.job.test.strategy for one in results.played)
         campaign.presentation.write_more(folder, played)
-    examples = choose_examples(results.played, every=arguments.pages == "all")
+    witnesses = {test for table in tables.values() for test in table.witnesses.values()}
+    examples = choose_examples(results.played, also=witnesses, every=arguments.pages == "all")
     with bar("pages", len(examples.jobs)) as show:
         otherwise = write_pages(
             folder,

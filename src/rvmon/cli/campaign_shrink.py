@@ -13,8 +13,7 @@ from rvmon.cdv.play import player
 from rvmon.cdv.regression import regression_test, removed, save_regression
 from rvmon.cdv.shrink import Shrunk, shrink
 from rvmon.cli.campaign_replay import robot_of
-from rvmon.cli.progress import busy
-from rvmon.cli.say import say_json, warn
+from rvmon.cli.output import busy, say_json, warn
 from rvmon.coverage.record import Ending
 from rvmon.report.folder import made
 

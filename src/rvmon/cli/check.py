@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_const, add_max_memory, constants_of
-from rvmon.cli.progress import busy
+from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.reading import add_binding
-from rvmon.cli.say import rendered, say, say_json, warn
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.diagnostics.text_file import text_of_file, text_of_input
 
@@ -25,7 +24,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "check",
-        help="find what is wrong in specifications",
         description="Find what is wrong in specifications: all errors and warnings of each file.",
         epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
     )

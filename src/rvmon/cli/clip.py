@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import span, ticks
 from rvmon.cli.options import add_const, constants_of, refuse_over
+from rvmon.cli.output import say, warn
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
     add_allow_missing,
@@ -21,7 +22,6 @@ from rvmon.cli.reading import (
     reading_spec,
 )
 from rvmon.cli.reproduced import ENDING
-from rvmon.cli.say import say, warn
 from rvmon.errors import RvmonError
 from rvmon.readers.places import name_of
 from rvmon.report.folder import refuse_no_file
@@ -39,7 +39,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "clip",
-        help="a recording cut around an attempt; a file that reproduces it",
         description="Cut a recording around an attempt, in the recording's own format. The last "
         "values of signals before the cut are carried to its start. The piece is evaluated again; "
         "the exit code is 1 if the attempt gets another verdict there.",
@@ -82,7 +81,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Find the attempt, cut the recording, judge the piece, and return the exit code."""
     from rvmon.clipping.clip import clip, refuse_place
-    from rvmon.loading import load
+    from rvmon.session import load
 
     data = arguments.data
     out, case = _places(arguments)

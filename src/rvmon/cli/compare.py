@@ -7,13 +7,12 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_format
-from rvmon.cli.progress import busy
-from rvmon.cli.say import say_json
+from rvmon.cli.output import busy, say_json
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from rvmon.results.compare import Change, Comparison, Difference
+    from rvmon.verdict.compare import Change, Comparison, Difference
 
 LISTED = 20
 """Differences of one kind that the text lists."""
@@ -23,7 +22,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compare",
-        help="show what has changed between two files of verdicts",
         description="Hold the verdicts on recordings against earlier ones, by recording and "
         "requirement: what fails now, what is fixed, what is no longer shown. Files are those of "
         "`rvmon run --out` (.csv, .parquet, .sqlite, .duckdb) and of `--format json` (.json). The "
@@ -39,8 +37,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, show, and return the exit code."""
-    from rvmon.results.compare import compare
-    from rvmon.results.read import read_results
+    from rvmon.verdict.compare import compare
+    from rvmon.verdict.read_rows import read_results
 
     with busy("comparing verdicts"):
         found = compare(read_results(arguments.before), read_results(arguments.after))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
-from rvmon.cli.say import say
+from rvmon.cli.output import say, warn
 from rvmon.diagnostics.shown import shown_json, shown_line
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.costs import CompileReport
@@ -18,6 +18,7 @@ from rvmon.spec.print.printer import format_duration
 from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
+    from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.session import Spec
 
 _AUTOMATA = ("dot", "json", "hoa", "costs")
@@ -27,7 +28,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "compile",
-        help="a specification as C that runs alone, or as automata",
         description="Write a monitor that needs nothing of rvmon: C99 (the core that judges, the "
         "plan that it judges by, a header for C++) that runs in one block of memory. Or the "
         "automata: dot for Graphviz, json, hoa (the least LTL3 monitors of requirements without "
@@ -47,7 +47,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Generate and write, and return the exit code."""
-    from rvmon.loading import load
+    from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     ids = asked_ids(arguments, spec)
@@ -89,9 +89,7 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
 
         return costs_text({one.requirement.id: compile_report(one) for one in chosen})
     if form == "hoa":
-        from rvmon.export.hoa import hoa
-
-        return "".join(map(hoa, chosen))
+        return _hoa_texts(chosen)
     if form == "json":
         import msgspec
 
@@ -107,6 +105,27 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
             raise RvmonError(f"error: {one.requirement.id} has no automaton: {one.refusal}")
         graph = graph_of(one, one.automaton, spec.checked)
         texts.append(graph_dot(graph, one.requirement.id))
+    return "".join(texts)
+
+
+def _hoa_texts(chosen: Sequence[CompiledRequirement]) -> str:
+    """The automata that can be written; of the others it is said why they are left out.
+
+    Raises:
+        RvmonError: there is none; the message says why of the first.
+    """
+    from rvmon.export.hoa import hoa
+
+    texts, faults = [], []
+    for one in chosen:
+        try:
+            texts.append(hoa(one))
+        except RvmonError as error:
+            faults.append(error)
+    if not texts:
+        raise faults[0]
+    for fault in faults:
+        warn(f"left out: {str(fault).removeprefix('error: ')}")
     return "".join(texts)
 
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import duration
 from rvmon.cli.options import add_budget, add_format, budget_of
-from rvmon.cli.progress import busy
+from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.reading import add_time
-from rvmon.cli.say import say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -24,7 +23,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "conform",
-        help="hold recorded runs against a network of timed automata",
         description="Decide whether recordings (.csv, .jsonl) are runs of a network, as far as "
         "they show: their events are the labels of its edges, or its channels. The first sample "
         "is the network's start. Exit code 0: all conform; 1: some do not, or it is not decided; "

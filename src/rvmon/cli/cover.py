@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import percentage
 from rvmon.cli.options import add_format, add_max_memory
-from rvmon.cli.progress import busy
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -24,7 +23,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "cover",
-        help="what tests have covered, what is missing, and what each test is good for",
         description="Show what the tests of one or several databases of coverage have covered "
         "together: groups and total, verdicts, and first of all what is wrong.",
         epilog="examples: rvmon run examples/base.rv examples/base.csv --coverage base.cov; "

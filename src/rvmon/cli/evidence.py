@@ -16,8 +16,7 @@ from rvmon.cli.evidence_write import is_recording, rows_of_judged
 from rvmon.cli.judging import judge_all
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import constants_of
-from rvmon.cli.progress import bar
-from rvmon.cli.say import say
+from rvmon.cli.output import bar, say
 from rvmon.evidence.keep import (
     Kept,
     TamperedError,
@@ -27,10 +26,10 @@ from rvmon.evidence.keep import (
     sha256_of,
 )
 from rvmon.evidence.matrix import Row, rows_by_item
-from rvmon.loading import load
-from rvmon.results.write import csv_bytes
+from rvmon.session import load
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.verdict import LAW
+from rvmon.verdict.write_rows import csv_bytes
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign
@@ -46,42 +45,33 @@ def add_parser(
         subparsers: take it.
         campaign: makes the campaign whose tests are played again; `None`: they are not.
     """
-    parser = subparsers.add_parser("evidence", help="see whether evidence that was kept holds")
-    verify = parser.add_subparsers(metavar="COMMAND", required=True).add_parser(
-        "verify",
-        help="see whether it holds",
+    parser = subparsers.add_parser(
+        "evidence",
+        help="whether evidence that was kept still holds",
         description="See that nothing in evidence (`--evidence FILE`) was changed, that recordings "
         "are those that were evaluated, and evaluate a sample again. Exit codes: 0 it holds, 1 it "
         "does not, 2 something could not be checked.",
         epilog="example: %(prog)s base.zip --sample all",
     )
-    verify.add_argument("file", metavar="FILE", help="the evidence")
-    verify.add_argument(
+    parser.add_argument("file", metavar="FILE", help="the evidence")
+    parser.add_argument(
         "--sample",
         metavar="N",
         type=lambda text: None if text == "all" else positive(text),
         default=10,
         help="evaluate so many recordings or tests again, or all (%(default)s)",
     )
-    verify.add_argument("--seed", metavar="S", type=int, default=1, help="of the sample (1)")
-    verify.add_argument("--jobs", metavar="N", type=positive, default=1, help="processes (1)")
-    verify.set_defaults(run=run, made=campaign)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Verify, say what was found, and return the exit code."""
-    return verify(arguments)
+    parser.add_argument("--seed", metavar="S", type=int, default=1, help="of the sample (1)")
+    parser.add_argument("--jobs", metavar="N", type=positive, default=1, help="processes (1)")
+    parser.set_defaults(run=run, made=campaign)
 
 
 Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]
 """Judges recordings, or plays tests, again, on so many processes."""
 
 
-def verify(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """Verify, say what was found, and return the exit code.
-
-    Args:
-        arguments: of `rvmon evidence verify`.
 
     Raises:
         RvmonError: it is no evidence.
@@ -128,7 +118,7 @@ def _verify(
     again: Again = _judged_again
     if about.judging is None:
         if arguments.made is None:
-            program = f"{' '.join(about.command[:1])} evidence verify {arguments.file}"
+            program = f"{' '.join(about.command[:1])} evidence {arguments.file}"
             unchecked.append(f"tests: the program that played them does: `{program}`")
             return
         from rvmon.cli.campaign_evidence import as_kept, played_again, programs_of

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_const, add_max_memory, constants_of
-from rvmon.cli.say import say
+from rvmon.cli.output import say
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
@@ -25,7 +25,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "explain",
-        help="a requirement, or a diagnostic's code, in plain words",
         description="Explain a requirement: in plain words, its automaton, and the shortest runs "
         "on which it passes, fails, is not triggered, stays open. Two: where they differ. "
         "A diagnostic's code such as RV012: its page; `codes`: all codes.",
@@ -52,8 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
         code = arguments.subject
         say(code_list() if code == "codes" else page_of(code), end="")
         return 0
-    from rvmon.loading import load
     from rvmon.monitor import compile_spec
+    from rvmon.session import load
 
     spec = load(arguments.subject, const=constants_of(arguments.const))
     ids = _ids(arguments.ids, spec)

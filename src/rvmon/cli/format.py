@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from rvmon.cli.say import say, warn
+from rvmon.cli.output import say, warn
 from rvmon.writing import write_whole
 
 
@@ -13,7 +13,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "format",
-        help="lay specifications out in the canonical form",
         description="Rewrite specifications in the canonical form; meaning and comments stay. "
         "With - as SPEC, standard input is laid out on standard output.",
         epilog="example: rvmon format --check specs/*.rv",

@@ -1,4 +1,4 @@
-"""`rvmon init`: a starter specification from a recording."""
+"""`rvmon init`: a starter specification from a recording, or a starter campaign of tests."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.progress import busy
+from rvmon.cli.output import busy, say
 from rvmon.cli.reading import add_time, time_words
-from rvmon.cli.say import say
 from rvmon.errors import RvmonError
 from rvmon.writing import write_whole
 
@@ -22,13 +21,19 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "init",
-        help="a starter specification from a recording",
         description="Write a starter specification from a recording: signals with guessed types, "
-        "ranges and rates, events, and requirements that run at once.",
-        epilog="examples: rvmon init examples/base.csv -o mine.rv; rvmon run mine.rv "
-        "examples/base.csv",
+        "ranges and rates, events, and requirements that run at once. Or, with --campaign, a "
+        "campaign of tests that runs at once, to be made one of a system of your own.",
+        epilog="examples: rvmon init examples/base.csv -o mine.rv; rvmon init --campaign mine",
     )
-    parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
+    parser.add_argument(
+        "data", metavar="DATA", nargs="?", help="a recording, as `rvmon run` takes it"
+    )
+    parser.add_argument(
+        "--campaign",
+        metavar="DIR",
+        help="write a campaign there: code under test, its surroundings, requirements, strategies",
+    )
     parser.add_argument(
         "-o", "--output", metavar="FILE", help="where to write, - to print (default: DATA's .rv)"
     )
@@ -38,6 +43,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Look the recording over, write, and return the exit code."""
+    if (arguments.data is None) == (arguments.campaign is None):
+        raise RvmonError("error: name a recording, or --campaign with a folder")
+    if arguments.campaign is not None:
+        return _write_campaign(Path(arguments.campaign), force=arguments.force)
     from rvmon.starter.profile import profile_of
     from rvmon.starter.write import starter_text
 
@@ -59,6 +68,28 @@ def run(arguments: argparse.Namespace) -> int:
     say(f"wrote {output}: {_contents(profile, text)}")
     words = ["rvmon", "run", output, arguments.data, *time_words(arguments)]
     say(f"try:   {shlex.join(words)}")
+    return 0
+
+
+def _write_campaign(folder: Path, *, force: bool) -> int:
+    """Write the starter campaign to a folder."""
+    from rvmon.starter.campaign import campaign_files
+
+    files = campaign_files()
+    there = [name for name in files if (folder / name).exists()]
+    if there and not force:
+        raise RvmonError(
+            f"error: {folder / there[0]} is there already: name another folder, or --force to "
+            "overwrite"
+        )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            write_whole(folder / name, text)
+    except OSError as error:
+        raise RvmonError(f"error: {folder}: {error.strerror or error}") from None
+    say(f"wrote {folder}: {', '.join(files)}")
+    say(f"try:   python {shlex.quote(str(folder / 'campaign.py'))} run --tests 20")
     return 0
 
 

@@ -9,8 +9,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rvmon.cli.beside import Beside, Options
+from rvmon.cli.output import bar, shown_while_reading
 from rvmon.cli.post_analysis import post_analysis
-from rvmon.cli.progress import bar, shown_while_reading
 from rvmon.cli.reading import opened
 from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import TraceError, WorkerLostError
@@ -127,7 +127,9 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         message = str(error)
         place = "" if trace in message else f"{trace}: "
         return Judged(shown_path(trace), None, tuple(before), place + message)
-    report = post_analysis(spec, recording, report, goals=options.only is None)
+    report = post_analysis(
+        spec, recording, report, goals=options.only is None, explains=options.explains
+    )
     trace = shown_path(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
     report = replace(report, trace=trace, health=health)

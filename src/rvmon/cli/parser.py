@@ -15,9 +15,11 @@ _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 
 
 class _Help(argparse.HelpFormatter):
-    """Examples keep their lines, so that they can be copied."""
+    """Lists and examples keep their lines; the latter so that they can be copied."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
+        if "\n" in text:
+            return text
         heading, sign, commands = text.partition(": ")
         if heading not in ("example", "examples"):
             return super()._fill_text(text, width, indent)

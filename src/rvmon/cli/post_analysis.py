@@ -30,8 +30,10 @@ MOST_LATE_IN_ALL = 10_000
 """The same of all requirements, of which each gets its share, and at least one."""
 
 
-def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals: bool) -> Report:
-    """The report with the cover goals, and with what only the whole recording shows.
+def post_analysis(
+    spec: Spec, recording: FileRecording, report: Report, *, goals: bool, explains: bool = True
+) -> Report:
+    """The report with the cover goals, and with what only the whole recording shows, if asked.
 
     That is what the triggers lacked that never came true, and what came after its deadline.
 
@@ -44,6 +46,8 @@ def post_analysis(spec: Spec, recording: FileRecording, report: Report, *, goals
     if goals and spec.checked.covers:
         report = replace(report, goals=_goals(spec, trace, end))
 
+    if not explains:
+        return report
     late, silent = _missed(spec, report), _silent(report)
     if not late and not silent:
         return report

@@ -31,8 +31,9 @@ def add_time(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--time",
         metavar="COLUMN[:UNIT]",
-        help="the column of stamps, and their unit: s, ms, us, ns, or iso (ISO 8601); default: "
-        "t in seconds, or t_ns",
+        help="the column of stamps, and their unit: s, ms, us, ns, iso (ISO 8601), or a form of "
+        "dates such as %%d.%%m.%%Y %%H:%%M:%%S; two columns are SEC+NANOSEC; default: t in "
+        "seconds, or t_ns",
     )
 
 
@@ -231,7 +232,7 @@ def chosen_attempt(report: Report, name: str, exact: str | None) -> Attempt:
         RvmonError: the requirement has no attempt.
         UnknownNameError: it has others.
     """
-    from rvmon.report.afterword import without_attempts
+    from rvmon.report.wording import without_attempts
 
     attempts = sorted(report.attempts, key=lambda attempt: (attempt.in_doubt, attempt.number))
     if not attempts:

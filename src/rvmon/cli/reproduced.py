@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.output import warn
 from rvmon.cli.reading import reading_words
-from rvmon.cli.say import warn
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:

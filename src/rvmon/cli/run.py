@@ -18,6 +18,7 @@ from rvmon.cli.options import (
     ids_of,
     refuse_over,
 )
+from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.reading import (
     add_allow_missing,
     add_reading,
@@ -25,7 +26,6 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
 from rvmon.cli.run_files import write_files, write_results
-from rvmon.cli.say import rendered, say_json, warn
 from rvmon.errors import RvmonError
 from rvmon.report.folder import refuse_no_file
 from rvmon.trace.health import HealthKind
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from rvmon.cli.beside import Options
     from rvmon.cli.judging import Judged
     from rvmon.reproducer import Case
-    from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
+    from rvmon.verdict.known_failures import KnownFailures
     from rvmon.verdict.report import Report
 
 
@@ -46,7 +46,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "run",
-        help="check recordings against a specification",
         description="Check recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
         "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
         "I inconclusive.",
@@ -123,7 +122,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--evidence",
         metavar="FILE",
         help="keep recordings, specification and verdicts in one archive; "
-        "`rvmon evidence verify FILE` sees whether it holds",
+        "`rvmon evidence FILE` sees whether it holds",
     )
     parser.add_argument(
         "--strict", action="store_true", help="exit with 1 also if a requirement is I or NT"
@@ -192,7 +191,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
 
 
 def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
-    from rvmon.results.known import NONE_KNOWN, KnownFailures, read_known
+    from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures, read_known
 
     if arguments.known is None:
         return NONE_KNOWN
@@ -274,7 +273,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.resume and arguments.out is None:
         raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
     if arguments.out is not None:
-        from rvmon.results.write import refuse_format
+        from rvmon.verdict.write_rows import refuse_format
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
@@ -306,6 +305,11 @@ def _show_warnings(spec: Spec) -> None:
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
         warn(f"{spec.checked.name} has no requirement: there is nothing to check")
+    alone = [f"`{name}`" for name in checked.properties
+             if name not in spec.requirements and name not in checked.covers]  # fmt: skip
+    if alone:
+        by = "a requirement with `monitor as written` or `monitor as cover` is"
+        warn(f"properties are not judged on runs: {', '.join(alone)}; {by}")
 
 
 def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:

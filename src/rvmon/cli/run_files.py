@@ -8,15 +8,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
-from rvmon.cli.say import say
+from rvmon.readers.held import HeldRecording
+from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 
 if TYPE_CHECKING:
     from rvmon.cli.judging import Judged
-    from rvmon.results.known import KnownFailures
     from rvmon.session import Spec
     from rvmon.trace.sample import Sample
+    from rvmon.verdict.known_failures import KnownFailures
     from rvmon.verdict.rows import VerdictRow
 
 
@@ -27,7 +29,7 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
         RvmonError: it cannot be written.
     """
     import rvmon
-    from rvmon.results import write
+    from rvmon.verdict import write_rows as write
     from rvmon.verdict.verdict import LAW
 
     about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
@@ -66,10 +68,12 @@ def write_files(
 
         write_file(arguments.junit, junit_xml(reports, spec.checked, broken, known))
 
-    def read(trace: str) -> list[Sample]:
+    def read(trace: str) -> Sequence[Sample]:
         # What came over standard input is gone: its page has the verdicts, not the signals.
         place = arguments.traces[0] if reproducer else trace
-        return [] if trace == "-" else list(spec.recording(place))
+        if trace == "-":
+            return []
+        return HeldRecording(Source(spec.recording(place)).pieces(), spec.checked.events)
 
     if arguments.mcap:
         from rvmon.export.verdicts_mcap import write_verdicts

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_budget, add_format, budget_of
-from rvmon.cli.say import rendered, say, say_json, warn
+from rvmon.cli.output import rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rvmon.timed.model.network import Network
     from rvmon.timed.observation.outcome import Observation
     from rvmon.timed.runs.run import Run
+    from rvmon.timed.runs.statistics import Sampled
     from rvmon.timed.search.outcome import Outcome
     from rvmon.timed.search.problem import Budget, Watch
 
@@ -27,7 +28,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "verify",
-        help="model-check a network of timed automata",
         description="Decide queries on a network of timed automata (.ta, or UPPAAL's .xml), each "
         "with a timed run that shows why. Exit code 0: all hold; 1: some do not, or the budget "
         "ended first.",
@@ -132,13 +132,23 @@ def _refuse_unused(arguments: argparse.Namespace) -> None:
 
 def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
     from rvmon.timed.language.elaborate import chosen_queries
+    from rvmon.timed.model.network import Chance, Mean
+    from rvmon.timed.runs.statistics import sample
+    from rvmon.timed.search.meter import Meter
     from rvmon.timed.search.outcome import Policy
     from rvmon.timed.search.verify import verify
 
     queries = chosen_queries(network, arguments.query)
-    outcomes = []
+    outcomes, sampled = [], []
     with _shown() as watch:
         for query in queries:
+            if isinstance(query.formula, Chance | Mean):
+                meter = Meter(budget, watch)
+                one = sample(network, query, seed=arguments.seed, watch=meter.goes_on)
+                sampled.append(one)
+                if arguments.format == "text":
+                    _print_sampled(one)
+                continue
             outcome = verify(
                 network, query, budget=budget, watch=watch, policy=Policy(arguments.trace)
             )
@@ -146,8 +156,9 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
             if arguments.format == "text":
                 _print_outcome(network, outcome)
     if arguments.format == "json":
-        _print_json(network, outcomes)
-    return int(any(not outcome.holds for outcome in outcomes))
+        _print_json(network, outcomes, sampled)
+    failed = any(one.margin and not one.holds for one in sampled)
+    return int(failed or any(not outcome.holds for outcome in outcomes))
 
 
 def _constant(text: str) -> tuple[str, int]:
@@ -183,10 +194,30 @@ def _print_outcome(network: Network, outcome: Outcome) -> None:
     say(flush=True)
 
 
-def _print_json(network: Network, outcomes: Sequence[Outcome]) -> None:
-    from rvmon.timed.describe import outcome_data
+def _print_sampled(one: Sampled) -> None:
+    from rvmon.timed.runs.statistics import ERROR
 
-    say_json(json.dumps({"queries": [outcome_data(network, o) for o in outcomes]}, indent=2))
+    name = f"{one.query.id}: " if one.query.id else ""
+    words = {True: "holds, by a test: ", False: "does not hold, by a test: ", None: "simulated: "}
+    word = "not decided: " if one.margin and one.holds is None else words[one.holds]
+    say(f"{name}{word}{' '.join(one.query.text.split())}")
+    if one.query.remark:
+        say(f'    "{one.query.remark}"')
+    say(f"    {one.value:.4f} of {one.runs:,} simulated runs; ", end="")
+    if one.low is not None:
+        say(f"with {100 * (1 - ERROR):g} % confidence from {one.low:.4f} to {one.high:.4f}")
+    else:
+        say(f"wrong in {100 * ERROR:g} % of cases, but within {one.margin:g} of the level")
+    say(flush=True)
+
+
+def _print_json(network: Network, outcomes: Sequence[Outcome], sampled: Sequence[Sampled]) -> None:
+    from rvmon.timed.describe import outcome_data, sampled_data
+
+    data = {"queries": [outcome_data(network, o) for o in outcomes]}
+    if sampled:
+        data["simulated"] = [sampled_data(one) for one in sampled]
+    say_json(json.dumps(data, indent=2))
 
 
 # Suites and simulation.
@@ -253,7 +284,7 @@ def check_spec(
     network: Network, arguments: argparse.Namespace, budget: Budget, watch: Watch | None
 ) -> int:
     """Decide, show, and return the exit code."""
-    from rvmon.loading import load
+    from rvmon.session import load
     from rvmon.timed.describe import observation_data
     from rvmon.timed.observation.observe import observe
 

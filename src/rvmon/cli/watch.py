@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.numbers import positive, span
 from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
+from rvmon.cli.output import warn
 from rvmon.cli.reading import add_binding, add_map, add_time, mapped_names
-from rvmon.cli.say import warn
 from rvmon.errors import RvmonError, SpecError
 from rvmon.verdict.verdict import Verdict
 
@@ -42,7 +42,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "watch",
-        help="monitor a running robot: verdicts as they are decided",
         description="Evaluate JSON lines as they arrive, and report each verdict as soon as it is "
         "decided: a missed deadline is reported when it is over. A change of the specification is "
         "taken up at once. Ends with the stream, or with Ctrl-C.",
@@ -327,7 +326,7 @@ def _live(
 
 
 def _loaded(arguments: argparse.Namespace) -> Spec:
-    from rvmon.loading import load
+    from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
     columns = mapped_names(arguments.map)

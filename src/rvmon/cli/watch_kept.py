@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.output import say, say_json, warn
 from rvmon.errors import RvmonError, TraceError
 from rvmon.verdict.verdict import Verdict
 

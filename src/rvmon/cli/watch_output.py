@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from rvmon.cli.say import say, say_json, warn
+from rvmon.cli.output import say, say_json, warn
 from rvmon.report.style import MARKS
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_ticks
 from rvmon.verdict.verdict import Verdict, fold

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from rvmon.cli.numbers import instant
 from rvmon.cli.options import add_const, add_format, constants_of
-from rvmon.cli.progress import busy, shown_while_reading
+from rvmon.cli.output import busy, say_json, shown_while_reading
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
     add_allow_missing,
@@ -19,7 +19,6 @@ from rvmon.cli.reading import (
     reading_spec,
 )
 from rvmon.cli.reproduced import shown_name, unpacked
-from rvmon.cli.say import say_json
 from rvmon.errors import RvmonError
 
 
@@ -27,7 +26,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "why",
-        help="an attempt taken apart: why it passed, failed or stayed open",
         description="Take one attempt apart: when each part of its requirement was true.",
         epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
     )
@@ -66,8 +64,8 @@ def run(arguments: argparse.Namespace) -> int:
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     from rvmon.explain.dissect import dissect
     from rvmon.explain.not_triggered import why_not_triggered
-    from rvmon.loading import load
     from rvmon.monitor.inputs.missing import expect_names
+    from rvmon.session import load
     from rvmon.trace.time import ticks_of_seconds
 
     if arguments.trace == "-":

@@ -12,7 +12,7 @@ static const uint8_t HOLDS_FOR[CMPS] = {
 /* Without a branch for what nobody can foretell. */
 static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
 {
-    const int32_t stands = standing_of(value->as.real, constant);
+    const int32_t stands = order_of(value->as.real, constant);
     if (value->kind != RV_REAL) {
         return IS_UNKNOWN;
     }
@@ -180,7 +180,7 @@ bool recheck(run *r, int32_t atom)
         int32_t i;
         r->atom[atom] = now;
         for (i = 0; i < nodes.count; i++) {
-            soil(r, node[i]);
+            mark_dirty(r, node[i]);
         }
     }
     if (r->momentary[atom] != 0U) {

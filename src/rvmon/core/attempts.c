@@ -21,13 +21,13 @@ bool grow_pool(home *h, int64_t wanted)
     int32_t same = h->capacity;
     char *pool;
     if (h->part->plan->captured > 0) {
-        turn *turns = grown(m, h->turns, &same, wanted, sizeof *turns);
+        turn *turns = enlarged(m, h->turns, &same, wanted, sizeof *turns);
         if (turns == NULL) {
             return false;
         }
         h->turns = turns;
     }
-    pool = grown(m, h->pool, &capacity, wanted, h->stride);
+    pool = enlarged(m, h->pool, &capacity, wanted, h->stride);
     if (pool == NULL) {
         return false;
     }
@@ -89,7 +89,7 @@ static void see(run *r, int32_t index, int32_t at, int64_t t)
 {
     attempt *x = attempt_at(r->home, at);
     if (r->truth[r->part->judges[index].running] == IS_UNKNOWN) {
-        x->clouded = true;
+        x->trigger_unknown = true;
     }
     if (!x->sure && is_sure(r, index)) {
         x->sure = true;
@@ -118,7 +118,7 @@ void look_at(run *r, int32_t index, int64_t t)
     if (r->truth[j->running] == IS_FALSE) {
         if (current >= 0) {
             attempt *x = attempt_at(r->home, current);
-            x->hollow = x->hollow || is_true(r, j->unborn);
+            x->cannot_pass = x->cannot_pass || is_true(r, j->unborn);
         }
         leave_episode(r, index);
     } else if (current >= 0) {
@@ -162,11 +162,11 @@ void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
             }
         }
     }
-    if (passed ? x->hollow : !x->sure) {
+    if (passed ? x->cannot_pass : !x->sure) {
         conclude(r, index, at, RV_INCONCLUSIVE, RV_OPEN, t,
-                 (r->standing != NULL) ? note_nothing(r, index, x) : -1);
+                 (r->truth_log != NULL) ? note_nothing(r, index, x) : -1);
     } else {
-        const bool noted = (r->standing != NULL) && x->sure; /* else it was met, triggered or not */
+        const bool noted = (r->truth_log != NULL) && x->sure; /* else it was met, triggered or not */
         conclude(r, index, at, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX,
                  (j->trigger < 0) ? x->triggered : t, noted ? note_decision(r, index, x, t) : -1);
     }
@@ -197,7 +197,7 @@ void leave(run *r, int32_t index, int32_t before, int32_t at)
 }
 
 /* Whether nothing more can be said of an attempt: it fails for the worse, and passes for the better. */
-bool is_moot(const attempt *x)
+bool is_undecidable(const attempt *x)
 {
     return x->parted && (x->location == FAILED) && (x->better == PASSED);
 }
@@ -213,11 +213,11 @@ void lay_aside(run *r, int32_t index, int32_t before, int32_t at)
 void lay_down(run *r, int32_t index, int32_t at)
 {
     judge *j = &r->judges[index];
-    attempt_at(r->home, at)->next = j->moot;
-    j->moot = at;
+    attempt_at(r->home, at)->next = j->undecidable;
+    j->undecidable = at;
     r->home->monitor->laid_count++;
-    if (r->standing != NULL) {
-        note_moot(r, index, attempt_at(r->home, at)->triggered);
+    if (r->truth_log != NULL) {
+        note_undecidable(r, index, attempt_at(r->home, at)->triggered);
     }
 }
 
@@ -227,10 +227,10 @@ int32_t next_open(const run *r, int32_t index, int32_t at)
 {
     const judge *j = &r->judges[index];
     if (at < 0) {
-        return (j->first >= 0) ? j->first : j->moot;
+        return (j->first >= 0) ? j->first : j->undecidable;
     }
     if (at == j->last) {
-        return j->moot;
+        return j->undecidable;
     }
     return attempt_at(r->home, at)->next;
 }
@@ -261,14 +261,14 @@ void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reac
     const judge_plan *j = &r->part->judges[index];
     const attempt *x = attempt_at(r->home, at);
     const bool runs = is_current(r, index, at);
-    const bool hollow = x->hollow || (runs && is_true(r, j->unborn));
-    bool may_be_over = !x->sure || (runs && x->clouded);
+    const bool cannot_pass = x->cannot_pass || (runs && is_true(r, j->unborn));
+    bool may_be_over = !x->sure || (runs && x->trigger_unknown);
     const int64_t now = stamp_of_end(end, reached);
-    int32_t state = (!hollow && is_kept(r, index, x, end, reached)) ? 1 : 0;
-    may_be_over = may_be_over || ((r->cut < NEVER) && x->clouded);
-    state |= (hollow || (x->location == FAILED)) ? 2 : 0;
+    int32_t state = (!cannot_pass && is_kept(r, index, x, end, reached)) ? 1 : 0;
+    may_be_over = may_be_over || ((r->cut < NEVER) && x->trigger_unknown);
+    state |= (cannot_pass || (x->location == FAILED)) ? 2 : 0;
     state |= (may_be_over || (x->parted && (x->better == PASSED))) ? 4 : 0;
     report(r, index, x, told_number(r, at), (uint8_t)(j->outcomes[state] & 3),
            (uint8_t)(j->outcomes[state] >> 2), end,
-           (r->standing == NULL) ? -1 : note_open(r, index, x, now, hollow, end));
+           (r->truth_log == NULL) ? -1 : note_open(r, index, x, now, cannot_pass, end));
 }

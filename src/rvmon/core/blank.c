@@ -66,7 +66,7 @@ static void revive(run *r, int32_t index, int64_t t)
     judge *j = &r->judges[index];
     const int32_t at = j->current;
     attempt *x = attempt_at(r->home, at);
-    int32_t *link = &j->moot;
+    int32_t *link = &j->undecidable;
     while (*link != at) {
         link = &attempt_at(r->home, *link)->next;
     }

@@ -116,7 +116,7 @@ static inline int32_t highest_bit(uint64_t word)
 /* A larger array with what stood in the old one, and zeros behind it; NULL if memory is short, which
  * spoils the run. The same with anything behind it. */
 void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
-void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
+void *enlarged(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each);
 
 /* ---- timers.c */
 void timers_set(timers *h, int32_t id, int64_t due);
@@ -134,13 +134,19 @@ bool same_number(const rv_number *a, const rv_number *b);
 rv_number program_value(const run *r, int32_t place, const int32_t *at);
 rv_number number_of_double(double x);
 
+/* ---- functions.c */
+#define MOST_ARGUMENTS 4
+int32_t arguments_of(int32_t op); /* how many an operation has; 0: it is none */
+rv_number function_of_wholes(int32_t op, int64_t a, int64_t b);
+double function_of_reals(int32_t op, const double *x); /* not finite: unknown */
+
 /* ---- values.c: samples, held values, what occurred */
 void mark(run *r, int32_t name);
 uint8_t remember(history *h, int64_t t, const rv_number *value);
 void come_to_birth(run *r, int32_t local, bool known);
 void set_stale(run *r, int32_t local, int64_t t);
 void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
-void take_news(run *r, int64_t t, const incoming *in);
+void apply_update(run *r, int64_t t, const incoming *in);
 
 /* Whether a signal can take a value and nothing else is to be done. */
 static inline bool means_the_same(const run *r, int32_t local, const rv_number *value)
@@ -150,7 +156,7 @@ static inline bool means_the_same(const run *r, int32_t local, const rv_number *
     return (value->kind == r->value[local].kind) && (s->low < x) && (x < s->high);
 }
 
-void margins_stir(run *r, int32_t what);
+void margins_mark_changed(run *r, int32_t what);
 
 /* ---- atoms.c */
 bool find_quick(arena *a, const plan *all, part *p);
@@ -164,7 +170,7 @@ uint8_t leaf_truth(const run *r, const node_plan *n);
 /* How a value stands to a constant: the place of a bit. */
 enum { IS_EQUAL, IS_LESS, IS_GREATER };
 
-static inline int32_t standing_of(double x, double constant)
+static inline int32_t order_of(double x, double constant)
 {
     return IS_LESS * (int32_t)(x < constant) + IS_GREATER * (int32_t)(x > constant);
 }
@@ -194,7 +200,7 @@ static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local
     value->as.real = x;
     for (; c < end; c++) {
         const int32_t word = c->word;
-        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> standing_of(x, c->constant)) & 1));
+        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> order_of(x, c->constant)) & 1));
         const uint64_t other = (now != atoms[c->atom]) ? 1U : 0U;
         dirty[word] |= c->dirty & (0U - other);
         words[word >> 6] |= other << (word & 63);
@@ -207,18 +213,18 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
     if (r->margins != NULL) {
-        margins_stir(r, in->event ? r->part->plan->signals.count + in->local : in->local);
+        margins_mark_changed(r, in->event ? r->part->plan->signals.count + in->local : in->local);
     }
     if (!in->event && (u->says == RV_SAYS_YES) && means_the_same(r, in->local, &u->value)) {
         r->value[in->local] = u->value;
     } else {
-        take_news(r, t, in);
+        apply_update(r, t, in);
     }
 }
 
 void forget(run *r);
 void go_stale(run *r, int64_t t, int32_t perishable);
-void lack(run *r, bool event, int32_t local);
+void mark_absent(run *r, bool event, int32_t local);
 
 /* ---- outages.c: names that may have said anything */
 void begin_unlost(run *r);
@@ -238,14 +244,18 @@ void revive_all(run *r, int64_t t);
 
 /* ---- past.c */
 stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
+void part_stretches(rv_monitor *m, stretches *worse, stretches *better);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
+
+/* ---- amounts.c */
+uint8_t node_amount(run *r, const node_plan *n, int64_t t, uint8_t operand);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
 /* ---- graph.c: the nodes of a part */
-void soil(run *r, int32_t node);
-void soil_all(run *r);
+void mark_dirty(run *r, int32_t node);
+void mark_all_dirty(run *r);
 void work_out(run *r, int64_t t);
-bool is_soiled(const run *r);
+bool has_dirty_nodes(const run *r);
 void remember_unknown(run *r, int64_t t);
 void blank_out(run *r, int64_t t);
 void vary(run *r, int64_t t, bool pending);
@@ -283,7 +293,7 @@ void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decisi
               int64_t note);
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
 void leave(run *r, int32_t index, int32_t before, int32_t at);
-bool is_moot(const attempt *x);
+bool is_undecidable(const attempt *x);
 void lay_down(run *r, int32_t index, int32_t at);
 void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
 int32_t next_open(const run *r, int32_t index, int32_t at);
@@ -325,7 +335,7 @@ void note_begin(run *r, int32_t index, attempt *x, int64_t t);
 void note_parting(run *r, int32_t index, attempt *x);
 void note_doubt(run *r, int32_t index, int64_t t);
 void note_open_count(run *r, int32_t index);
-void note_moot(run *r, int32_t index, int64_t t);
+void note_undecidable(run *r, int32_t index, int64_t t);
 int64_t begin_of(const run *r, int32_t index, const attempt *x);
 const int64_t *doubt_of(const run *r, int32_t index, const attempt *x);
 
@@ -341,7 +351,7 @@ void keep_letter(run *r, int32_t index, int64_t t);
 /* ---- told.c: notes of decisions and of open attempts */
 int64_t note_nothing(run *r, int32_t index, const attempt *x);
 int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t);
-int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hollow, int64_t end);
+int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool cannot_pass, int64_t end);
 void hold_token(rv_monitor *m, const machine *a, int32_t location, const int64_t *clocks);
 void hold_until(rv_monitor *m, const machine *a, int32_t letter, int64_t first, int64_t t);
 void tell_open(rv_monitor *m, bool begins);
@@ -448,7 +458,7 @@ bool networks_agree(const form *f, const network *one, const network *other);
 void tidy(const form *f, network *w, int64_t position);
 
 /* ---- network_ahead.c: the first instant at which something new of a formula can be known, or before */
-int64_t soonest_news(const form *f, networks *net, int32_t reading);
+int64_t earliest_change(const form *f, networks *net, int32_t reading);
 
 /* ---- network_judge.c: attempts that a network judges */
 bool is_networked(const run *r, int32_t index);
@@ -513,7 +523,7 @@ void note_done(run *r, int32_t at);
 void flush_turns(home *h);
 void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered);
 void look_after(run *r, int64_t t);
-void soil_lapsed(run *r);
+void mark_lapsed(run *r);
 void forget_last(run *r);
 bool is_idle(const run *r);
 void let_go(run *r);
@@ -560,7 +570,7 @@ void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t
 /* ---- homes.c: all runs of a part */
 bool home_begin(home *h);
 bool home_reserve(home *h, int32_t attempts);
-void home_lack(home *h, bool event, int32_t local);
+void home_mark_absent(home *h, bool event, int32_t local);
 void home_sample(home *h, int64_t t);
 void take_inbox(home *h, int64_t t);
 void lose_inbox(home *h, int64_t t);

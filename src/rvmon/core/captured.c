@@ -197,12 +197,12 @@ static bool may_be_other(run *r)
 }
 
 /* Have those looked at that say whether the values are known. */
-void soil_lapsed(run *r)
+void mark_lapsed(run *r)
 {
     const int32_t *lapsed = LIST(PLAN(r), r->part->plan->lapsed);
     int32_t i;
     for (i = 0; i < r->part->plan->lapsed.count; i++) {
-        soil(r, lapsed[i]);
+        mark_dirty(r, lapsed[i]);
     }
 }
 
@@ -216,15 +216,15 @@ static void keep_watch(run *r, int64_t t)
     } else if (r->blurs && (r->cut == NEVER) && may_be_other(r)) {
         r->cut = t;
         r->at.alarm = least(r->at.alarm, t);
-        soil_lapsed(r);
+        mark_lapsed(r);
     } else {
         /* They do. */
     }
     if (r->cut < NEVER) {
         for (at = next_open(r, r->judged, -1); at >= 0; at = next_open(r, r->judged, at)) {
             attempt *x = attempt_at(r->home, at);
-            x->hollow = true;
-            x->clouded = (trigger != IS_FALSE) && (x->clouded || (trigger == IS_UNKNOWN));
+            x->cannot_pass = true;
+            x->trigger_unknown = (trigger != IS_FALSE) && (x->trigger_unknown || (trigger == IS_UNKNOWN));
         }
     }
     r->watched = r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE));

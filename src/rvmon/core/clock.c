@@ -12,7 +12,7 @@ static void ring(run *r, int64_t t)
         const int64_t due = r->wake.due[id];
         timers_set(&r->wake, id, NEVER);
         if (id < nodes) {
-            soil(r, r->part->timed[id]);
+            mark_dirty(r, r->part->timed[id]);
         } else {
             go_stale(r, due, id - nodes);
         }
@@ -88,7 +88,7 @@ void look_at_all(run *r)
     for (i = 0; i < r->part->plan->atoms.count; i++) {
         (void)recheck(r, i);
     }
-    soil_all(r);
+    mark_all_dirty(r);
     touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
 }
 
@@ -161,12 +161,12 @@ void visit(run *r, int64_t t)
             const int32_t *nodes = LIST(PLAN(r), r->part->plan->stateful);
             int32_t i;
             for (i = 0; i < r->part->plan->stateful.count; i++) {
-                soil(r, nodes[i]);
+                mark_dirty(r, nodes[i]);
             }
         }
     }
     if (t >= r->cut) {
-        soil_lapsed(r);
+        mark_lapsed(r);
     }
     if (t >= r->at.ends_at) {
         come_back(r, t);
@@ -183,7 +183,7 @@ void visit(run *r, int64_t t)
     }
     call_up(r, t);
     work_out(r, t);
-    if ((r->standing != NULL) && (r->at.starting == IS_TRUE)) {
+    if ((r->truth_log != NULL) && (r->at.starting == IS_TRUE)) {
         stand_at_first(r, t);
     }
     r->at.position = t;
@@ -271,7 +271,7 @@ void approach(run *r, int64_t t)
 void arrive(run *r, int64_t t)
 {
     const int64_t gap = GAP(r);
-    const bool dirty = r->at.dirty || is_soiled(r) || (r->at.presence != ARE_THERE)
+    const bool dirty = r->at.dirty || has_dirty_nodes(r) || (r->at.presence != ARE_THERE)
                        || ((r->margins != NULL) && ((gap > 1) || !r->at.started));
     if (r->at.presence == MAY_BE_THERE) {
         r->at.presence = r->at.started ? ARE_THERE_NEXT : ARE_THERE;
@@ -309,7 +309,7 @@ void settle_all(run *r, int64_t end, int64_t reached)
         if (is_networked(r, i) && !is_chained(r, i)) {
             network_close(r, i, end, reached);
         }
-        if (r->standing != NULL) {
+        if (r->truth_log != NULL) {
             note_open_count(r, i);
         }
         if (!queue_is_empty(&r->judges[i])) {

@@ -196,7 +196,7 @@ void rv_set_absent(rv_monitor *m, int32_t name)
     if (m->absent[name] == 0U) {
         m->absent[name] = 1;
         for (i = 0; i < count; i++) {
-            home_lack(&m->homes[s[i].part], event, s[i].local);
+            home_mark_absent(&m->homes[s[i].part], event, s[i].local);
         }
     }
 }
@@ -218,7 +218,7 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
         for (k = 0; k < readers; k++) {
             home *h = &m->homes[s[k].part];
             if (h->inbox_count == h->inbox_room) {
-                incoming *made = grown(m, h->inbox, &h->inbox_room, (int64_t)h->inbox_count + 1,
+                incoming *made = enlarged(m, h->inbox, &h->inbox_room, (int64_t)h->inbox_count + 1,
                                        sizeof *made);
                 if (made == NULL) {
                     return false;

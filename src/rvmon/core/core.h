@@ -206,9 +206,9 @@ void **rv_piece_held(rv_piece *piece, int32_t which);                 /* of who 
 
 typedef struct {
     const int64_t *words;
-    const int64_t *standing;   /* how all stood at the decision; NULL: nobody asks */
+    const int64_t *state;      /* of the propositions at the decision; NULL: nobody asks */
     int64_t count;
-    int64_t standing_count;
+    int64_t state_count;
     rv_piece *first;           /* letters; NULL: they do not matter */
     rv_piece *last;
     int32_t last_count;        /* words of the last piece */

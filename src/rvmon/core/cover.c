@@ -33,14 +33,14 @@ static bool make_covering(home *h)
         most = (bins > most) ? bins : most;
     }
     c->hits = arena_take(a, (size_t)(c->items + 1) * sizeof *c->hits);
-    c->standing = arena_take(a, (size_t)(c->items + 1) * sizeof *c->standing);
+    c->current_items = arena_take(a, (size_t)(c->items + 1) * sizeof *c->current_items);
     c->stands = arena_take(a, (size_t)c->items + 1);
     c->groups = arena_take(a, (size_t)(p->groups.count + 1) * sizeof *c->groups);
     c->groups_called = arena_take(a, (size_t)(p->groups.count + 1) * sizeof *c->groups_called);
     c->called = arena_take(a, (size_t)p->watches.count * sizeof *c->called);
     c->is_called = arena_take(a, (size_t)p->watches.count);
     c->bins = arena_take(a, (size_t)(most + 1) * sizeof *c->bins);
-    if ((c->hits == NULL) || (c->standing == NULL) || (c->stands == NULL) || (c->groups == NULL)
+    if ((c->hits == NULL) || (c->current_items == NULL) || (c->stands == NULL) || (c->groups == NULL)
         || (c->groups_called == NULL) || (c->called == NULL) || (c->is_called == NULL)
         || (c->bins == NULL)) {
         return false;
@@ -106,8 +106,8 @@ static void meet_item(covering *c, const group_plan *g, covered *s, int32_t item
         hit->count++;
         if (!passes && (g->occasion < 0)) {
             c->stands[item] = 1;
-            c->standing[g->first + s->standing] = item;
-            s->standing++;
+            c->current_items[g->first + s->current] = item;
+            s->current++;
         }
     }
 }
@@ -160,10 +160,10 @@ static void meet_items(run *r, const group_plan *g, covered *s, int64_t t)
 static void drop_items(run *r, const group_plan *g, covered *s)
 {
     covering *c = r->home->covering;
-    int32_t *items = &c->standing[g->first];
+    int32_t *items = &c->current_items[g->first];
     int32_t kept = 0;
     int32_t i;
-    for (i = 0; i < s->standing; i++) {
+    for (i = 0; i < s->current; i++) {
         if (may_be_true(r, g, items[i])) {
             items[kept] = items[i];
             kept++;
@@ -171,7 +171,7 @@ static void drop_items(run *r, const group_plan *g, covered *s)
             c->stands[items[i]] = 0;
         }
     }
-    s->standing = kept;
+    s->current = kept;
 }
 
 static void look_at_group(run *r, int32_t number, int64_t t)

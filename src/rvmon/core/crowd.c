@@ -8,7 +8,7 @@
 static void *resized(rv_monitor *m, void *old, int32_t room, size_t each)
 {
     int32_t same = room;
-    return grown(m, old, &same, (int64_t)room + 1, each);
+    return enlarged(m, old, &same, (int64_t)room + 1, each);
 }
 
 /* Give a run that is new its number; false: memory is short. */
@@ -23,7 +23,7 @@ bool register_run(home *h, run *r)
         int64_t *due = resized(m, h->alarms.due, room, sizeof *due);
         int32_t *ids = resized(m, h->alarms.ids, room, sizeof *ids);
         int32_t *place = resized(m, h->alarms.place, room, sizeof *place);
-        int32_t *called = grown(m, h->called, &same, (int64_t)room + 1, sizeof *called);
+        int32_t *called = enlarged(m, h->called, &same, (int64_t)room + 1, sizeof *called);
         h->touched = (touched != NULL) ? touched : h->touched;
         h->runs = (runs != NULL) ? runs : h->runs;
         h->alarms.due = (due != NULL) ? due : h->alarms.due;

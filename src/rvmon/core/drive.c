@@ -36,7 +36,7 @@ static int64_t drive_token(const journey *g, token *k, int32_t letter)
 {
     const machine *a = g->a;
     int64_t due;
-    if (g->r->standing != NULL) {
+    if (g->r->truth_log != NULL) {
         hold_token(g->r->home->monitor, a, k->location, k->clocks);
     }
     if (g->how == BY_STEP) {
@@ -63,7 +63,7 @@ static int64_t drive_token(const journey *g, token *k, int32_t letter)
 /* Decide an attempt whose run, with a letter, has come to that at `t`. */
 static void decide_driven(const journey *g, int32_t at, bool passed, int32_t letter, int64_t t)
 {
-    if ((g->r->standing != NULL) && (g->how == BY_RUN)) {
+    if ((g->r->truth_log != NULL) && (g->how == BY_RUN)) {
         hold_until(g->r->home->monitor, g->a, letter, g->from, t);
     }
     decide(g->r, g->index, at, passed, t);
@@ -112,7 +112,7 @@ static bool drive_readings(const journey *g, int32_t at, attempt *x)
         const int32_t used = a->widths[worse.location];
         x->parted = memcmp(better.clocks, worse.clocks, (size_t)used * sizeof *worse.clocks) != 0;
     }
-    if ((g->r->standing != NULL) && (x->parted != was_parted)) {
+    if ((g->r->truth_log != NULL) && (x->parted != was_parted)) {
         note_parting(g->r, g->index, x);
     }
     x->due = own;
@@ -171,7 +171,7 @@ static void drive_all(run *r, int32_t index, int32_t how, int64_t from, int64_t 
         const bool waits = some && (x->due > t); /* and so do all behind it */
         if (!waits && !drive(&g, at, x)) {
             leave(r, index, before, at);
-        } else if (is_moot(x)) {
+        } else if (is_undecidable(x)) {
             lay_aside(r, index, before, at);
         } else {
             next_due = least(next_due, x->due);
@@ -249,7 +249,7 @@ void visit_judge(run *r, int32_t index, int64_t t)
     int32_t letter;
     int32_t other;
     bool was;
-    if ((r->standing != NULL) && is_networked(r, index)) {
+    if ((r->truth_log != NULL) && is_networked(r, index)) {
         keep_letter(r, index, t);
     }
     if (is_chained(r, index)) {

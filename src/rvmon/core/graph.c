@@ -4,18 +4,18 @@
 
 #include <string.h>
 
-void soil(run *r, int32_t node)
+void mark_dirty(run *r, int32_t node)
 {
     const int32_t word = node >> 6;
     r->dirty[word] |= UINT64_C(1) << (node & 63);
     r->dirty_words[word >> 6] |= UINT64_C(1) << (word & 63);
 }
 
-void soil_all(run *r)
+void mark_all_dirty(run *r)
 {
     int32_t i;
     for (i = 0; i < r->part->plan->nodes.count; i++) {
-        soil(r, i);
+        mark_dirty(r, i);
     }
 }
 
@@ -77,6 +77,7 @@ void remember_unknown(run *r, int64_t t)
         case NODE_EVER: (void)ever(r, n, left_there(r, n), IS_UNKNOWN); break;
         case NODE_EDGE:
         case NODE_STRETCH: (void)node_since(r, n, t, left_there(r, n), IS_UNKNOWN); break;
+        case NODE_AMOUNT: (void)node_amount(r, n, t, IS_UNKNOWN); break;
         default: break;
         }
     }
@@ -99,6 +100,7 @@ static uint8_t evaluated(run *r, int32_t place, int64_t t)
     case NODE_DOUBT: return node_doubt(r, n, place, t, r->truth[operands[0]]);
     case NODE_PREVIOUS: return previous(r, n, t, r->truth[operands[0]]);
     case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
+    case NODE_AMOUNT: return node_amount(r, n, t, r->truth[operands[0]]);
     default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
     }
 }
@@ -110,10 +112,10 @@ static void store(run *r, int32_t place, uint8_t value, int64_t t)
     const uint8_t was = r->truth[place];
     int32_t i;
     if (r->margins != NULL) {
-        margins_stir(r, r->part->plan->signals.count + r->part->plan->events.count + place);
+        margins_mark_changed(r, r->part->plan->signals.count + r->part->plan->events.count + place);
     }
     r->truth[place] = value;
-    if (r->standing != NULL) {
+    if (r->truth_log != NULL) {
         note_node(r, place, was, t);
     }
     for (i = 0; i < n->links.count; i++) {
@@ -182,11 +184,11 @@ static void change(run *r, int32_t place, uint8_t value, int64_t t)
     int32_t i;
     store(r, place, value, t);
     for (i = 0; i < parents.count; i++) {
-        soil(r, parent[i]);
+        mark_dirty(r, parent[i]);
     }
 }
 
-bool is_soiled(const run *r)
+bool has_dirty_nodes(const run *r)
 {
     const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
     int32_t upper;

@@ -16,8 +16,8 @@ typedef struct {
     int32_t better;            /* its location if the unknown is taken for the better */
     bool parted;               /* whether that reading is another */
     bool sure;                 /* else it is in doubt whether there was a trigger */
-    bool clouded;              /* whether its trigger was unknown while it ran */
-    bool hollow;               /* over before all that it speaks of had a value */
+    bool trigger_unknown;              /* whether its trigger was unknown while it ran */
+    bool cannot_pass;               /* over before all that it speaks of had a value */
     int64_t doubted_at;        /* where its readings parted; RV_NO_TIME: nowhere */
     int32_t record;            /* of its margin, 1 for the first; 0: it is not measured */
     int64_t clocks[];
@@ -55,7 +55,7 @@ typedef struct {
     int64_t base;              /* the first position that was wanted and not known */
     int64_t swept;             /* up to which its operands only lead on */
     int64_t wanted;
-    int64_t soonest[2];        /* by value, before when nothing new of it can be known */
+    int64_t earliest[2];        /* by value, before when nothing new of it can be known */
 } operator_state;
 
 typedef struct {
@@ -166,12 +166,12 @@ typedef struct {
     rv_piece *pinned;          /* the last one that is, while it is kept */
     int32_t pieces;
     int32_t open_count;        /* attempts that were open when they were told of */
-    uint32_t epoch;            /* of the last standing that was noted; see `rv_monitor` */
-    int64_t standing;          /* its place; -1: none */
-    int64_t stood_at;          /* its position */
+    uint32_t epoch;            /* of the last state that was noted; see `rv_monitor` */
+    int64_t state;             /* its place; -1: none */
+    int64_t state_at;          /* its position */
     int64_t began_at;          /* the last trigger */
     int64_t doubted_at;        /* the last doubt */
-    int64_t moot_since;        /* the first of those that stay open for good; NEVER: there are none */
+    int64_t undecidable_since;        /* the first of those that stay open for good; NEVER: there are none */
 } noting;
 
 #endif

@@ -121,7 +121,7 @@ static int64_t gather_laid(const home *h, lasting *to)
     int32_t at;
     for (r = h->root; r != NULL; r = following(h, r)) {
         for (i = 0; i < h->part->plan->judges.count; i++) {
-            for (at = r->judges[i].moot; at >= 0; at = attempt_at(h, at)->next) {
+            for (at = r->judges[i].undecidable; at >= 0; at = attempt_at(h, at)->next) {
                 if (is_current(r, i, at)) {
                     continue;
                 }
@@ -144,7 +144,7 @@ static void drop_laid(run *r, int32_t index)
     home *h = r->home;
     judge *j = &r->judges[index];
     judge *owner = &r->judges[h->part->judges[index].owner];
-    int32_t *link = &j->moot;
+    int32_t *link = &j->undecidable;
     while (*link >= 0) {
         const int32_t at = *link;
         if (attempt_at(h, at)->location != DROPPED) {
@@ -163,9 +163,9 @@ static void drop_laid(run *r, int32_t index)
     }
     if (j->noting != NULL) { /* what was noted for those that went may go, too */
         int32_t at;
-        j->noting->moot_since = NEVER;
-        for (at = j->moot; at >= 0; at = attempt_at(h, at)->next) {
-            note_moot(r, index, attempt_at(h, at)->triggered);
+        j->noting->undecidable_since = NEVER;
+        for (at = j->undecidable; at >= 0; at = attempt_at(h, at)->next) {
+            note_undecidable(r, index, attempt_at(h, at)->triggered);
         }
     }
 }

@@ -6,7 +6,7 @@
 /* Add an update to what is kept; NULL: memory is short. */
 past_update *keep_one(home *h, int64_t t)
 {
-    past_update *made = grown(h->monitor, h->past, &h->past_room, (int64_t)h->past_count + 1,
+    past_update *made = enlarged(h->monitor, h->past, &h->past_room, (int64_t)h->past_count + 1,
                               sizeof *made);
     if (made == NULL) {
         return NULL;
@@ -83,7 +83,7 @@ void replay(run *r)
     r->over = false;
     for (i = 0; i < p->signals.count + p->events.count; i++) {
         if (has_no_source(h->root, i)) {
-            lack(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
+            mark_absent(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
         }
     }
     while (first < h->given) {

@@ -34,7 +34,7 @@ static bool grow_keys(home *h)
 {
     rv_monitor *m = h->monitor;
     int32_t room = h->key_room;
-    key *keys = grown(m, h->keys, &room, (int64_t)h->key_room + ((h->key_room > 0) ? 1 : FIRST_KEYS),
+    key *keys = enlarged(m, h->keys, &room, (int64_t)h->key_room + ((h->key_room > 0) ? 1 : FIRST_KEYS),
                       sizeof *keys);
     int32_t *heads;
     int32_t i;
@@ -200,8 +200,8 @@ static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
         /* What came since the last tick of a clock belongs to the next one. */
         made->over = h->root->over;
         made->at.gathered = h->root->at.gathered;
-        if ((made->standing != NULL) && made->at.started) {
-            made->standing->begun = made->at.position; /* what it would have seen before is lost */
+        if ((made->truth_log != NULL) && made->at.started) {
+            made->truth_log->begun = made->at.position; /* what it would have seen before is lost */
         }
         if (made->at.started && (made->at.presence == ARE_THERE)) {
             vary(made, made->at.position, made->at.gathered);

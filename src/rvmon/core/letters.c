@@ -214,7 +214,7 @@ int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
     made = (m->span_count > 0) ? &m->spans[m->span_count - 1] : NULL;
     if ((made == NULL) || (made->first != first) || (made->last != n->last)
         || (made->last_count != n->last->count)) {
-        made = grown(m, m->spans, &m->span_room, (int64_t)m->span_count + 1, sizeof *made);
+        made = enlarged(m, m->spans, &m->span_room, (int64_t)m->span_count + 1, sizeof *made);
         if (made == NULL) {
             return -1;
         }

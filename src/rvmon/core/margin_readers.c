@@ -132,11 +132,11 @@ bool margins_make(run *r)
         return true;
     }
     r->margins = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->margins);
-    r->stirred = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->stirred);
+    r->changed_inputs = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->changed_inputs);
     r->margins_due.due = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int64_t));
     r->margins_due.ids = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
     r->margins_due.place = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
-    if ((r->stirred == NULL) || (r->margins_due.due == NULL) || (r->margins_due.ids == NULL)
+    if ((r->changed_inputs == NULL) || (r->margins_due.due == NULL) || (r->margins_due.ids == NULL)
         || (r->margins_due.place == NULL)) {
         return false;
     }
@@ -163,7 +163,7 @@ void margins_clear(run *r)
 {
     int32_t i;
     r->asked = 0;
-    r->stirred_count = 0;
+    r->changed_count = 0;
     r->measured_at = -LIMIT;
     if (r->margins != NULL) {
         timers_clear(&r->margins_due, r->part->plan->judges.count);
@@ -177,6 +177,6 @@ void margins_clear(run *r)
         q->active = false;
         q->parted = false;
         q->blind = false;
-        q->stirred = false;
+        q->changed_inputs = false;
     }
 }

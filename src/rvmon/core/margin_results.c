@@ -20,7 +20,7 @@ int32_t measured_attempt(run *r, int64_t triggered, uint32_t number)
     if (at > 0) {
         s->free_record = s->records[at - 1].next;
     } else {
-        made = grown(m, s->records, &s->record_room, (int64_t)s->record_count + 1, sizeof *made);
+        made = enlarged(m, s->records, &s->record_room, (int64_t)s->record_count + 1, sizeof *made);
         if (made == NULL) {
             return 0;
         }
@@ -77,9 +77,9 @@ rv_margin *figure_found(rv_monitor *m, int32_t record)
 {
     margin_results *s = &m->margins;
     if ((s->found_count == s->found_room) || (s->found_count == s->owners_room)) {
-        rv_margin *made = grown(m, s->found, &s->found_room, (int64_t)s->found_count + 1, sizeof *made);
+        rv_margin *made = enlarged(m, s->found, &s->found_room, (int64_t)s->found_count + 1, sizeof *made);
         int32_t *owners =
-            grown(m, s->owners, &s->owners_room, (int64_t)s->found_count + 1, sizeof *owners);
+            enlarged(m, s->owners, &s->owners_room, (int64_t)s->found_count + 1, sizeof *owners);
         s->found = (made != NULL) ? made : s->found;
         s->owners = (owners != NULL) ? owners : s->owners;
         if ((made == NULL) || (owners == NULL)) {

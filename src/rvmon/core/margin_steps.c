@@ -183,7 +183,7 @@ static bool room_for_part(rv_monitor *m, margin_parts *s)
     if ((s->begin > 0) && (count <= s->room / 2)) {
         (void)memmove(s->at, &s->at[s->begin], (size_t)count * sizeof *s->at);
     } else {
-        made = grown(m, s->at, &s->room, (int64_t)s->room + 1, sizeof *made);
+        made = enlarged(m, s->at, &s->room, (int64_t)s->room + 1, sizeof *made);
         if (made == NULL) {
             return false;
         }
@@ -283,7 +283,7 @@ void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double
 bool parts_copy(rv_monitor *m, margin_parts *made, const margin_parts *s)
 {
     const int32_t count = s->end - s->begin;
-    margin_part *at = grown(m, made->at, &made->room, count, sizeof *at);
+    margin_part *at = enlarged(m, made->at, &made->room, count, sizeof *at);
     if ((at == NULL) && (count > 0)) {
         return false;
     }

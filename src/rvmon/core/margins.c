@@ -43,7 +43,7 @@ void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t
 
 /* Take it that what judges measure may be another: what a name says, signals first, then events, or the
  * truth of a node, behind them. */
-void margins_stir(run *r, int32_t what)
+void margins_mark_changed(run *r, int32_t what)
 {
     const margin_readers *readers = &r->part->readers;
     int32_t i;
@@ -52,23 +52,23 @@ void margins_stir(run *r, int32_t what)
     }
     for (i = readers->first[what]; i < readers->first[what + 1]; i++) {
         const int32_t index = readers->judges[i];
-        if (!r->margins[index].stirred) {
-            r->margins[index].stirred = true;
-            r->stirred[r->stirred_count] = index;
-            r->stirred_count++;
+        if (!r->margins[index].changed_inputs) {
+            r->margins[index].changed_inputs = true;
+            r->changed_inputs[r->changed_count] = index;
+            r->changed_count++;
         }
     }
 }
 
-static void stir_all(run *r)
+static void mark_all_changed(run *r)
 {
     int32_t i;
-    r->stirred_count = 0;
+    r->changed_count = 0;
     for (i = 0; i < r->part->plan->judges.count; i++) {
-        r->margins[i].stirred = true;
-        r->stirred[i] = i;
+        r->margins[i].changed_inputs = true;
+        r->changed_inputs[i] = i;
     }
-    r->stirred_count = r->part->plan->judges.count;
+    r->changed_count = r->part->plan->judges.count;
 }
 
 /* Give the letters up to a position to the gauges. */
@@ -281,7 +281,7 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
     }
     /* At the end, the letter of the last position stands; a later sample may have been taken. */
     if (!q->active
-        || ((q->position < t) && (q->stirred || (GAP(r) == 0)) && !awaits_the_end(r, index))) {
+        || ((q->position < t) && (q->changed_inputs || (GAP(r) == 0)) && !awaits_the_end(r, index))) {
         enter_position(r, index, t);
     }
     ask_for(r, index, floored(t, step_of(r)), record);
@@ -292,7 +292,7 @@ static void visit_measured(run *r, int32_t index, int64_t t)
 {
     measuring *q = &r->margins[index];
     const bool wanted = q->active || is_kept_up(r, index) || awaits_the_end(r, index);
-    q->stirred = false;
+    q->changed_inputs = false;
     if (!q->blind && wanted && (!q->active || (q->position < t))) {
         enter_position(r, index, t);
     }
@@ -305,13 +305,13 @@ void margins_visit(run *r, int64_t t)
     const int32_t streamed = r->home->monitor->measures_positions ? r->part->plan->requirements : 0;
     int32_t i;
     if ((GAP(r) == 0) || (r->measured_at == -LIMIT)) {
-        stir_all(r);
+        mark_all_changed(r);
     }
     r->measured_at = t;
-    for (i = 0; i < r->stirred_count; i++) {
-        visit_measured(r, r->stirred[i], t);
+    for (i = 0; i < r->changed_count; i++) {
+        visit_measured(r, r->changed_inputs[i], t);
     }
-    r->stirred_count = 0;
+    r->changed_count = 0;
     for (i = 0; i < streamed; i++) {
         if (is_streamed(r, i) && !r->margins[i].blind && (t - step_of(r) < r->at.after)) {
             ask_for(r, i, floored(t, step_of(r)), 0);

@@ -25,7 +25,7 @@ from rvmon.spec.checked.formula import (
 from rvmon.spec.checked.formula import Literal as Number
 from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.schema import Kind
-from rvmon.units.table import parse_unit
+from rvmon.units import parse_unit
 
 
 class Measure(IntEnum):
@@ -137,7 +137,7 @@ def _unit(expression: Numeric, spec: CheckedSpec) -> str:
             return spec.signals[name].type.unit
         case FieldValue(event=event, field=field):
             return spec.events[event].fields[field].unit
-        case Arithmetic(op=op, args=args) if op.entry.unit is UnitRule.SAME:
+        case Arithmetic(op=op, args=args) if op.entry.unit in (UnitRule.SAME, UnitRule.TURN):
             return next((unit for arg in args if (unit := _unit(arg, spec))), "")
         case _:
             return ""

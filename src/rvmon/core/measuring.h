@@ -96,7 +96,7 @@ typedef struct {
     bool active;
     bool parted;
     bool blind;                /* whether it missed positions that matter */
-    bool stirred;              /* whether its leaves may be others than was read */
+    bool changed_inputs;              /* whether its leaves may be others than was read */
 } measuring;
 
 /* An attempt that is measured, until its figure is taken. */

@@ -184,7 +184,7 @@ void *widened(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t ea
     return made;
 }
 
-void *grown(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
+void *enlarged(rv_monitor *m, void *old, int32_t *room, int64_t wanted, size_t each)
 {
     const int32_t was = *room;
     char *made = widened(m, old, room, wanted, each);

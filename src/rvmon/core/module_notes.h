@@ -18,11 +18,11 @@ typedef struct {
 
 /* The note of an attempt. */
 typedef struct {
-    int64_t *words;            /* NULL: there is none; behind them those of how all stood */
+    int64_t *words;            /* NULL: there is none; behind them the state of the propositions */
     PyObject *pieces;          /* letters; NULL: they do not matter */
     PyObject *last;
     int32_t count;
-    int32_t standing_count;    /* 0: nobody asks */
+    int32_t state_count;    /* 0: nobody asks */
 } note_copy;
 
 /* A piece is gone, which may be while other threads of Python run. */
@@ -136,17 +136,17 @@ static bool copy_note(note_copy *to, const rv_monitor *m, const rv_record *recor
     if (!rv_note_of(m, record, &note)) {
         return true;
     }
-    to->words = PyMem_Malloc((size_t)(note.count + note.standing_count) * sizeof *to->words);
+    to->words = PyMem_Malloc((size_t)(note.count + note.state_count) * sizeof *to->words);
     if (to->words == NULL) {
         (void)PyErr_NoMemory();
         return false;
     }
     to->count = (int32_t)note.count;
-    to->standing_count = (int32_t)note.standing_count;
+    to->state_count = (int32_t)note.state_count;
     (void)memcpy(to->words, note.words, (size_t)note.count * sizeof *to->words);
-    if (note.standing_count > 0) {
-        (void)memcpy(&to->words[note.count], note.standing,
-                     (size_t)note.standing_count * sizeof *to->words);
+    if (note.state_count > 0) {
+        (void)memcpy(&to->words[note.count], note.state,
+                     (size_t)note.state_count * sizeof *to->words);
     }
     return (note.first == NULL) || letters_of(&note, &to->pieces, &to->last);
 }
@@ -159,26 +159,26 @@ static void free_note(note_copy *note)
     Py_CLEAR(note->last);
 }
 
-/* The values that an attempt captured, or None; with a note (values, note, standing, pieces, last
+/* The values that an attempt captured, or None; with a note (values, note, state, pieces, last
  * piece), None for what there is not. */
 static PyObject *noted_with(const note_copy *note, PyObject *values)
 {
     PyObject *words;
-    PyObject *standing;
+    PyObject *state;
     PyObject *made = NULL;
     if (note->words == NULL) {
         return Py_NewRef(values);
     }
     words = bytes_of_words(note->words, note->count);
-    standing = (note->standing_count > 0)
-        ? bytes_of_words(&note->words[note->count], note->standing_count) : Py_NewRef(Py_None);
-    if ((words != NULL) && (standing != NULL)) {
-        made = PyTuple_Pack(5, values, words, standing,
+    state = (note->state_count > 0)
+        ? bytes_of_words(&note->words[note->count], note->state_count) : Py_NewRef(Py_None);
+    if ((words != NULL) && (state != NULL)) {
+        made = PyTuple_Pack(5, values, words, state,
                             (note->pieces != NULL) ? note->pieces : Py_None,
                             (note->last != NULL) ? note->last : Py_None);
     }
     Py_XDECREF(words);
-    Py_XDECREF(standing);
+    Py_XDECREF(state);
     return made;
 }
 

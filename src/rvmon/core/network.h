@@ -73,7 +73,7 @@ int64_t last_at(const judging *g, int64_t t);
 int64_t step_to_decision(judging *g, int64_t now, int64_t last);
 
 /* ---- network_judge.c */
-int64_t soonest(const judging *g, int64_t now);
+int64_t earliest(const judging *g, int64_t now);
 
 /* ---- network_attempts.c */
 bool weigh(judging *g, int32_t at, int64_t t);

@@ -12,9 +12,9 @@ static bool has_from(const operator_state *o, uint8_t value, int64_t position)
 }
 
 /* The first instant at which an operator can be known to have a value somewhere from a position on. */
-static int64_t soonest_from(const operator_state *o, uint8_t value, int64_t position, int64_t now)
+static int64_t earliest_from(const operator_state *o, uint8_t value, int64_t position, int64_t now)
 {
-    return has_from(o, value, position) ? now : o->soonest[value];
+    return has_from(o, value, position) ? now : o->earliest[value];
 }
 
 static void ask_junction(const form *f, network *w, const operator_plan *n, operator_state *o)
@@ -23,13 +23,13 @@ static void ask_junction(const form *f, network *w, const operator_plan *n, oper
     const uint8_t all = (uint8_t)n->turned;
     const uint8_t some = (uint8_t)(all ^ 1U);
     int32_t i;
-    o->soonest[some] = NEVER;
-    o->soonest[all] = w->now;
+    o->earliest[some] = NEVER;
+    o->earliest[all] = w->now;
     for (i = 0; i < n->operands.count; i++) {
         const operator_state *one = &w->nodes[operands[i]];
-        const int64_t met = soonest_from(one, all, o->base, w->now);
-        o->soonest[some] = least(o->soonest[some], one->soonest[some]);
-        o->soonest[all] = (met > o->soonest[all]) ? met : o->soonest[all];
+        const int64_t met = earliest_from(one, all, o->base, w->now);
+        o->earliest[some] = least(o->earliest[some], one->earliest[some]);
+        o->earliest[all] = (met > o->earliest[all]) ? met : o->earliest[all];
     }
 }
 
@@ -38,11 +38,11 @@ static void ask_window(const form *f, network *w, const operator_plan *n, operat
     const operator_state *operand = &w->nodes[n->left];
     const uint8_t all = (uint8_t)n->turned;
     const int64_t over = moved(instant_of(f, w, o->base), n->over);
-    o->soonest[all] = (over > w->now) ? over : w->now;
-    o->soonest[all ^ 1U] = operand->soonest[all ^ 1U];
+    o->earliest[all] = (over > w->now) ? over : w->now;
+    o->earliest[all ^ 1U] = operand->earliest[all ^ 1U];
     if ((f->gap == 1) && (n->low <= n->high)) { /* none is empty */
-        const int64_t met = soonest_from(operand, all, moved(o->base, n->low), w->now);
-        o->soonest[all] = (met > o->soonest[all]) ? met : o->soonest[all];
+        const int64_t met = earliest_from(operand, all, moved(o->base, n->low), w->now);
+        o->earliest[all] = (met > o->earliest[all]) ? met : o->earliest[all];
     }
 }
 
@@ -54,13 +54,13 @@ static void ask_until(network *w, const operator_plan *n, operator_state *o)
     const operator_state *right = &w->nodes[n->right];
     const uint8_t no = (uint8_t)n->turned;
     const uint8_t yes = (uint8_t)(no ^ 1U);
-    const int64_t failing = soonest_from(left, no, o->base, w->now);
-    o->soonest[yes] = soonest_from(right, yes, o->base, w->now);
-    o->soonest[no] = soonest_from(right, no, o->base, w->now);
-    o->soonest[no] = (failing > o->soonest[no]) ? failing : o->soonest[no];
+    const int64_t failing = earliest_from(left, no, o->base, w->now);
+    o->earliest[yes] = earliest_from(right, yes, o->base, w->now);
+    o->earliest[no] = earliest_from(right, no, o->base, w->now);
+    o->earliest[no] = (failing > o->earliest[no]) ? failing : o->earliest[no];
 }
 
-int64_t soonest_news(const form *f, networks *net, int32_t reading)
+int64_t earliest_change(const form *f, networks *net, int32_t reading)
 {
     network *w = &net->readings[reading];
     const int32_t count = f->form->operators.count;
@@ -68,23 +68,23 @@ int64_t soonest_news(const form *f, networks *net, int32_t reading)
     for (i = 0; i < count; i++) {
         const operator_plan *n = &f->nodes[i];
         operator_state *o = &w->nodes[i];
-        o->soonest[0] = w->now;
-        o->soonest[1] = w->now;
+        o->earliest[0] = w->now;
+        o->earliest[1] = w->now;
         if (n->kind == OP_LEAF) {
             const uint8_t other = ((net->leaf[n->left] >> reading) & 1U) ^ 1U;
-            o->soonest[other] = NEVER;
+            o->earliest[other] = NEVER;
         } else if (n->kind == OP_JUNCTION) {
             ask_junction(f, w, n, o);
         } else if ((n->kind == OP_WINDOW) && (n->over >= 0)) {
             ask_window(f, w, n, o);
         } else if ((n->kind == OP_SHIFT) && (n->low >= 0)) {
-            o->soonest[0] = w->nodes[n->left].soonest[0];
-            o->soonest[1] = w->nodes[n->left].soonest[1];
+            o->earliest[0] = w->nodes[n->left].earliest[0];
+            o->earliest[1] = w->nodes[n->left].earliest[1];
         } else if (n->kind == OP_UNTIL) {
             ask_until(w, n, o);
         } else {
             /* What looks back is not followed. */
         }
     }
-    return least(w->nodes[count - 1].soonest[0], w->nodes[count - 1].soonest[1]);
+    return least(w->nodes[count - 1].earliest[0], w->nodes[count - 1].earliest[1]);
 }

@@ -99,7 +99,7 @@ void hear_news(judging *g, int64_t t)
         }
         if ((position >= asked) && !weigh(g, at, t)) {
             leave(g->r, g->index, before, at);
-        } else if (is_moot(attempt_of(g, at))) {
+        } else if (is_undecidable(attempt_of(g, at))) {
             lay_aside(g->r, g->index, before, at);
         } else {
             before = at;

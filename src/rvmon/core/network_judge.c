@@ -100,12 +100,12 @@ static void tidy_up(judging *g, int64_t position)
 }
 
 /* The instant from `now` on before which nothing is decided if the letter stays. */
-int64_t soonest(const judging *g, int64_t now)
+int64_t earliest(const judging *g, int64_t now)
 {
     int64_t found = NEVER;
     int32_t i;
     for (i = 0; i < readings(g); i++) {
-        found = least(found, soonest_news(&g->f, g->net, i));
+        found = least(found, earliest_change(&g->f, g->net, i));
     }
     return (found > now) ? found : now;
 }
@@ -145,7 +145,7 @@ static void pass(judging *g, int64_t now, int64_t last, int64_t until)
 {
     const bool complete = last == last_at(g, now); /* else the position there is still to come */
     if ((g->f.gap > 0) && complete) {
-        const int64_t due = soonest(g, now);
+        const int64_t due = earliest(g, now);
         if (due > now) {
             set_due(g, due);
             return;
@@ -262,7 +262,7 @@ static void come_to(judging *g, int64_t t)
     }
     turn_to_next(g);
     hear_news(g, t);
-    set_due(g, (g->j->first < 0) ? NEVER : soonest(g, t + 1));
+    set_due(g, (g->j->first < 0) ? NEVER : earliest(g, t + 1));
 }
 
 void network_come_to(run *r, int32_t index, int64_t t)
@@ -288,7 +288,7 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
         learn_all(&g, t, last_at(&g, t));
         hear_news(&g, t);
     }
-    attempt_of(&g, at)->due = soonest(&g, t + 1);
+    attempt_of(&g, at)->due = earliest(&g, t + 1);
     attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
     return weigh(&g, at, t);
 }

@@ -26,7 +26,7 @@ from rvmon.formula.state import (
 )
 from rvmon.plan.graph import lasting
 from rvmon.plan.plan import Plan, PlannedRule
-from rvmon.spec.checked.formula import Compare, Constant, SignalAtom
+from rvmon.spec.checked.formula import Compare, Constant, Measured, SignalAtom
 
 NEVER = (1 << 63) - 1
 """No instant, or no bound."""
@@ -49,12 +49,13 @@ class NodeOp(IntEnum):
     EVER = auto()
     EDGE = auto()
     STRETCH = auto()
+    AMOUNT = auto()
 
 
 SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
 """The nodes that remember a truth."""
 
-TIMED = (NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE, NodeOp.STRETCH)
+TIMED = (NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE, NodeOp.STRETCH, NodeOp.AMOUNT)
 """The nodes that time alone can change."""
 
 _PLAIN = {
@@ -113,7 +114,7 @@ class Nodes:
         ]
         self.seen = _count_slots(self.all, SEEN)
         self.edges = _count_slots(self.all, [NodeOp.EDGE])
-        self.stretches = _count_slots(self.all, [NodeOp.STRETCH])
+        self.stretches = _count_slots(self.all, [NodeOp.STRETCH, NodeOp.AMOUNT])
         timed = [node for node in self.all if node.op in TIMED]
         for number, node in enumerate(timed):
             node.timer = number
@@ -163,6 +164,10 @@ class Nodes:
             case StateOp.SINCE:
                 high = NEVER if state.high is None else state.high
                 return Node(_since(state), low=state.low, high=high, operands=operands)
+            case StateOp.AMOUNT:
+                lasting = state.measured is Measured.DURATION
+                bounds = {"low": state.least, "high": state.high or 0}
+                return Node(NodeOp.AMOUNT, lasting, operands=operands, **bounds)
             case _:
                 return Node(_PLAIN[state.op], operands=operands)
 

@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Number the nodes of a part that notes tell of. */
-static void number_stood(const rv_monitor *m, part *p)
+static void number_logged(const rv_monitor *m, part *p)
 {
     int32_t i;
     int32_t k;
@@ -18,15 +18,15 @@ static void number_stood(const rv_monitor *m, part *p)
     for (i = 0; i < p->plan->nodes.count; i++) {
         p->slots[i] = -1;
     }
-    p->stood = 0;
+    p->logged = 0;
     for (i = 0; i < p->plan->judges.count; i++) {
         const list lists_of[2] = {p->judges[i].propositions, p->judges[i].leaves};
         for (k = 0; k < 2; k++) {
             const int32_t *nodes = LIST(&m->plan, lists_of[k]);
             for (l = 0; l < lists_of[k].count; l++) {
                 if (p->slots[nodes[l]] < 0) {
-                    p->slots[nodes[l]] = p->stood;
-                    p->stood++;
+                    p->slots[nodes[l]] = p->logged;
+                    p->logged++;
                 }
             }
         }
@@ -37,15 +37,15 @@ static void number_stood(const rv_monitor *m, part *p)
 bool make_notes(run *r)
 {
     arena *a = &r->home->monitor->memory;
-    const int32_t stood_count = r->part->stood;
+    const int32_t logged_count = r->part->logged;
     int32_t i;
-    if (r->standing == NULL) {
-        r->standing = arena_take(a, sizeof *r->standing);
-        if (r->standing == NULL) {
+    if (r->truth_log == NULL) {
+        r->truth_log = arena_take(a, sizeof *r->truth_log);
+        if (r->truth_log == NULL) {
             return false;
         }
-        r->standing->nodes = arena_take(a, ((size_t)stood_count + 1U) * sizeof *r->standing->nodes);
-        if (r->standing->nodes == NULL) {
+        r->truth_log->nodes = arena_take(a, ((size_t)logged_count + 1U) * sizeof *r->truth_log->nodes);
+        if (r->truth_log->nodes == NULL) {
             return false;
         }
     }
@@ -58,7 +58,7 @@ bool make_notes(run *r)
         }
         clear_noting(r, i);
     }
-    r->standing->begun = RV_NO_TIME;
+    r->truth_log->begun = RV_NO_TIME;
     stand_at_first(r, RV_NO_TIME);
     return true;
 }
@@ -67,7 +67,7 @@ bool make_notes(run *r)
 static void drop_notes(run *r)
 {
     int32_t i;
-    r->standing = NULL;
+    r->truth_log = NULL;
     for (i = 0; i < r->part->plan->judges.count; i++) {
         r->judges[i].noting = NULL;
     }
@@ -84,7 +84,7 @@ int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
         p->slots = arena_take(&m->memory, (size_t)(p->plan->nodes.count + 1) * sizeof *p->slots);
         done = p->slots != NULL;
         if (done) {
-            number_stood(m, p);
+            number_logged(m, p);
             done = make_notes(m->homes[i].root) && begin_unknowns(&m->homes[i]);
         }
     }
@@ -107,8 +107,8 @@ void clear_noting(run *r, int32_t index)
         forget_letters(r->home->monitor, n);
         n->triggers.head = n->triggers.count = 0;
         n->doubts.head = n->doubts.count = 0;
-        n->standing = -1;
-        n->moot_since = NEVER;
+        n->state = -1;
+        n->undecidable_since = NEVER;
         n->began_at = RV_NO_TIME;
     }
 }
@@ -116,10 +116,10 @@ void clear_noting(run *r, int32_t index)
 /* All truths are as from the first position on, at `t`. */
 void stand_at_first(run *r, int64_t t)
 {
-    standing *s = r->standing;
+    truth_log *s = r->truth_log;
     int32_t i;
-    for (i = 0; i < r->part->stood; i++) {
-        stood_node *own = &s->nodes[i];
+    for (i = 0; i < r->part->logged; i++) {
+        logged_node *own = &s->nodes[i];
         own->now.since = t;
         own->now.last[0] = own->now.last[1] = RV_NO_TIME;
         own->moved_at = RV_NO_TIME;
@@ -131,24 +131,24 @@ void stand_at_first(run *r, int64_t t)
 void stand_like(run *made, const run *r)
 {
     int32_t i;
-    for (i = 0; i < r->part->stood; i++) {
-        made->standing->nodes[i].now = r->standing->nodes[i].now;
-        made->standing->nodes[i].moved_at = RV_NO_TIME;
+    for (i = 0; i < r->part->logged; i++) {
+        made->truth_log->nodes[i].now = r->truth_log->nodes[i].now;
+        made->truth_log->nodes[i].moved_at = RV_NO_TIME;
     }
-    made->standing->moved_at = r->standing->moved_at;
-    made->standing->begun = r->standing->begun;
+    made->truth_log->moved_at = r->truth_log->moved_at;
+    made->truth_log->begun = r->truth_log->begun;
 }
 
 /* Take it that a node becomes another one than it `was` at the position `t`. */
 void note_node(run *r, int32_t node, uint8_t was, int64_t t)
 {
     const int32_t slot = r->part->slots[node];
-    stood_node *own;
+    logged_node *own;
     if (slot < 0) {
         return;
     }
-    own = &r->standing->nodes[slot];
-    r->standing->moved_at = t;
+    own = &r->truth_log->nodes[slot];
+    r->truth_log->moved_at = t;
     if (own->moved_at != t) {
         own->moved_at = t;
         own->was = own->now;
@@ -161,15 +161,15 @@ void note_node(run *r, int32_t node, uint8_t was, int64_t t)
 }
 
 /* How a node was before the last position at which one changed, if it did there; else NULL. */
-static const stood_node *moved_last(const run *r, int32_t node)
+static const logged_node *moved_last(const run *r, int32_t node)
 {
-    const stood_node *own = &r->standing->nodes[r->part->slots[node]];
-    return ((own->moved_at == r->standing->moved_at) && (own->moved_at != RV_NO_TIME)) ? own : NULL;
+    const logged_node *own = &r->truth_log->nodes[r->part->slots[node]];
+    return ((own->moved_at == r->truth_log->moved_at) && (own->moved_at != RV_NO_TIME)) ? own : NULL;
 }
 
-stood stood_of(const run *r, int32_t node, bool before)
+truth_times truth_times_of(const run *r, int32_t node, bool before)
 {
-    const stood_node *own = &r->standing->nodes[r->part->slots[node]];
+    const logged_node *own = &r->truth_log->nodes[r->part->slots[node]];
     return (before && (moved_last(r, node) != NULL)) ? own->was : own->now;
 }
 
@@ -183,7 +183,7 @@ void pack_truths(const run *r, list nodes, bool before, int64_t *words)
         uint64_t word = 0;
         int32_t shift;
         for (shift = 0; (shift < 2 * TRUTHS_IN_WORD) && (node < end); shift += 2) {
-            const stood_node *was = before ? moved_last(r, *node) : NULL;
+            const logged_node *was = before ? moved_last(r, *node) : NULL;
             word |= (uint64_t)((was != NULL) ? was->truth : r->truth[*node]) << shift;
             node++;
         }
@@ -257,7 +257,7 @@ int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words)
 static int64_t oldest_trigger(const run *r, int32_t index)
 {
     const judge *j = &r->judges[index];
-    int64_t found = j->noting->moot_since;
+    int64_t found = j->noting->undecidable_since;
     if (!queue_is_empty(j)) {
         found = least(found, queue_item(j, 0)->triggered);
     }
@@ -385,10 +385,10 @@ void note_begin(run *r, int32_t index, attempt *x, int64_t t)
 }
 
 /* Take it that an attempt that stays open for good was triggered at `t`. */
-void note_moot(run *r, int32_t index, int64_t t)
+void note_undecidable(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
-    n->moot_since = least(n->moot_since, t);
+    n->undecidable_since = least(n->undecidable_since, t);
 }
 
 /* Count the open attempts of a judge, before they are told of. */

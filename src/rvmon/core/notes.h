@@ -20,7 +20,7 @@ static inline int64_t *entry_of(const truths *ring, int32_t i, int32_t words)
 }
 
 /* ---- notes.c */
-stood stood_of(const run *r, int32_t node, bool before);
+truth_times truth_times_of(const run *r, int32_t node, bool before);
 void pack_truths(const run *r, list nodes, bool before, int64_t *words);
 const int64_t *truths_at(const truths *ring, int32_t words, int64_t t);
 int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words);
@@ -49,7 +49,7 @@ enum {
     NOTE_NETWORK = 1,          /* a network judges */
     NOTE_CUT = 2,              /* it is not known any more which values were captured */
     NOTE_PARTED = 4,           /* the two readings differ */
-    NOTE_HOLLOW = 8,
+    NOTE_CANNOT_PASS = 8,
     NOTE_SURE = 16
 };
 /* Words before those of the leaves. */

@@ -2,6 +2,7 @@
  *
  * Source: the law, section 5. */
 #include "calls.h"
+#include "plan_check.h"
 
 #include <math.h>
 
@@ -155,55 +156,6 @@ static rv_number multiplied(const rv_number *a, const rv_number *b)
     return real(as_double(a) * as_double(b));
 }
 
-/* The quotient of two sizes, rounded once, to even: so many binary digits that the last two only
- * tell on which side of the middle it is. */
-static double quotient(uint64_t a, uint64_t b)
-{
-    uint64_t digits = a / b;
-    uint64_t rest = a % b;
-    int shift = 0;
-    while (digits < (UINT64_C(1) << 55)) {
-        digits <<= 1;
-        if (rest > UINT64_MAX - rest) { /* twice the rest does not fit: it is more than b */
-            digits |= 1U;
-            rest = rest - (b - rest);
-        } else {
-            rest *= 2;
-            if (rest >= b) {
-                digits |= 1U;
-                rest -= b;
-            }
-        }
-        shift++;
-        if (shift > 130) {
-            break;
-        }
-    }
-    return ldexp((double)(digits | ((rest != 0) ? 1U : 0U)), -shift);
-}
-
-static rv_number divided(const rv_number *a, const rv_number *b)
-{
-    if ((a->kind == RV_WHOLE) && (b->kind == RV_WHOLE)) {
-        const uint64_t x = size_of(a->as.whole);
-        const uint64_t y = size_of(b->as.whole);
-        double size;
-        if (y == 0) {
-            return UNKNOWN_NUMBER;
-        }
-        if ((x <= (UINT64_C(1) << 53)) && (y <= (UINT64_C(1) << 53))) {
-            size = (double)x / (double)y;
-        } else {
-            size = quotient(x, y);
-        }
-        return real(((a->as.whole < 0) != (b->as.whole < 0)) ? -size : size);
-    }
-    if (as_double(b) == 0.0) {
-        return UNKNOWN_NUMBER;
-    }
-    return real(as_double(a) / as_double(b));
-}
-
 static rv_number negated(const rv_number *a)
 {
     if (a->kind == RV_WHOLE) {
@@ -257,44 +209,67 @@ static double length(double a, double b)
     return ((root > 0.0) ? root + off / (2.0 * root) : root) / scale;
 }
 
-static rv_number of_two(int32_t op, const rv_number *a, const rv_number *b)
+static rv_number of_wholes(int32_t op, const rv_number *x)
 {
-    if ((a->kind == RV_UNKNOWN) || (b->kind == RV_UNKNOWN)) {
-        return UNKNOWN_NUMBER;
-    }
     switch (op) {
-    case CODE_ADD: return added(a, b);
-    case CODE_SUB: return subtracted(a, b);
-    case CODE_MUL: return multiplied(a, b);
-    case CODE_DIV: return divided(a, b);
-    case CODE_MIN: return picked((order(b, a) < 0) ? b : a);
-    case CODE_MAX: return picked((order(b, a) > 0) ? b : a);
-    default: return real(length(as_double(a), as_double(b)));
+    case CODE_NEG: return negated(x);
+    case CODE_ABS: return magnitude(x);
+    case CODE_ADD: return added(x, x + 1);
+    case CODE_SUB: return subtracted(x, x + 1);
+    case CODE_MUL: return multiplied(x, x + 1);
+    default: return function_of_wholes(op, x->as.whole, x[1].as.whole);
     }
 }
 
-/* A quotient is of reals, and so is what has a real in it: only comparisons are exact
- * between the two. */
-static rv_number of_two_by(int32_t op, const rv_number *a, const rv_number *b)
+static rv_number of_reals(int32_t op, const rv_number *x)
 {
-    const bool known = (a->kind != RV_UNKNOWN) && (b->kind != RV_UNKNOWN);
-    if (known && ((op == CODE_DIV) || (a->kind != b->kind))) {
-        const rv_number x = real(as_double(a));
-        const rv_number y = real(as_double(b));
-        return of_two(op, &x, &y);
+    const double read[MOST_ARGUMENTS] = {x[0].as.real, x[1].as.real, x[2].as.real, x[3].as.real};
+    switch (op) {
+    case CODE_NEG: return negated(x);
+    case CODE_ABS: return magnitude(x);
+    case CODE_ADD: return added(x, x + 1);
+    case CODE_SUB: return subtracted(x, x + 1);
+    case CODE_MUL: return multiplied(x, x + 1);
+    case CODE_DIV: return (read[1] == 0.0) ? UNKNOWN_NUMBER : real(read[0] / read[1]);
+    case CODE_SQRT: return (read[0] < 0.0) ? UNKNOWN_NUMBER : real(sqrt(read[0]));
+    case CODE_HYPOT: return real(length(read[0], read[1]));
+    default: return real(function_of_reals(op, read));
     }
-    return of_two(op, a, b);
 }
 
-static rv_number of_one(int32_t op, const rv_number *a)
+/* Of reals alone, whatever comes in. */
+static bool is_of_reals(int32_t op)
 {
-    if (a->kind == RV_UNKNOWN) {
-        return UNKNOWN_NUMBER;
+    return (op == CODE_DIV) || (op == CODE_SQRT) || (op == CODE_HYPOT)
+           || is_within(op, CODE_SIN, CODE_DISTANCE_ON_EARTH + 1);
+}
+
+/* The result of an operation on `count` numbers, in their place. Where one is real all are, rounded
+ * first: only comparisons are exact between the two. */
+static rv_number calculated(int32_t op, const rv_number *args, int32_t count)
+{
+    rv_number x[MOST_ARGUMENTS] = {UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER, UNKNOWN_NUMBER};
+    bool wholes = !is_of_reals(op);
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        if (args[i].kind == RV_UNKNOWN) {
+            return UNKNOWN_NUMBER;
+        }
+        wholes = wholes && (args[i].kind == RV_WHOLE);
+        x[i] = args[i];
+    }
+    for (i = 0; !wholes && (i < count); i++) {
+        x[i].as.real = as_double(&args[i]);
+        x[i].kind = RV_REAL;
     }
     switch (op) {
-    case CODE_NEG: return negated(a);
-    case CODE_ABS: return magnitude(a);
-    default: return (as_double(a) < 0.0) ? UNKNOWN_NUMBER : real(sqrt(as_double(a)));
+    case CODE_MIN: return picked((order(&x[1], &x[0]) < 0) ? &x[1] : &x[0]);
+    case CODE_MAX: return picked((order(&x[1], &x[0]) > 0) ? &x[1] : &x[0]);
+    case CODE_CLAMP: {
+        const rv_number *raised = (order(&x[1], &x[0]) > 0) ? &x[1] : &x[0];
+        return picked((order(&x[2], raised) < 0) ? &x[2] : raised);
+    }
+    default: return wholes ? of_wholes(op, x) : of_reals(op, x);
     }
 }
 
@@ -308,10 +283,9 @@ static rv_number of_updates(int32_t op, const history *h, const rv_number *now)
     if ((op != CODE_PREV) && (found.kind != RV_UNKNOWN)) {
         found = subtracted(now, &found);
         if ((op == CODE_RATE) && (found.kind != RV_UNKNOWN)) {
-            const rv_number second = real(1e9);
-            const rv_number distance = whole(h->at - h->before_at);
-            found = of_two_by(CODE_MUL, &found, &second);
-            found = of_two_by(CODE_DIV, &found, &distance);
+            const rv_number scaled[2] = {found, real(1e9)};
+            const rv_number shared[2] = {calculated(CODE_MUL, scaled, 2), whole(h->at - h->before_at)};
+            found = calculated(CODE_DIV, shared, 2);
         }
     }
     return found;
@@ -355,13 +329,12 @@ rv_number program_value(const run *r, int32_t place, const int32_t *at)
         case CODE_PREV:
         case CODE_DELTA:
         case CODE_RATE: stack[n++] = of_updates(op, &r->history[arg], &r->value[arg]); break;
-        case CODE_NEG:
-        case CODE_ABS:
-        case CODE_SQRT: stack[n - 1] = of_one(op, &stack[n - 1]); break;
-        default:
-            n--;
-            stack[n - 1] = of_two_by(op, &stack[n - 1], &stack[n]);
+        default: {
+            const int32_t count = arguments_of(op);
+            n -= count - 1;
+            stack[n - 1] = calculated(op, &stack[n - 1], count);
             break;
+        }
         }
     }
     return stack[0];

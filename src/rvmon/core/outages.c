@@ -90,7 +90,7 @@ static void lose_signal(run *r, int32_t local, int64_t t)
     if ((s->flags & SIGNAL_HISTORY) != 0) {
         (void)remember(&r->history[local], t, &UNKNOWN_NUMBER);
     }
-    margins_stir(r, local);
+    margins_mark_changed(r, local);
     r->value[local] = UNKNOWN_NUMBER;
     r->spans[local] = NO_SPAN;
 }
@@ -157,7 +157,7 @@ static void leave_wholly(run *r, int32_t name)
             if ((r->part->signals[name].flags & SIGNAL_HISTORY) != 0) {
                 (void)remember(&r->history[name], r->until[name], &r->kept[name]);
             }
-            margins_stir(r, name);
+            margins_mark_changed(r, name);
             r->value[name] = r->kept[name];
         }
     } else {

@@ -101,7 +101,7 @@ static int64_t next_stretch(const stretches *s, int64_t t)
 }
 
 /* Make the second reading as the first one stands. */
-static void part_stretches(rv_monitor *m, stretches *worse, stretches *better)
+void part_stretches(rv_monitor *m, stretches *worse, stretches *better)
 {
     int32_t i;
     while (better->room < worse->room) {
@@ -118,6 +118,7 @@ static void part_stretches(rv_monitor *m, stretches *worse, stretches *better)
     better->left = worse->left;
     better->right = worse->right;
     better->growing = worse->growing;
+    better->total = worse->total;
     worse->apart = true;
 }
 

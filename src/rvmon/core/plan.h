@@ -177,6 +177,7 @@ enum {
     NODE_EVER,                 /* since, without bounds */
     NODE_EDGE,                 /* since from 0 on, or without an end */
     NODE_STRETCH,              /* since in bounds */
+    NODE_AMOUNT,               /* so much in the last `high` ticks: amounts.c */
     NODES
 };
 
@@ -343,7 +344,11 @@ enum {
     CODE_FIELD,                /* of the occurrence at hand; while capturing, of the last one */
     CODE_PREV, CODE_DELTA, CODE_RATE,
     CODE_ADD, CODE_SUB, CODE_MUL, CODE_DIV, CODE_NEG, CODE_ABS, CODE_MIN, CODE_MAX, CODE_SQRT,
-    CODE_HYPOT, CODES
+    CODE_HYPOT, CODE_FLOOR, CODE_CEIL, CODE_ROUND, CODE_SIGN, CODE_MOD, CODE_CLAMP,
+    CODE_SIN, CODE_COS, CODE_TAN, CODE_ASIN, CODE_ACOS, CODE_ATAN2, CODE_EXP, CODE_LOG, CODE_LOG10,
+    CODE_POW, CODE_ANGLE_BETWEEN, CODE_DISTANCE_ON_EARTH,
+    CODE_BIT_AND, CODE_BIT_OR, CODE_BIT_XOR, CODE_SHIFT_LEFT, CODE_SHIFT_RIGHT, CODE_BIT,
+    CODES
 };
 #define PROGRAM_DEPTH 32
 /* Events whose fields one comparison may read. */

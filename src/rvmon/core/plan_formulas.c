@@ -70,18 +70,11 @@ static bool check_program(const plan *p, const part_plan *x, int64_t place)
             }
             depth++;
             break;
-        case CODE_NEG:
-        case CODE_ABS:
-        case CODE_SQRT:
-            if (depth < 1) {
-                return false;
-            }
-            break;
         default:
-            if (!is_within(op, CODE_ADD, CODES) || (depth < 2)) {
+            if (!is_within(op, CODE_ADD, CODES) || (depth < arguments_of(op))) {
                 return false;
             }
-            depth--;
+            depth -= arguments_of(op) - 1;
             break;
         }
         if (depth >= PROGRAM_DEPTH) {
@@ -151,7 +144,8 @@ static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_
         timed = false;
         break;
     case NODE_EDGE: slots = x->edges; break;
-    case NODE_STRETCH: slots = x->stretches; break;
+    case NODE_STRETCH:
+    case NODE_AMOUNT: slots = x->stretches; break;
     case NODE_ELAPSED: break;
     default: timed = false; break;
     }

@@ -89,7 +89,7 @@ typedef struct {
     int32_t *networked;        /* judges that networks are, neither automata nor chains */
     int32_t networked_count;
     int32_t *slots;            /* by node, its number among those that notes tell of; -1: it is none */
-    int32_t stood;             /* so many these are */
+    int32_t logged;            /* so many these are */
     bool has_episodes;         /* whether some attempt runs until its trigger is false */
     margin_readers readers;
     bool restarts;             /* whether some failure may be followed by another attempt */

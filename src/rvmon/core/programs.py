@@ -31,7 +31,7 @@ _INT64 = 1 << 63
 
 
 class Code(IntEnum):
-    """What a word of a program does."""
+    """What a word of a program does, before the operations."""
 
     END = 0
     NUMBER = auto()
@@ -41,17 +41,10 @@ class Code(IntEnum):
     PREV = auto()
     DELTA = auto()
     RATE = auto()
-    ADD = auto()
-    SUB = auto()
-    MUL = auto()
-    DIV = auto()
-    NEG = auto()
-    ABS = auto()
-    MIN = auto()
-    MAX = auto()
-    SQRT = auto()
-    HYPOT = auto()
 
+
+OPERATIONS = {op: number for number, op in enumerate(NumericOp, len(Code))}
+"""Their numbers, which go on from there in the order of their table."""
 
 _UPDATES = {
     UpdateFunction.PREV: Code.PREV,
@@ -145,14 +138,14 @@ class Programs:
         return 1
 
     def _operation(self, op: NumericOp, args: Sequence[Numeric], words: list[int]) -> int:
-        """An operation, from the left if it has more than two arguments."""
-        first, *rest = args
-        depth = self._emit(first, words)
-        for arg in rest:
-            depth = max(depth, 1 + self._emit(arg, words))
-            words.append(Code[op.name])
-        if not rest:
-            words.append(Code[op.name])
+        """An operation, from the left if it takes any number of arguments."""
+        at_once = len(args) if op.entry.most else op.entry.least
+        depth = 0
+        for number, arg in enumerate(args, 1):
+            on_stack = min(number, at_once) - 1
+            depth = max(depth, on_stack + self._emit(arg, words))
+            if number >= at_once:
+                words.append(OPERATIONS[op])
         return depth
 
     def _number(self, value: float | str) -> int:
@@ -180,5 +173,5 @@ def exact(value: float) -> float | None:
     return number if number == value else None
 
 
-def _word(code: Code, argument: int) -> int:
+def _word(code: int, argument: int) -> int:
     return code + 256 * argument

@@ -187,6 +187,7 @@ PyObject *_Py_BuildValue_SizeT(const char *, ...);
 void Py_IncRef(PyObject *);
 void Py_DecRef(PyObject *);
 
+void PyErr_Clear(void);
 PyObject *PyErr_Format(PyObject *, const char *, ...);
 PyObject *PyErr_NoMemory(void);
 PyObject *PyErr_Occurred(void);
@@ -239,6 +240,8 @@ long long PyLong_AsLongLong(PyObject *);
 long long PyLong_AsLongLongAndOverflow(PyObject *, int *);
 PyObject *PyLong_FromLongLong(long long);
 PyObject *PyLong_FromUnsignedLong(unsigned long);
+
+double PyOS_string_to_double(const char *, char **, PyObject *);
 
 PyObject *PySequence_Tuple(PyObject *);
 

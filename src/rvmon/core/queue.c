@@ -65,7 +65,7 @@ void tell_of_decision(const queueing *g, const queued *one, int32_t location, bo
 {
     const attempt *x = attempt_of_queued(g->r, one, location);
     int64_t note = -1;
-    if (g->r->standing != NULL) {
+    if (g->r->truth_log != NULL) {
         hold_token(g->r->home->monitor, g->a, location, x->clocks);
         note = note_decision(g->r, g->index, x, t);
     }
@@ -196,7 +196,7 @@ void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
             const int32_t outcome =
                 own->outcomes[holds_at_end(g.a, x->location, x->clocks, end, reached) ? 1 : 0];
             report(r, index, x, x->number, (uint8_t)(outcome & 3), (uint8_t)(outcome >> 2), end,
-                   (r->standing == NULL) ? -1 : note_open(r, index, x, now, false, end));
+                   (r->truth_log == NULL) ? -1 : note_open(r, index, x, now, false, end));
         }
     }
 }

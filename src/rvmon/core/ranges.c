@@ -48,7 +48,7 @@ int64_t last_up_to(const ranges *r, int64_t position)
 /* Make a list larger; false if memory is short. */
 static bool widen(rv_monitor *m, ranges *r)
 {
-    range *made = grown(m, r->at, &r->room, (int64_t)r->room + 1, sizeof *made);
+    range *made = enlarged(m, r->at, &r->room, (int64_t)r->room + 1, sizeof *made);
     if (made == NULL) {
         return false;
     }

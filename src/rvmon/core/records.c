@@ -10,7 +10,7 @@ int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count)
     const int64_t at = m->captured_count;
     if (at + count > m->captured_room) {
         int32_t room = (int32_t)m->captured_room;
-        rv_number *made = grown(m, m->captured, &room, at + count, sizeof *made);
+        rv_number *made = enlarged(m, m->captured, &room, at + count, sizeof *made);
         if (made == NULL) {
             return -1;
         }

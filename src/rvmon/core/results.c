@@ -52,9 +52,9 @@ static rv_record open_record(run *r, int32_t index, const attempt *x, uint32_t n
     made.triggered = x->triggered;
     made.captured = -1;
     made.note = -1;
-    if (r->standing != NULL) {
+    if (r->truth_log != NULL) {
         made.note = note_open(r, index, x, 2 * m->reached + ((m->reached == m->last) ? 1 : 0),
-                              x->hollow, RV_NO_TIME);
+                              x->cannot_pass, RV_NO_TIME);
     }
     made.verdict = RV_INCONCLUSIVE;
     made.decision = RV_OPEN;
@@ -68,7 +68,7 @@ static bool each_open_of(run *r, int32_t index, rv_take take, void *user)
     const rv_number *captured = (r->part->plan->captured > 0) ? r->captured : NULL;
     bool more = true;
     int32_t at;
-    if (r->standing != NULL) {
+    if (r->truth_log != NULL) {
         note_open_count(r, index);
     }
     for (at = 0; more && !queue_is_empty(&r->judges[index]) && (at < r->judges[index].queue->count);
@@ -118,7 +118,7 @@ static void count_home(const home *h, int32_t requirement, rv_counts *counts)
             if (h->part->judges[i].requirement != requirement) {
                 continue;
             }
-            counts->open = counts->open || has_attempts(j) || (j->moot >= 0);
+            counts->open = counts->open || has_attempts(j) || (j->undecidable >= 0);
             if (h->part->plan->captured > 0) {
                 counts->heard = counts->heard
                                 || ((i == 0) && (r->parent == NULL) && occurred && was_heard(r, i));

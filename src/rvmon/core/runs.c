@@ -134,13 +134,13 @@ static bool copy_grown(run *made, const run *r)
         if (to->room < from->count) {
             int32_t room = to->room;
             int32_t same = to->room;
-            uint8_t *known = grown(m, to->known, &room, from->count, 1);
+            uint8_t *known = enlarged(m, to->known, &room, from->count, 1);
             rv_number *fields;
             if (known == NULL) {
                 return false;
             }
             to->known = known;
-            fields = grown(m, to->fields, &same, room, sizeof *fields * (size_t)width);
+            fields = enlarged(m, to->fields, &same, room, sizeof *fields * (size_t)width);
             if (fields == NULL) {
                 return false;
             }
@@ -176,6 +176,7 @@ static bool copy_grown(run *made, const run *r)
         to->right = from->right;
         to->growing = from->growing;
         to->apart = from->apart;
+        to->total = from->total;
     }
     return true;
 }
@@ -229,12 +230,13 @@ void clear_run(run *r)
         s->right = false;
         s->growing = false;
         s->apart = false;
+        s->total = 0;
     }
     begin_unlost(r);
     clear_judges(r);
-    if (r->standing != NULL) {
+    if (r->truth_log != NULL) {
         stand_at_first(r, RV_NO_TIME);
-        r->standing->begun = RV_NO_TIME;
+        r->truth_log->begun = RV_NO_TIME;
     }
 }
 
@@ -275,7 +277,7 @@ void clear_judges(run *r)
         r->judges[i].position = -LIMIT;
         r->judges[i].first = -1;
         r->judges[i].last = -1;
-        r->judges[i].moot = -1;
+        r->judges[i].undecidable = -1;
         r->judges[i].current = -1;
         r->judges[i].failed_at = NEVER;
     }
@@ -313,7 +315,7 @@ run *forked(const run *r)
         return NULL;
     }
     clear_judges(made);
-    if (made->standing != NULL) {
+    if (made->truth_log != NULL) {
         stand_like(made, r);
     }
     made->parent = r->parent;

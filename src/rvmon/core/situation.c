@@ -70,6 +70,17 @@ static void put_stretches(telling *s, const stretches *own)
     put_word(s, (own->left ? 1 : 0) + (own->right ? 2 : 0) + (own->growing ? 4 : 0));
 }
 
+static void put_amount(telling *s, const stretches *own)
+{
+    int32_t i;
+    for (i = 0; i < own->count; i++) {
+        const stretch *one = &own->at[(own->head + i) & (own->room - 1)];
+        put_word(s, one->begin - s->now);
+        put_word(s, one->end - s->now);
+    }
+    put_word(s, own->growing ? 1 : 0);
+}
+
 /* What formulas are, and remember. */
 static void put_formulas(telling *s, const run *r)
 {
@@ -104,6 +115,12 @@ static void put_formulas(telling *s, const run *r)
             put_stretches(s, worse);
             if (worse->apart) {
                 put_stretches(s, worse + 1);
+            }
+        } else if (n->op == NODE_AMOUNT) {
+            const stretches *worse = &r->past[2 * n->slot];
+            put_amount(s, worse);
+            if (worse->apart) {
+                put_amount(s, worse + 1);
             }
         } else {
             /* It remembers no more than a truth. */
@@ -148,7 +165,7 @@ static void come_next(telling *s, const machine *a, int32_t location, int64_t *c
 static void put_attempt(telling *s, const run *r, int32_t index, attempt *x)
 {
     const int32_t width = r->part->plan->clocks;
-    put_word(s, (x->sure ? 1 : 0) + (x->clouded ? 2 : 0) + (x->hollow ? 4 : 0) + (x->parted ? 8 : 0));
+    put_word(s, (x->sure ? 1 : 0) + (x->trigger_unknown ? 2 : 0) + (x->cannot_pass ? 4 : 0) + (x->parted ? 8 : 0));
     if (is_networked(r, index)) {
         put_word(s, x->location);
         put_word(s, x->parted ? x->better : x->location);
@@ -270,7 +287,7 @@ static void put_judge(telling *s, run *r, int32_t index)
     const int64_t width = networked ? 4 : 1 + 2 * (1 + (int64_t)r->part->machines[index].clocks);
     int64_t start;
     int32_t at;
-    put_word(s, j->before + (j->running ? 4 : 0) + ((j->failed_at < NEVER) ? 8 : 0) + ((j->moot >= 0) ? 16 : 0)
+    put_word(s, j->before + (j->running ? 4 : 0) + ((j->failed_at < NEVER) ? 8 : 0) + ((j->undecidable >= 0) ? 16 : 0)
                + (j->blind ? 32 : 0) + ((j->failed > 0U) ? 64 : 0) + ((j->passed > 0U) ? 128 : 0));
     if (networked && (j->net != NULL) && j->net->begun && ((j->first >= 0) || watches(r, index))) {
         judging g;
@@ -283,7 +300,7 @@ static void put_judge(telling *s, run *r, int32_t index)
         learn_all(&g, s->now, last_at(&g, s->now));
         hear_news(&g, s->now);
         put_networks(s, r, index);
-        s->next = least(s->next, (j->first >= 0) ? soonest(&g, s->now + 1) : NEVER);
+        s->next = least(s->next, (j->first >= 0) ? earliest(&g, s->now + 1) : NEVER);
     }
     start = s->count;
     for (at = j->first; at >= 0; at = attempt_at(r->home, at)->next) {

@@ -67,7 +67,7 @@ void carry_stale(carrier *c, rv_monitor *m);
 void carry_watch(carrier *c, home *h);
 
 /* ---- snapshot_notes.c: what is kept so that notes can be told */
-void carry_standing(carrier *c, run *r);
+void carry_truth_log(carrier *c, run *r);
 void carry_noting(carrier *c, run *r, int32_t index);
 void carry_unknowns(carrier *c, home *h);
 
@@ -77,7 +77,7 @@ void carry_spans(carrier *c, rv_monitor *m);
 
 /* ---- snapshot_told.c: notes of records */
 void carry_notes(carrier *c, rv_monitor *m);
-bool is_standing(const carrier *c, const judge_plan *judged, int64_t place);
+bool is_state(const carrier *c, const judge_plan *judged, int64_t place);
 void check_note(carrier *c, const part *own, const rv_record *one);
 void end_notes(carrier *c, rv_monitor *m);
 

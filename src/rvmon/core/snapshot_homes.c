@@ -77,7 +77,7 @@ static void carry_past_updates(carrier *c, home *h)
     carry_int(c, &h->given, 0, (int64_t)count + 1);
     if (c->reading && !is_lost(c)) {
         demand(c, is_in_turn(h, &longest));
-        h->inbox = grown(c->m, h->inbox, &h->inbox_room, longest, sizeof *h->inbox);
+        h->inbox = enlarged(c->m, h->inbox, &h->inbox_room, longest, sizeof *h->inbox);
     }
 }
 

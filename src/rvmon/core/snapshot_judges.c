@@ -37,8 +37,8 @@ static void carry_attempt(carrier *c, run *r, int32_t index, int32_t at)
     carry_int(c, &x->better, 0, locations);
     carry_flag(c, &x->parted);
     carry_flag(c, &x->sure);
-    carry_flag(c, &x->clouded);
-    carry_flag(c, &x->hollow);
+    carry_flag(c, &x->trigger_unknown);
+    carry_flag(c, &x->cannot_pass);
     carry_instant_or(c, &x->doubted_at, RV_NO_TIME);
     carry_flag(c, &current);
     if (c->refused) {
@@ -141,7 +141,7 @@ static void carry_counts(carrier *c, judge *j)
 /* Whether the first attempt of those that stay open for good is found again from there. */
 static bool is_laid_aside(const run *r, int32_t index, int32_t wanted)
 {
-    int32_t at = r->judges[index].moot;
+    int32_t at = r->judges[index].undecidable;
     while ((at >= 0) && (at != wanted)) {
         at = attempt_at(r->home, at)->next;
     }
@@ -187,7 +187,7 @@ static void carry_judge(carrier *c, run *r, int32_t index)
     carry_flag(c, &j->sorted);
     carry_flag(c, &j->blind);
     j->last = carry_attempts(c, r, index, &j->first);
-    (void)carry_attempts(c, r, index, &j->moot);
+    (void)carry_attempts(c, r, index, &j->undecidable);
     if (j->queue != NULL) {
         carry_queue(c, r, index);
     }

@@ -236,7 +236,7 @@ void carry_spans(carrier *c, rv_monitor *m)
     }
     carry_size(c, &m->span_count, MOST, 12);
     if (c->reading) {
-        span_of_letters *made = grown(m, m->spans, &m->span_room, m->span_count, sizeof *made);
+        span_of_letters *made = enlarged(m, m->spans, &m->span_room, m->span_count, sizeof *made);
         m->spans = (made != NULL) ? made : m->spans;
     }
     for (i = 0; (i < m->span_count) && !is_lost(c); i++) {

@@ -8,27 +8,27 @@ static void carry_position(carrier *c, int64_t *x)
     carry_long(c, x, RV_NO_TIME, LIMIT);
 }
 
-static void carry_stood(carrier *c, stood *x)
+static void carry_truth_times(carrier *c, truth_times *x)
 {
     carry_position(c, &x->since);
     carry_position(c, &x->last[0]);
     carry_position(c, &x->last[1]);
 }
 
-void carry_standing(carrier *c, run *r)
+void carry_truth_log(carrier *c, run *r)
 {
-    standing *s = r->standing;
+    truth_log *s = r->truth_log;
     int32_t i;
     carry_position(c, &s->moved_at);
     carry_position(c, &s->begun);
-    for (i = 0; (i < r->part->stood) && !is_lost(c); i++) {
-        stood_node *own = &s->nodes[i];
+    for (i = 0; (i < r->part->logged) && !is_lost(c); i++) {
+        logged_node *own = &s->nodes[i];
         uint8_t moved = ((own->moved_at == s->moved_at) && (s->moved_at != RV_NO_TIME)) ? 1 : 0;
-        carry_stood(c, &own->now);
+        carry_truth_times(c, &own->now);
         carry_byte(c, &moved, 1);
         if (moved != 0U) {
             own->moved_at = s->moved_at;
-            carry_stood(c, &own->was);
+            carry_truth_times(c, &own->was);
             carry_byte(c, &own->truth, IS_TRUE);
         }
     }
@@ -58,17 +58,17 @@ static void carry_truths(carrier *c, truths *ring, int32_t words)
     }
 }
 
-/* Where the standing is that was noted last, if notes to come may share it; else -1. */
+/* Where the state is that was noted last, if notes to come may share it; else -1. */
 static void carry_shared(carrier *c, run *r, int32_t index)
 {
     rv_monitor *m = c->m;
     noting *n = r->judges[index].noting;
-    int64_t place = ((n->epoch == m->epoch) && (n->stood_at == r->standing->moved_at)) ? n->standing : -1;
+    int64_t place = ((n->epoch == m->epoch) && (n->state_at == r->truth_log->moved_at)) ? n->state : -1;
     carry_long(c, &place, -1, m->note_count);
     if (c->reading && !c->refused && (place >= 0)) {
-        demand(c, is_standing(c, &r->part->judges[index], place));
-        n->standing = place;
-        n->stood_at = r->standing->moved_at;
+        demand(c, is_state(c, &r->part->judges[index], place));
+        n->state = place;
+        n->state_at = r->truth_log->moved_at;
         n->epoch = m->epoch;
     }
 }
@@ -81,7 +81,7 @@ void carry_noting(carrier *c, run *r, int32_t index)
     carry_truths(c, &n->triggers, words);
     carry_truths(c, &n->doubts, words);
     carry_position(c, &n->began_at);
-    carry_long(c, &n->moot_since, -LIMIT, NEVER);
+    carry_long(c, &n->undecidable_since, -LIMIT, NEVER);
     carry_shared(c, r, index);
     if (is_networked(r, index)) {
         carry_letters(c, n, words_for(judged->propositions.count) + 1);
@@ -98,7 +98,7 @@ void carry_unknowns(carrier *c, home *h)
     carry_size(c, &h->unknown_count, MOST, 9);
     if (c->reading) {
         unknown_stretch *made =
-            grown(c->m, h->unknowns, &h->unknown_room, h->unknown_count, sizeof *made);
+            enlarged(c->m, h->unknowns, &h->unknown_room, h->unknown_count, sizeof *made);
         h->unknowns = (made != NULL) ? made : h->unknowns;
         for (i = 0; i < signals; i++) {
             h->unknown_of[i] = -1;

@@ -86,7 +86,7 @@ static void carry_names(carrier *c, run *r)
         uint8_t absent = r->absent[i];
         carry_byte(c, &absent, 1);
         if (c->reading && (absent != 0U)) {
-            lack(r, i >= signals, (i >= signals) ? i - signals : i);
+            mark_absent(r, i >= signals, (i >= signals) ? i - signals : i);
         }
         carry_byte(c, &r->updated[i], IS_TRUE);
         if (names_to_lose(r) > 0) {
@@ -122,6 +122,7 @@ static void carry_stretches(carrier *c, stretches *s)
     carry_flag(c, &s->right);
     carry_flag(c, &s->growing);
     carry_flag(c, &s->apart);
+    carry_long(c, &s->total, 0, NEVER);
 }
 
 /* What looks back; a second reading is there only if it is another. */
@@ -245,8 +246,8 @@ void carry_run(carrier *c, run *r)
     if (c->reading && !is_lost(c)) {
         clear_judges(r); /* their letters follow from the nodes */
     }
-    if (r->standing != NULL) {
-        carry_standing(c, r);
+    if (r->truth_log != NULL) {
+        carry_truth_log(c, r);
     }
     carry_judges(c, r);
 }

@@ -6,7 +6,7 @@
 /* What begins at a word of notes. */
 enum { A_NOTE = 1, A_STANDING = 2, A_TAKEN_NOTE = 3 };
 
-/* Find where notes and standings begin; a note says at its begin how long it is, in the upper bits. */
+/* Find where notes and states begin; a note says at its begin how long it is, in the upper bits. */
 static void find_begins(carrier *c, const rv_monitor *m)
 {
     int64_t at = 0;
@@ -28,7 +28,7 @@ void carry_notes(carrier *c, rv_monitor *m)
     int32_t i;
     carry_size(c, &count, MOST, 8);
     if (c->reading && !is_lost(c)) {
-        int64_t *made = grown(m, m->notes, &m->note_room, count, sizeof *made);
+        int64_t *made = enlarged(m, m->notes, &m->note_room, count, sizeof *made);
         m->notes = (made != NULL) ? made : m->notes;
         c->begins = arena_take(&m->memory, (size_t)count + 1U);
         m->spoilt = m->spoilt || (c->begins == NULL);
@@ -51,8 +51,8 @@ void end_notes(carrier *c, rv_monitor *m)
     }
 }
 
-/* Whether a standing of a judge begins at a place. */
-bool is_standing(const carrier *c, const judge_plan *judged, int64_t place)
+/* Whether a state of a judge begins at a place. */
+bool is_state(const carrier *c, const judge_plan *judged, int64_t place)
 {
     const rv_monitor *m = c->m;
     const int32_t leaves = words_for(judged->leaves.count);
@@ -172,7 +172,7 @@ void check_note(carrier *c, const part *own, const rv_record *one)
     judged = &own->judges[k.index];
     networked = judged->automaton < 0;
     demand(c, networked == (((k.words[0] >> 8) & NOTE_NETWORK) != 0));
-    demand(c, (k.words[1] == -1) || is_standing(c, judged, k.words[1]));
+    demand(c, (k.words[1] == -1) || is_state(c, judged, k.words[1]));
     demand(c, !networked || has_letters(c, judged, k.words[3]));
     check_truths(&k, words_for(judged->leaves.count));
     switch (k.words[0] & 0xff) {

@@ -29,9 +29,9 @@ static void carry_group(carrier *c, home *h, int32_t number)
     covered *s = &own->groups[number];
     int32_t i;
     carry_byte(c, &s->before, IS_TRUE);
-    carry_size(c, &s->standing, (int64_t)behind - first, 4);
-    for (i = 0; (i < s->standing) && !is_lost(c); i++) {
-        int32_t *item = &own->standing[first + i];
+    carry_size(c, &s->current, (int64_t)behind - first, 4);
+    for (i = 0; (i < s->current) && !is_lost(c); i++) {
+        int32_t *item = &own->current_items[first + i];
         carry_int(c, item, first, behind);
         if (c->reading && !c->refused) {
             demand(c, own->stands[*item] == 0U);

@@ -62,7 +62,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     if (judged_here && (!has_attempts(j) || (j->position < t))) {
         visit_judge(r, index, t);
     }
-    if (r->standing != NULL) {
+    if (r->truth_log != NULL) {
         note_trigger(r, index, triggered);
     }
     if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
@@ -85,16 +85,16 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         x->location = r->part->machines[index].initial;
     }
     x->sure = is_sure(r, index);
-    x->clouded = !x->sure;
+    x->trigger_unknown = !x->sure;
     if (r->part->plan->captured > 0) {
         (void)memset(&r->home->turns[at], 0, sizeof *r->home->turns);
         r->home->turns[at].judge = r;
-        x->hollow = r->cut < NEVER;
+        x->cannot_pass = r->cut < NEVER;
         j->running = (judged->flags & JUDGE_EPISODIC) != 0;
     }
     x->record = measured_attempt(r, triggered, 0);
     number_attempt(r, index, at, triggered);
-    if (r->standing != NULL) {
+    if (r->truth_log != NULL) {
         note_begin(r, index, x, t);
     }
     margins_begin(r, index, t, x->record);
@@ -103,7 +103,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         j->current = at;
     }
     if (!judged_here) {
-        x->hollow = true; /* what it owes here will not be known */
+        x->cannot_pass = true; /* what it owes here will not be known */
         x->parted = true;
         x->location = FAILED;
         x->better = PASSED;
@@ -119,7 +119,7 @@ void enter(run *r, int32_t index, int32_t at, int64_t t)
     judge *j = &r->judges[index];
     attempt *x = attempt_at(r->home, at);
     const bool stays = remains(r, index, at, t);
-    if (stays && is_moot(x)) {
+    if (stays && is_undecidable(x)) {
         lay_down(r, index, at);
     } else if (stays) {
         set_rule_due(r, index, least(r->rules.due[index], x->due));

@@ -67,7 +67,7 @@ enum { SAYS_LOST = RV_SAYS_YES + 1, SAYS_FOUND, SAYS_AHEAD, SAYS_DENSE, SAYS_SPA
 /* Whether there are positions: surely; nobody knows; from the next one on. */
 enum { ARE_THERE = 0, MAY_BE_THERE = 1, ARE_THERE_NEXT = 2 };
 
-/* Stretches of instants at which a `since` in bounds holds, as a ring. */
+/* Stretches of instants at which a `since` in bounds holds, or of which an amount is made, as a ring. */
 typedef struct {
     stretch *at;
     int32_t room;              /* a power of two, or 0 */
@@ -77,6 +77,7 @@ typedef struct {
     bool right;
     bool growing;              /* whether the end of the last one is still to come */
     bool apart;                /* whether there is a second one, the unknown taken for the better */
+    int64_t total;             /* the positions in those of an amount */
 } stretches;
 
 typedef struct {
@@ -91,22 +92,22 @@ typedef struct {
 typedef struct {
     int64_t since;
     int64_t last[2];
-} stood;
+} truth_times;
 
 /* The same, now and before the position at which it changed last. */
 typedef struct {
-    stood now;
-    stood was;
+    truth_times now;
+    truth_times was;
     int64_t moved_at;          /* that position; RV_NO_TIME: it never did */
     uint8_t truth;             /* before it */
-} stood_node;
+} logged_node;
 
 /* Such nodes of a run. */
 typedef struct {
-    stood_node *nodes;
+    logged_node *nodes;
     int64_t moved_at;          /* the last position at which one changed */
     int64_t begun;             /* from which on a run saw what is its own; RV_NO_TIME: it saw all */
-} standing;
+} truth_log;
 
 /* Why a signal was not known, behind what core.h says of numbers. */
 enum { IS_STALE = RV_IS_NAN + 1, NEVER_KNOWN_YET, HAS_NO_SOURCE };
@@ -132,7 +133,7 @@ typedef struct {
     noting *noting;            /* NULL: nothing is noted */
     int32_t first;
     int32_t last;
-    int32_t moot;              /* the first of those that stay open for good */
+    int32_t undecidable;              /* the first of those that stay open for good */
     int32_t current;           /* the attempt of the episode that runs */
     int32_t letter;            /* the class of letters that they stepped with */
     int32_t other;             /* the same, the unknown taken for the better */
@@ -171,7 +172,7 @@ struct run {
     uint64_t call;             /* the last one that concerned it */
     int32_t id;                /* its number among the runs of its home */
     judge *judges;
-    standing *standing;        /* NULL: nothing is noted */
+    truth_log *truth_log;      /* NULL: nothing is noted */
     timers rules;              /* by number of the judge */
     int32_t *touched;
     int32_t *restless;
@@ -237,9 +238,9 @@ struct run {
     uint8_t *keeps;            /* whether what comes at that instant counts behind it */
     measuring *margins;        /* by judge; NULL: nothing is measured */
     timers margins_due;        /* by judge, when time alone may settle something */
-    int32_t *stirred;          /* judges whose leaves may be others than was read */
+    int32_t *changed_inputs;          /* judges whose leaves may be others than was read */
     int64_t measured_at;       /* the position up to which all are known */
-    int32_t stirred_count;
+    int32_t changed_count;
     int32_t asked;             /* attempts whose margins are to come */
     /* What is copied with them. */
     struct progress {
@@ -300,7 +301,7 @@ typedef struct {
 
 /* What is known of a group of items. */
 typedef struct {
-    int32_t standing;          /* so many items are true, or may still be since they were */
+    int32_t current;           /* so many items are true, or may still be since they were */
     uint8_t before;            /* the truth of its occasion at the position before */
     bool called;               /* whether it looks at the position at hand */
 } covered;
@@ -308,7 +309,7 @@ typedef struct {
 /* What was hit in a run. */
 typedef struct {
     rv_hit *hits;              /* by item */
-    int32_t *standing;         /* items, of each group from its first on */
+    int32_t *current_items;    /* of each group from its first on */
     uint8_t *stands;           /* by item, whether it is one of those */
     covered *groups;
     int32_t *groups_called;

@@ -1,7 +1,7 @@
 /* Notes: what the reasons of decisions and of open attempts are worked out from, as words.
  *
  * Word 0: the kind; flags, from bit 8 on; the judge, from bit 24 on; how many words, from bit 40 on.
- * Word 1: the place of how all stood then, which many notes share.
+ * Word 1: the place of the state of the propositions then, which many notes share.
  * Word 2: DECIDED: the instant; OPEN: where the runs stand, -1 NOTHING.
  * Word 3: of a network, the number of the span of letters, or -1, and of OPEN from bit 32 on how many
  *         are; of an automaton, how many clocks its run has, and from bit 32 on the other run.
@@ -12,7 +12,7 @@
  * location and the clocks of the run that decided, as it stood just before; of OPEN, of both; of a
  * network that is open, two locations. Of OPEN behind all that what was not known; see unknowns.c.
  *
- * A standing: how many words; where a run began to see what is its own, or RV_NO_TIME; the leaves; the propositions; of
+ * A state: how many words; where a run began to see what is its own, or RV_NO_TIME; the leaves; the propositions; of
  * each of these since when, and when it was false and true last, or RV_NO_TIME. */
 #include "notes.h"
 
@@ -40,7 +40,7 @@ void drop_told_open(rv_monitor *m)
 }
 
 /* The place of how all stands at the instant `t`; -1: there is no room. */
-static int64_t place_standing(run *r, int32_t index, int64_t t)
+static int64_t place_state(run *r, int32_t index, int64_t t)
 {
     rv_monitor *m = r->home->monitor;
     noting *n = r->judges[index].noting;
@@ -48,14 +48,14 @@ static int64_t place_standing(run *r, int32_t index, int64_t t)
     const int32_t *nodes = LIST(PLAN(r), judged->propositions);
     const int32_t leaves = words_for(judged->leaves.count);
     const int32_t letters = words_for(judged->propositions.count);
-    const bool before = t < r->standing->moved_at;
+    const bool before = t < r->truth_log->moved_at;
     int64_t *made;
     int64_t count;
     int32_t i;
     drop_told_open(m);
-    if (!before && (n->standing >= 0) && (n->stood_at == r->standing->moved_at)
+    if (!before && (n->state >= 0) && (n->state_at == r->truth_log->moved_at)
         && (n->epoch == m->epoch)) {
-        return n->standing;
+        return n->state;
     }
     count = 2 + leaves + letters + 3 * (int64_t)judged->propositions.count;
     made = further_words(m, count);
@@ -63,11 +63,11 @@ static int64_t place_standing(run *r, int32_t index, int64_t t)
         return -1;
     }
     made[0] = count;
-    made[1] = r->standing->begun;
+    made[1] = r->truth_log->begun;
     pack_truths(r, judged->leaves, before, &made[2]);
     pack_truths(r, judged->propositions, before, &made[2 + leaves]);
     for (i = 0; i < judged->propositions.count; i++) {
-        const stood one = stood_of(r, nodes[i], before);
+        const truth_times one = truth_times_of(r, nodes[i], before);
         int64_t *own = &made[2 + leaves + letters + 3 * i];
         own[0] = one.since;
         own[1] = one.last[0];
@@ -75,8 +75,8 @@ static int64_t place_standing(run *r, int32_t index, int64_t t)
     }
     if (!before) {
         n->epoch = m->epoch;
-        n->stood_at = r->standing->moved_at;
-        n->standing = made - m->notes;
+        n->state_at = r->truth_log->moved_at;
+        n->state = made - m->notes;
     }
     return made - m->notes;
 }
@@ -86,7 +86,7 @@ static int64_t flags_of(const run *r, int32_t index, const attempt *x)
     int64_t flags = is_networked(r, index) ? NOTE_NETWORK : 0;
     flags |= (r->cut < NEVER) ? NOTE_CUT : 0;
     flags |= x->parted ? NOTE_PARTED : 0;
-    flags |= x->hollow ? NOTE_HOLLOW : 0;
+    flags |= x->cannot_pass ? NOTE_CANNOT_PASS : 0;
     flags |= x->sure ? NOTE_SURE : 0;
     return flags;
 }
@@ -144,12 +144,12 @@ int64_t note_decision(run *r, int32_t index, const attempt *x, int64_t t)
     rv_monitor *m = r->home->monitor;
     const bool networked = is_networked(r, index);
     const before_decision *was = &m->before;
-    const int64_t stood_at = place_standing(r, index, t);
+    const int64_t state = place_state(r, index, t);
     const int64_t note = begin_note(r, index, x, NOTE_DECIDED, 0, networked ? 0 : 1 + was->width);
-    if ((note < 0) || (stood_at < 0)) {
+    if ((note < 0) || (state < 0)) {
         return -1;
     }
-    m->notes[note + 1] = stood_at;
+    m->notes[note + 1] = state;
     m->notes[note + 2] = t;
     if (networked) {
         m->notes[note + 3] = span_from(m, r->judges[index].noting, m->notes[note + 6]);
@@ -202,7 +202,7 @@ static int32_t put_by_now(run *r, int32_t index, int32_t location, const int64_t
 
 /* Note an attempt that is open when time has come to a stamp: twice the instant, one more if its letter
  * is known. `end`: of the trace, or RV_NO_TIME. */
-int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hollow, int64_t end)
+int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool cannot_pass, int64_t end)
 {
     rv_monitor *m = r->home->monitor;
     judge *j = &r->judges[index];
@@ -210,16 +210,16 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool hol
     const int32_t words = words_for(r->part->judges[index].leaves.count);
     const int32_t most = networked ? 0 : r->part->machines[index].clocks;
     const int64_t until = floored(now - 1, 2);
-    const int64_t stood_at = place_standing(r, index, NEVER);
+    const int64_t state = place_state(r, index, NEVER);
     const int64_t *doubt = doubt_of(r, index, x);
     const int64_t doubted_at = (doubt != NULL) ? doubt[0] : RV_NO_TIME;
     const int64_t more = words + 2 * ((int64_t)most + 1) + unknowns_count(r, doubted_at);
-    const int64_t note = begin_note(r, index, x, NOTE_OPEN, hollow ? NOTE_HOLLOW : 0, more);
+    const int64_t note = begin_note(r, index, x, NOTE_OPEN, cannot_pass ? NOTE_CANNOT_PASS : 0, more);
     int64_t *to;
-    if ((note < 0) || (stood_at < 0)) {
+    if ((note < 0) || (state < 0)) {
         return -1;
     }
-    m->notes[note + 1] = stood_at;
+    m->notes[note + 1] = state;
     m->notes[note + 2] = now;
     m->notes[note + 5] = end;
     to = behind_trigger(r, index, note);
@@ -337,7 +337,7 @@ void tell_open(rv_monitor *m, bool begins)
         m->settled_notes = m->note_count;
         m->settled_spans = m->span_count;
     }
-    m->epoch++; /* no standing is shared across */
+    m->epoch++; /* no state is shared across */
     m->tells_open = begins;
     m->told_open = true;
 }
@@ -379,8 +379,8 @@ bool rv_note_of(const rv_monitor *m, const rv_record *record, rv_note *note)
     note->words = words;
     note->count = words[0] >> 40;
     if (is_told(m, words[1], 2) && is_told(m, words[1], m->notes[words[1]])) {
-        note->standing = &m->notes[words[1]];
-        note->standing_count = note->standing[0];
+        note->state = &m->notes[words[1]];
+        note->state_count = note->state[0];
     }
     if ((((words[0] >> 8) & NOTE_NETWORK) != 0) && (m->span_count > 0)) {
         (void)rv_span(m, (int32_t)(words[3] & INT32_MAX), note);

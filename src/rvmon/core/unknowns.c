@@ -14,7 +14,7 @@ bool begin_unknowns(home *h)
     int32_t i;
     if (h->unknown_of == NULL) {
         h->unknown_of = arena_take(&m->memory, ((size_t)signals + 1U) * sizeof *h->unknown_of);
-        h->unknowns = grown(m, NULL, &h->unknown_room, (int64_t)signals + SPARE_UNKNOWNS,
+        h->unknowns = enlarged(m, NULL, &h->unknown_room, (int64_t)signals + SPARE_UNKNOWNS,
                             sizeof *h->unknowns);
         if ((h->unknown_of == NULL) || (h->unknowns == NULL)) {
             return false;
@@ -41,7 +41,7 @@ static int64_t first_doubt(home *h)
         for (i = 0; i < r->part->plan->judges.count; i++) {
             const judge *j = &r->judges[i];
             const truths *doubts = &j->noting->doubts;
-            if ((doubts->count > 0) && (has_attempts(j) || (j->moot >= 0))) {
+            if ((doubts->count > 0) && (has_attempts(j) || (j->undecidable >= 0))) {
                 const int32_t words = words_for(r->part->judges[i].leaves.count);
                 found = least(found, entry_of(doubts, 0, words)[0]);
             }
@@ -88,7 +88,7 @@ void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
     if (h->unknown_count == h->unknown_room) {
         drop_unknowns(h);
         if (2 * (int64_t)h->unknown_count >= h->unknown_room) { /* else it would be full again soon */
-            made = grown(h->monitor, h->unknowns, &h->unknown_room, (int64_t)h->unknown_room + 1,
+            made = enlarged(h->monitor, h->unknowns, &h->unknown_room, (int64_t)h->unknown_room + 1,
                          sizeof *made);
             if (made == NULL) {
                 return;

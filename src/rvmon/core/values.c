@@ -97,11 +97,11 @@ static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
         if (((value->kind == RV_UNKNOWN) != (r->value[local].kind == RV_UNKNOWN))
-            && (r->standing != NULL)) {
+            && (r->truth_log != NULL)) {
             note_knowledge(r, t, local, value);
         }
         if (r->margins != NULL) {
-            margins_stir(r, local);
+            margins_mark_changed(r, local);
         }
         r->value[local] = *value;
         if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
@@ -123,7 +123,7 @@ void come_to_birth(run *r, int32_t local, bool known)
             r->at.births_left--;
         }
         for (i = 0; i < s->on_birth.count; i++) {
-            soil(r, nodes[i]);
+            mark_dirty(r, nodes[i]);
         }
     }
 }
@@ -178,13 +178,13 @@ void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
     if (o->count == o->room) {
         int32_t room = o->room;
         int32_t same = o->room;
-        uint8_t *flags = grown(m, o->known, &room, (int64_t)o->count + 1, 1);
+        uint8_t *flags = enlarged(m, o->known, &room, (int64_t)o->count + 1, 1);
         rv_number *values;
         if (flags == NULL) {
             return;
         }
         o->known = flags;
-        values = grown(m, o->fields, &same, room, sizeof *values * (size_t)((width > 0) ? width : 1));
+        values = enlarged(m, o->fields, &same, room, sizeof *values * (size_t)((width > 0) ? width : 1));
         if (values == NULL) {
             return;
         }
@@ -224,7 +224,7 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
     (void)recheck_list(r, e->on_occurrence[r->at.phase]);
 }
 
-void take_news(run *r, int64_t t, const incoming *in)
+void apply_update(run *r, int64_t t, const incoming *in)
 {
     const rv_update *u = in->update;
     if ((r->at.lost_count > 0) && take_amid(r, t, in)) {
@@ -269,7 +269,7 @@ void go_stale(run *r, int64_t t, int32_t perishable)
     hold(r, t, local, &stale);
 }
 
-void lack(run *r, bool event, int32_t local)
+void mark_absent(run *r, bool event, int32_t local)
 {
     const part *p = r->part;
     const int32_t name = event ? p->plan->signals.count + local : local;

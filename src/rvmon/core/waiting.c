@@ -41,7 +41,7 @@ static bool recall(home *h, int32_t first)
         count++;
     }
     if (h->held_room < count) {
-        rv_update *made = grown(h->monitor, h->held, &h->held_room, count, sizeof *made);
+        rv_update *made = enlarged(h->monitor, h->held, &h->held_room, count, sizeof *made);
         if (made == NULL) {
             return false;
         }

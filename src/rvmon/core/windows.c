@@ -140,7 +140,7 @@ static void look_through(chaining *g, int64_t limit)
         }
         if (!weigh_in_chain(g, at, limit, &due)) {
             leave(g->r, g->index, before, at);
-        } else if (is_moot(attempt_at(g->r->home, at))) {
+        } else if (is_undecidable(attempt_at(g->r->home, at))) {
             lay_aside(g->r, g->index, before, at);
         } else {
             next_due = least(next_due, due);

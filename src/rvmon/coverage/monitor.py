@@ -102,7 +102,7 @@ class SpecCoverage:
             for run in runs:
                 run.take(piece)
         for run in runs:
-            run.core.finish(source.end)
+            run.finish()
         return watched.hits([run.core for run in runs])
 
 

@@ -164,13 +164,13 @@ class WatchedRequirements:
         }
         self._variants = {
             # No requirement, and no goal, has a backtick in its name.
-            f"`{name}` {number}": (name, variant)
+            name: {f"`{name}` {number}": one for number, one in enumerate(watched.variants, 1)}
             for name, watched in self._watched.items()
-            for number, variant in enumerate(watched.variants, start=1)
         }
         others: dict[str, Requirement] = {
             key: replace(variant.requirement, id=key)
-            for key, (_, variant) in self._variants.items()
+            for variants in self._variants.values()
+            for key, variant in variants.items()
         }
         self._others = CompiledSpec(replace(plain, requirements={**others, **self._goals}))
         self.groups = [group for one in self._watched.values() for group in one.groups]
@@ -198,9 +198,8 @@ class WatchedRequirements:
         for name, watched in self._watched.items():
             own = attempts[name]
             found = dict(_of_attempts(own, watched.deadline))
-            for key, (of, variant) in self._variants.items():
-                if of == name:
-                    found |= _hit(decides(variant.part), _apart(own, attempts[key]))
+            for key, variant in self._variants[name].items():
+                found |= _hit(decides(variant.part), _apart(own, attempts[key]))
             yield name, found
             if watched.graph is not None:
                 yield from _passages(watched.graph, name, passages[name])

@@ -26,11 +26,11 @@ from rvmon.dataflow.piecewise import (
     Pieces,
     all_of_window,
     append,
+    earliest,
     latest,
     not_before,
     shift,
     some_of_window,
-    soonest,
     stamp,
     unchanged_until,
     up_to,
@@ -72,7 +72,7 @@ def _junction(node: Junction, operands: Sequence[Known]) -> Known:
     some: Pieces = ()
     for operand in operands:
         all_ = latest(all_, operand[not every])
-        some = soonest(some, operand[every])
+        some = earliest(some, operand[every])
     return (all_, some) if every else (some, all_)
 
 
@@ -233,7 +233,7 @@ class Network:
         at = stamp(pieces, self.start)
         if at is None:
             return pieces
-        return soonest(pieces, ((self.positions.first, self.start - 1, at, 0),))
+        return earliest(pieces, ((self.positions.first, self.start - 1, at, 0),))
 
 
 def settled(alone: Known, position: int) -> tuple[int, bool] | None:

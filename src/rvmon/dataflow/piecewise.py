@@ -110,7 +110,7 @@ def not_before(pieces: Pieces, at: int, slope: int) -> Pieces:
     return latest(pieces, ((-FAR, FAR, at, slope),))
 
 
-def soonest(one: Pieces, other: Pieces) -> Pieces:
+def earliest(one: Pieces, other: Pieces) -> Pieces:
     """Known if either is, as soon as the first is."""
     if not one or not other:
         return one or other
@@ -190,7 +190,7 @@ def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
         return ()
     ends = [(left, at + slope * left if slope else at) for left, _, at, slope in pieces]
     entered = _sliding(ends, low, high, keeps=lambda old, new: old < new)
-    return soonest(shift(pieces, low), entered)
+    return earliest(shift(pieces, low), entered)
 
 
 def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.dataflow.piecewise import FAR, PAST, Line, Piece, Pieces, append, latest, soonest, stamp
+from rvmon.dataflow.piecewise import FAR, PAST, Line, Piece, Pieces, append, earliest, latest, stamp
 
 Known = tuple[Pieces, Pieces]
 """Where something is known to be true, and where to be false."""
@@ -46,7 +46,7 @@ def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried
         side = stays if value else meets
         if side is not None and side[0] is value:
             way = ((first, last, max(_at(side[1], last), known), 0),)
-            true, false = (soonest(true, way), false) if value else (true, soonest(false, way))
+            true, false = (earliest(true, way), false) if value else (true, earliest(false, way))
     return true, false
 
 
@@ -63,7 +63,7 @@ def since(left: Known, right: Known) -> Known:
         # True: met at the first position of the stretch or before, and so all the way since.
         # False: cut there or before, and not met all the way since.
         true = latest(_whole(first, last, stays, True), _from(first, last, meets, carried, True))
-        true = soonest(true, _whole(first, last, meets, True))
+        true = earliest(true, _whole(first, last, meets, True))
         false = latest(_whole(first, last, meets, False), _from(first, last, stays, carried, False))
         found.append((true, false))
         carried = _value_at(last, true, false)

@@ -31,10 +31,10 @@ from rvmon.reproducer import (
     imported_files,
     placed,
 )
-from rvmon.results.write import csv_bytes
 from rvmon.session import Spec
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.verdict import LAW
+from rvmon.verdict.write_rows import csv_bytes
 from rvmon.writing import write_whole
 
 SUMS = "SHA256SUMS"

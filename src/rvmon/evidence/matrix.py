@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import csv
 import io
-import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from rvmon.report.markup import Child, e, page, scroll, with_code
+from rvmon.report.pages import render
 from rvmon.report.style import MARKS
 from rvmon.report.table import plain
-from rvmon.report.table_html import count_cell, legend
 from rvmon.report.terminal import in_short
-from rvmon.results.write import csv_table
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.verdict import Verdict, fold
+from rvmon.verdict.write_rows import csv_table
 
 LISTED = 100
 """Recordings, or tests, of one verdict that the page names; the table names all."""
@@ -127,51 +125,45 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
         facts: that it says first; one that is empty is left out.
         matrix: what it shows.
     """
-    listed: list[Child] = []
-    for name, fact in facts.items():
-        listed += [e("dt", None, name), e("dd", None, fact)] if fact else []
-    sections: list[Child] = []
-    words = ("requirement", *(verdict.value for verdict in Verdict), "shown by")
-    for robot, own in groupby(matrix, key=lambda one: one.robot):
-        head = e("tr", None, *(e("th", {"scope": "col"}, word) for word in words))
-        rows = [_row(list(several)) for _, several in groupby(own, key=lambda one: one.requirement)]
-        table = e(
-            "table", {"class": "verdicts folds"}, e("thead", None, head), e("tbody", None, *rows)
-        )
-        sections.append(e("section", None, e("h2", None, robot) if robot else None, scroll(table)))
-    header = e("header", None, e("h1", None, title), e("dl", {"class": "facts"}, *listed))
-    footer = e("footer", None, legend("Recordings, or tests, without a planted fault"))
-    styles = ["base.css", "report.css"]
-    return page(title, [header, *sections, footer], styles=styles, scripts=[]).encode("utf-8")
+    sections: dict[str, list[_Row]] = {}
+    for (robot, _), rows in groupby(matrix, key=lambda one: (one.robot, one.requirement)):
+        sections.setdefault(robot, []).append(_row(list(rows)))
+    known = [(name, fact) for name, fact in facts.items() if fact]
+    return render("matrix.html", title=title, facts=known, sections=sections).encode("utf-8")
 
 
-def _row(rows: Sequence[Traced]) -> ET.Element:
+class _Lines(NamedTuple):
+    """What speaks of a requirement alike: how many there are, and the first of them."""
+
+    heading: str
+    size: int
+    lines: Sequence[str]
+    is_open: bool
+
+
+class _Row(NamedTuple):
     """A requirement, and all that speaks of it; failures are unfolded."""
-    source = rows[0].source
-    cells: list[Child] = []
-    lists: list[Child] = [e("div", None, rows[0].text)]
-    lists += [e("div", {"class": "soft"}, f"source: {source}")] if source else []
+
+    first: Traced
+    counts: Sequence[tuple[Verdict, int]]
+    lists: Sequence[_Lines]
+
+
+def _row(rows: Sequence[Traced]) -> _Row:
     own = [one for one in rows if one.by and not one.planted_fault]
-    for verdict, mark in MARKS.items():
-        found = [one for one in own if one.verdict == verdict]
-        cells.append(count_cell(verdict, len(found)))
-        lists += _list(f"{mark.sign} {mark.word}", found, is_open=verdict is Verdict.FAIL)
-    lists += _list("not evaluated", [one for one in own if not one.verdict], is_open=True)
-    lists += _list("with a planted fault", [one for one in rows if one.planted_fault])
-    if not any(one.by for one in rows):
-        lists.append("nothing checks it")
-    first = e("th", {"scope": "row"}, rows[0].requirement)
-    return e("tr", None, first, *cells, e("td", {"class": "text purpose"}, *lists))
+    found = {verdict: [one for one in own if one.verdict == verdict] for verdict in MARKS}
+    lists = [
+        _list(f"{mark.sign} {mark.word}", found[verdict], is_open=verdict is Verdict.FAIL)
+        for verdict, mark in MARKS.items()
+    ]
+    lists.append(_list("not evaluated", [one for one in own if not one.verdict], is_open=True))
+    lists.append(_list("with a planted fault", [one for one in rows if one.planted_fault]))
+    counts = [(verdict, len(some)) for verdict, some in found.items()]
+    return _Row(rows[0], counts, [one for one in lists if one.size])
 
 
-def _list(heading: str, found: Sequence[Traced], *, is_open: bool = False) -> Iterator[ET.Element]:
-    if not found:
-        return
-    lines = [e("li", None, *with_code(_line(one))) for one in found[:LISTED]]
-    if len(found) > LISTED:
-        lines.append(e("li", None, f"and {len(found) - LISTED:,} more: see matrix.csv"))
-    summary = e("summary", None, f"{len(found):,} {heading}")
-    yield e("details", {"open": is_open}, summary, e("ul", None, *lines))
+def _list(heading: str, found: Sequence[Traced], *, is_open: bool = False) -> _Lines:
+    return _Lines(heading, len(found), [_line(one) for one in found[:LISTED]], is_open)
 
 
 def _line(one: Traced) -> str:

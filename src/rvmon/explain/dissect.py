@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.explain.example import small_step
-from rvmon.explain.late import late_arrivals
+from rvmon.explain.late import late_in, waits_of
 from rvmon.explain.spans import Spans, both, outside
-from rvmon.explain.truths import Eye, subformulas
+from rvmon.explain.truths import Eye, look_through, parts_of, subformulas
 from rvmon.spec.checked.formula import BoundAtom, Constant, Formula
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.spec.print.printer import format_formula
@@ -84,8 +84,11 @@ def dissect(
     margin = max(int(length * AROUND), 2) if length else small_step(spec, [requirement])
     begin = samples[0].t
     start, stop = max(attempt.triggered - margin, begin), min(last + margin, end)
-    eye = Eye(spec, requirement, samples, end, attempt, names)
-    late = late_arrivals(spec, requirement, [attempt], samples, end, names).get(attempt.number)
+    waits = waits_of(requirement, [attempt])
+    questions = [parts_of(requirement, attempt), *waits.values()]
+    seen = look_through(spec, questions, samples, end, names)
+    late = late_in([attempt], waits, seen).get(attempt.number)
+    eye = Eye(requirement, attempt, seen)
     return Anatomy(attempt, start, stop, begin, late, strands_of(eye, start, stop))
 
 

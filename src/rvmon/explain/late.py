@@ -6,12 +6,11 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 
 from rvmon.explain.spans import Spans
-from rvmon.explain.truths import Question, Seen, look_through, subformulas
+from rvmon.explain.truths import Question, Seen, subformulas
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.spec.checked.specification import Requirement
 from rvmon.spec.checked.tense import has_future
 from rvmon.spec.print.printer import format_formula
-from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 
 
@@ -39,32 +38,6 @@ def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
     return None
 
 
-def late_arrivals(
-    spec: CheckedSpec,
-    requirement: Requirement,
-    attempts: Iterable[Attempt],
-    samples: Iterable[Sample],
-    end: int,
-    names: frozenset[str] | None = None,
-) -> dict[int, int]:
-    """By number of the attempt, when what it had awaited came true after the deadline, in ticks.
-
-    Args:
-        spec: the specification.
-        requirement: one of its requirements.
-        attempts: of that; those that missed no deadline, and those whose wait was never over, are
-            left out.
-        samples: the recording, in order.
-        end: its last instant, ticks.
-        names: the signals and events that have a source; `None`: all.
-
-    Cost: one pass over the samples for each choice of captured values.
-    """
-    waits = waits_of(requirement, attempts)
-    seen = look_through(spec, waits.values(), samples, end, names)
-    return late_in(attempts, waits, seen)
-
-
 def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int, Question]:
     """By number of the attempt, what it had awaited in vain; see `awaited`."""
     return {
@@ -77,7 +50,14 @@ def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int,
 def late_in(
     attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: Seen
 ) -> dict[int, int]:
-    """The same, where a recording was looked through for these waits."""
+    """By number of the attempt, when what it had awaited came true after the deadline, in ticks.
+
+    Args:
+        attempts: of a requirement; those that missed no deadline, and those whose wait was never
+            over, are left out.
+        waits: of these; see `waits_of`.
+        seen: of the recording, which was looked through for the waits.
+    """
     found = {}
     for attempt in attempts:
         if attempt.number not in waits or attempt.blame is None or seen.begin is None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
 from rvmon.explain.spans import FOREVER, Spans, both, outside, union
@@ -14,7 +13,8 @@ from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
 from rvmon.monitor.core.watching import TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
-from rvmon.spec.checked.formula import Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
+from rvmon.readers.held import HeldRecording
+from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.gaps import is_unknown
@@ -108,7 +108,7 @@ def look_through(
     begin: int | None = None
     instants = array("q")
     unborn = set(spec.signals)
-    for piece in pieces:
+    for piece in pieces.pieces if isinstance(pieces, HeldRecording) else pieces:
         times = (piece.t,) if isinstance(piece, Sample) else piece.times
         if begin is None and len(times):
             begin = int(times[0])
@@ -304,7 +304,7 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
     """The formula, then what it is made of; a negation of an atom is not taken apart."""
     yield depth, formula
     match formula:
-        case Unary(operand=Unary() | Binary() as operand):
+        case Amount(operand=operand) | Unary(operand=Unary() | Binary() | Amount() as operand):
             yield from subformulas(operand, depth + 1)
         case Unary(op=op, operand=operand) if op is not UnaryOp.NOT:
             yield from subformulas(operand, depth + 1)
@@ -316,40 +316,27 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
 
 
 class Eye:
-    """Sees the truth of what a requirement is made of over a recording."""
+    """Sees the truth of what a requirement is made of over a recording.
 
-    def __init__(
-        self,
-        spec: CheckedSpec,
-        requirement: Requirement,
-        samples: Sequence[Sample],
-        end: int,
-        attempt: Attempt,
-        names: frozenset[str] | None,
-    ) -> None:
+    Args:
+        requirement: that is taken apart.
+        attempt: of it.
+        seen: of the recording, which was looked through for `parts_of` both.
+    """
+
+    def __init__(self, requirement: Requirement, attempt: Attempt, seen: Seen) -> None:
         self.requirement = requirement
-        self._spec = spec
-        self._samples = samples
-        self._end = end
-        self._captured = attempt.captured
-        self._names = names
-
-    @cached_property
-    def _truths(self) -> dict[int, Truth]:
-        requirement = self.requirement
-        wholes = (requirement.trigger, requirement.consequent)
-        formulas = [one for whole in wholes for _, one in subformulas(whole, 0)]
-        found = truths_of(
-            self._spec,
-            formulas,
-            self._samples,
-            self._end,
-            self._names,
-            for_each=requirement.for_each,
-            captured=self._captured,
-        )
-        return {id(formula): truth for formula, truth in zip(formulas, found, strict=True)}
+        question = parts_of(requirement, attempt)
+        found = zip(question.formulas, seen.truths(question), strict=True)
+        self._truths = {id(formula): truth for formula, truth in found}
 
     def truth(self, formula: Formula) -> Truth:
         """Where the trigger, what is owed, or a part of them, is true."""
         return self._truths[id(formula)]
+
+
+def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
+    """The trigger, what is owed, and all that they are made of."""
+    wholes = (requirement.trigger, requirement.consequent)
+    formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
+    return Question(formulas, requirement.for_each, attempt.captured)

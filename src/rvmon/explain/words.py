@@ -10,6 +10,7 @@ from rvmon.formula.state import StateOp
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import graph_of
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Bound,
@@ -19,6 +20,7 @@ from rvmon.spec.checked.formula import (
     EventAtom,
     Formula,
     Interval,
+    Measured,
     Probe,
     ProbeAtom,
     SignalAtom,
@@ -121,6 +123,12 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
             return _listed([_clause(part, positive) for part in _chain(formula, op)], word)
         case Unary() | Binary():
             return _by_entry(formula, positive)
+        case Amount(measured=measured, operand=operand, window=window, least=least):
+            known = "" if positive else "not "
+            back = f"in the last {format_duration(window)}"
+            if measured is Measured.COUNT:
+                return f"{known}{least} times or more {back}, {_clause(operand, True)}"
+            return f"for {known}{format_duration(least)} or more {back}, {_clause(operand, True)}"
         case _:
             assert_never(formula)
 

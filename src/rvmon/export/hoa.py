@@ -41,8 +41,8 @@ def hoa(compiled: CompiledRequirement) -> str:
         raise RvmonError(f"error: {name} has no automaton: {compiled.refusal}")
     if automaton.clocks:
         raise RvmonError(
-            f"error: {name} has windows of time, which HOA cannot express: leave it out with "
-            "--only, or write `--to dot` or `--to json`"
+            f"error: {name} has windows of time, which HOA cannot express: write `--to dot` or "
+            "`--to json`"
         )
     if len(automaton.alphabet.propositions) > MOST_PROPOSITIONS:
         raise RvmonError(

@@ -14,7 +14,7 @@ from xml.sax.saxutils import escape
 from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.functions import function_lines, type_text, updates_text
 from rvmon.export.names import Names, Thing
-from rvmon.timed.model.expressions import Expression, PathFormula, Variable
+from rvmon.timed.model.expressions import TRUE, PathFormula, Variable
 from rvmon.timed.model.network import (
     Automaton,
     Edge,
@@ -22,8 +22,9 @@ from rvmon.timed.model.network import (
     LeadsToFormula,
     Network,
     Query,
+    QueryFormula,
 )
-from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.model.operators import LocationKind, PathOp
 from rvmon.timed.zones.zone_unions import has_paths
 from rvmon.trace.time import TICKS_PER_UNIT
 
@@ -32,6 +33,7 @@ _HEAD = """<?xml version="1.0" encoding="utf-8"?>
 'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
 <nta>
 """
+_OUTERMOST = list(PathOp)[:4]
 _GRID = (200, 150)
 """Distance of locations in a drawing, right and down."""
 
@@ -153,12 +155,14 @@ def _query(names: Names, query: Query) -> Iterator[str]:
     yield "    </query>"
 
 
-def _formula(names: Names, formula: Expression | LeadsToFormula) -> str:
+def _formula(names: Names, formula: QueryFormula) -> str:
     """The formula; empty if UPPAAL has none for it."""
     match formula:
         case LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
             return f"{names.expression(left)} --> {names.expression(right)}"
-        case PathFormula(_, body, None) if not has_paths(body):
+        case PathFormula(op, body, None, left) if (
+            left == TRUE and op in _OUTERMOST and not has_paths(body)
+        ):
             return names.expression(formula)
         case _:
             return ""

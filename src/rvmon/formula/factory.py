@@ -25,6 +25,7 @@ from rvmon.formula.core import (
 )
 from rvmon.formula.state import UNKNOWN, Leaf, Lost, State, StateOp
 from rvmon.spec.checked.formula import Constant as ConstantLeaf
+from rvmon.spec.checked.formula import Measured
 
 
 class Factory:
@@ -96,6 +97,12 @@ class Factory:
     def since(self, left: State, right: State, low: int, high: int | None) -> State:
         """`left S[low, high] right`."""
         return self._state(StateOp.SINCE, (left, right), low=low, high=high)
+
+    def amount(self, measured: Measured, arg: State, window: int, least: int) -> State:
+        """So much of `arg` in the last `window` ticks; of what is never true there is nothing."""
+        if arg is self.state_false:
+            return arg
+        return self._state(StateOp.AMOUNT, (arg,), high=window, measured=measured, least=least)
 
     def sure(self, arg: State) -> State:
         """`arg` is TRUE, two-valued."""

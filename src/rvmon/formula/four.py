@@ -16,6 +16,7 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.numeric import reads_fields, signals_of
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Elapsed, Shown, State, Unborn
 from rvmon.spec.checked.formula import (
+    Amount,
     Atom,
     Binary,
     BinaryOp,
@@ -151,6 +152,10 @@ class Reader(Reading[Four]):
                 return self._held(self.four(operand), interval)
             case Unary() | Binary():
                 return read(formula, self.four, self)
+            case Amount(operand=operand, measured=measured, window=window, least=least):
+                counted = self.four(operand).read(FALSE)
+                value = self.factory.amount(measured, counted, window, least)
+                return Four(self.factory, _same(value), mortal=False)
             case Constant(value=value):
                 return self.constant(value)
             case _:

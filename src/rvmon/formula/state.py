@@ -10,6 +10,7 @@ from rvmon.spec.checked.formula import (
     Compare,
     Constant,
     EventAtom,
+    Measured,
     ProbeAtom,
     SignalAtom,
 )
@@ -65,6 +66,7 @@ class StateOp(Enum):
     OR = "or"
     PREVIOUS = "previous"
     SINCE = "since"
+    AMOUNT = "amount"
     SURE = "sure"
     """Two-valued: the operand is TRUE."""
     DOUBT = "doubt"
@@ -83,6 +85,8 @@ class State:
         leaf: what a `LEAF` reads.
         low: of `SINCE`, the least distance in ticks.
         high: of `SINCE`, the greatest distance; `None` if unbounded.
+        measured: of `AMOUNT`, what is counted from `high` ticks ago on.
+        least: of `AMOUNT`, how much is enough.
         unborn: of a `LEAF` over signals, the truth that it has before their birth.
         pulse: of `DOUBT`, whether the trigger starts an attempt wherever it is true.
         every: of `DOUBT`, whether no trigger is sure.
@@ -94,6 +98,8 @@ class State:
     leaf: Leaf | None = None
     low: int = 0
     high: int | None = None
+    measured: Measured = Measured.COUNT
+    least: int = 0
     unborn: int = UNKNOWN
     pulse: bool = False
     every: bool = False

@@ -187,7 +187,8 @@ class Driver:
         Args:
             names: signals and events; `None`: all.
             robot: whose; `None`: of every robot that was heard of.
-            since_ns: the first instant, ns; default the time now.
+            since_ns: when the last of it may have been heard, ns; default now. What brings its own
+                stamp may be older by the lag.
             is_over: whether they are found again by now; else when `found` says so.
             why: a phrase for people, for the input health: the same for all losses of one kind.
 
@@ -201,11 +202,7 @@ class Driver:
         self._tell(Told.FOUND, names, robot, "")
 
     def miss(
-        self,
-        names: Iterable[str] | None = None,
-        *,
-        robot: str | None = None,
-        why: str = "lost",
+        self, names: Iterable[str] | None = None, *, robot: str | None = None, why: str = "lost"
     ) -> None:
         """Say that something was lost between a robot's last sample and its next one."""
         self._tell(Told.MISSED, names, robot, why)
@@ -225,7 +222,10 @@ class Driver:
             now = max(self._clock.now_ns(), self._stamped)
             if told is not Told.MISSED:  # what is offered from now on is stamped later
                 self._stamped = now + self._runs_by_itself
-            first, last = now if since is None else min(since, now), now if is_over else None
+            first = (now if since is None else min(since, now)) - (self._asked_lag or 0)
+            last = now if is_over else None
+            if told is Told.FOUND and not self._runs_by_itself:
+                first = now + 1  # what bears this instant may have been sent before what was lost
             robots = {*self._waiting.robots, *self._robots} if robot is None else {robot}
             for one in robots:
                 if self._is_room_for(one):

@@ -93,7 +93,6 @@ class _Run:
         self._run = RecordingRun(compiled.checked, planned, source, finds=False)
         self._run.core.measure(FIGURES, streams)
         self._found = RecordedMargins(planned.packed.ids)
-        self._end = source.end
 
     def take(self, piece: Batch | Sample) -> None:
         if isinstance(piece, Sample):
@@ -104,7 +103,7 @@ class _Run:
                 self._found.add(self._run.core.margins())
 
     def margins(self) -> Margins:
-        self._run.core.finish(self._end)
+        self._run.finish()
         self._found.add(self._run.core.margins())
         return self._found.margins()
 

@@ -11,6 +11,7 @@ import zlib
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FOLDER = os.path.join(_PACKAGE, "core")
 ZONES_FOLDER = os.path.join(_PACKAGE, "timed", "native")
+CSV_FOLDER = os.path.join(_PACKAGE, "readers", "native")
 BLOCK = 1 << 17
 """Bytes that are read at once: more than any source has."""
 

@@ -1,24 +1,17 @@
-"""The search through zones as it was built with the package, from the C in `rvmon/timed/native`.
-
-Raises:
-    CoreError: it is not built, or was built from other sources than those that lie here.
-"""
+"""The search through zones, from the C in `rvmon/timed/native`."""
 
 from __future__ import annotations
 
-from rvmon.errors import CoreError
-from rvmon.native.sources import ZONES_FOLDER, source_hash
+from typing import TYPE_CHECKING
 
-_MEND = "run `pip install -e .` (or `make core`) in the clone of rvmon"
+from rvmon.native.extension import extension
+from rvmon.native.sources import ZONES_FOLDER
 
-try:
+if TYPE_CHECKING:
     import rvmon.native._zones as _zones
-except ModuleNotFoundError as error:
-    if error.name != "rvmon.native._zones":
-        raise
-    raise CoreError(f"the search of models is not built ({ZONES_FOLDER}): {_MEND}") from None
 
-if _zones.source_hash != (source_hash(ZONES_FOLDER) or _zones.source_hash):
-    raise CoreError(f"the search of models is older than its sources in {ZONES_FOLDER}: {_MEND}")
+    search = _zones.search
+else:
+    search = extension("_zones", ZONES_FOLDER, "the search of models").search
 
-search = _zones.search
+__all__ = ["search"]

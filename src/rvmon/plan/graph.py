@@ -181,7 +181,7 @@ def graph_of(roots: Iterable[State]) -> Graph:
                 varies.add(place)
         elif varies.intersection(operands[place]):
             varies.add(place)
-        if state.op in (StateOp.PREVIOUS, StateOp.SINCE, StateOp.DOUBT):
+        if state.op in (StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT, StateOp.DOUBT):
             remembers |= place in varies
             stateful.append(place)
         elif isinstance(state.leaf, Elapsed):

@@ -115,12 +115,18 @@ class Batch:
         signals: by name.
         events: by name.
         first: number of the first row, or of its line.
+        lines: int64[n], of each row; `None`: they follow each other.
     """
 
     times: NDArray[np.int64]
     signals: Mapping[str, Cells]
     events: Mapping[str, Occurrences]
     first: int = 0
+    lines: NDArray[np.int64] | None = None
+
+    def number_of(self, row: int) -> int:
+        """The number of a row, or of its line."""
+        return self.first + row if self.lines is None else int(self.lines[row])
 
     def cut(self, start: int, stop: int) -> Batch:
         """Some of the rows."""
@@ -129,6 +135,7 @@ class Batch:
             {name: one.cut(start, stop) for name, one in self.signals.items()},
             {name: one.cut(start, stop) for name, one in self.events.items()},
             self.first + start,
+            None if self.lines is None else self.lines[start:stop],
         )
 
     def rows(self, start: int, stop: int) -> Iterator[Sample]:
@@ -144,6 +151,11 @@ class Batch:
                 if value is not _NOTHING:
                     found[name] = value
             yield Sample(t, found)
+
+    def numbered(self) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
+        """Number, ticks and values of each row."""
+        for row, sample in enumerate(self.rows(0, len(self.times))):
+            yield self.number_of(row), sample.t, sample.values
 
     def up_to(self, until: int | None) -> Batch:
         """The rows up to an instant (ticks); all of them without one."""

@@ -54,7 +54,7 @@ def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -
     for name, cells in batch.signals.items():
         if some_again:
             _note_conflicts(batch, name, cells, conflicts)
-        said = _last_said(batch, cells) if some_again else _said(cells)
+        said = last_said(batch, cells) if some_again else _said(cells)
         _note(alternations, name, unknown_in(cells), said, len(batch.times))
     for name, one in batch.events.items():
         bare = one.says != NO_UPDATE
@@ -90,7 +90,7 @@ def _said(cells: Cells) -> NDArray[Any] | None:
     return None if cells.says is None else cells.says != NO_UPDATE
 
 
-def _last_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
+def last_said(batch: Batch, cells: Cells) -> NDArray[np.intp]:
     """The rows that say something, the last of each instant."""
     rows = _rows_said(batch, cells)
     times = batch.times[rows]
@@ -124,7 +124,7 @@ def unknown_rows(
     unknown = unknown_in(cells)
     if unknown is None:
         return
-    rows = _last_said(batch, cells) if is_signal else _rows_said(batch, cells)
+    rows = last_said(batch, cells) if is_signal else _rows_said(batch, cells)
     rows = rows[unknown[rows]]
     for is_nan in (True, False):
         null = np.zeros(len(rows), bool) if cells.says is None else cells.says[rows] == UNKNOWN

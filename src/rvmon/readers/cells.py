@@ -94,9 +94,9 @@ def cells_of_array(
     if found not in "bif" or values.dtype.itemsize > _WIDEST or kind is Kind.LABEL:
         raise NotPlainError("a column is no array of numbers or truth values")
     if gaps:
-        kept = _kept(values, gaps)
-        if not kept.all():
-            given = kept if given is None else given & kept
+        stays = kept(values, gaps)
+        if not stays.all():
+            given = stays if given is None else given & stays
     says = None if given is None else np.where(given, np.uint8(YES), np.uint8(NO_UPDATE))
     if (kind, found) in ((Kind.BOOL, "b"), (Kind.INT, "i")):
         return Cells(values.astype(_TYPES[kind], copy=False), says)
@@ -117,15 +117,15 @@ def cells_of_array(
     return Cells(made.astype(_TYPES[kind], copy=False), says)
 
 
-def _kept(values: NDArray[Any], gaps: Gaps) -> NDArray[np.bool_]:
+def kept(values: NDArray[Any], gaps: Gaps) -> NDArray[np.bool_]:
     """Where a value does not stand for no update."""
-    kept = np.ones(len(values), bool)
+    found = np.ones(len(values), bool)
     if gaps.nan and values.dtype.kind == "f":
-        kept &= values == values
+        found &= values == values
     value = gaps.no_update
     if isinstance(value, int | float) and isinstance(value, bool) == (values.dtype.kind == "b"):
-        kept &= values != value
-    return kept
+        found &= values != value
+    return found
 
 
 def cells_of_labels(

@@ -1,123 +1,240 @@
-"""CSV text in pieces: rows as columns where a piece is plain, else one by one."""
+"""CSV text as columns, in blocks: what is odd is read by itself, and no more than that."""
 
 from __future__ import annotations
 
+import csv
 import io
-import sys
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
+import re
+from codecs import getincrementaldecoder
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import replace
-from typing import BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
+import numpy as np
+
+from rvmon.errors import TraceError
+from rvmon.native.csv import read
 from rvmon.readers import line_chunks
-from rvmon.readers.batch import Batch, NotPlainError
-from rvmon.readers.csv_rows import Layout, csv_samples, split_lines
-from rvmon.readers.line_chunks import bounded_lines, is_short_of_memory
+from rvmon.readers.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
+from rvmon.readers.cells import batch_of, cells_of_labels, kept
+from rvmon.readers.csv_rows import Column, Layout, csv_samples, split_lines
+from rvmon.readers.line_chunks import LONGEST_LINE, bounded_lines
 from rvmon.readers.rows import Row
+from rvmon.readers.values import as_declared, scalar_of_text
+from rvmon.trace.schema import Kind
+from rvmon.trace.stamps import ticks_of_cell
 
-LARGE = 1 << 22
-"""Bytes from which on a text is worth importing Arrow, if that is installed."""
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _MARK = b"\xef\xbb\xbf"
 """That some editors begin a text with."""
 
-ODD = 1 << 14
-"""Bytes of a piece that is read row by row if a cell of it is odd."""
+_ALL, _ROW = 0, 2
+"""That a call ended with the text, or at a row that is odd; else with its room."""
 
-ReadPiece = Callable[[bytes, Layout], Batch]
+_KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
+
+_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}
+"""By their unit, as `csv.h` numbers them."""
+
+_ODD = 4096
+"""Cells of a call that are read one by one."""
+
+_LABELS = 2048
+"""Labels of a call that are told apart."""
+
+_LINE = re.compile(rb"[^\r\n]*(?:\r\n|\n|\r(?!\Z))")
 
 
 def csv_batches(
-    file: BinaryIO, size: int, layout_of: Callable[[Iterator[tuple[int, list[str]]]], Layout]
+    file: BinaryIO, layout_of: Callable[[Iterator[tuple[int, list[str]]]], Layout]
 ) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a text, in order.
 
     Args:
         file: is read from its start.
-        size: bytes that it has, about.
         layout_of: reads the header off the rows.
 
     Raises:
-        TraceError: with the line's number.
+        TraceError: with the line's number; the rows above it have been given out.
         UnicodeDecodeError: it is no text.
     """
-    read, each = _reader(size)
-    texts = whole_pieces(file, each)
-    first = next(texts, b"").removeprefix(_MARK)
-    header, _, body = first.partition(b"\n")
-    if header.count(b'"') % 2 or b"\r" in header[:-1]:  # it goes on, or ends elsewhere
-        yield _rows_behind(first, texts, layout_of)
-        return
-    layout = layout_of(split_lines([header.decode() + "\n"]))
-    line = 1
-    for text in _with(body, texts):
-        if text.count(b'"') % 2:  # a cell may go on in the next piece
-            yield csv_samples(split_lines(_lines(text, texts), line), layout)
+    text = _Text(file)
+    reader = _Reader(layout_of(split_lines(text.lines())))
+    while True:
+        ended, end = yield from reader.batch(text)
+        if ended == _ROW:
+            before = text.line
+            row = bounded_lines(io.StringIO(text.cut(end), newline=""))
+            yield csv_samples(split_lines(row, before), reader.layout)
+        elif ended == _ALL and not text.read_on():
             return
-        yield from _batches(text, layout, read, line)
-        line += text.count(b"\n")
 
 
-def _batches(
-    text: bytes, layout: Layout, read: ReadPiece, line: int
-) -> Iterator[Batch | Iterator[Row]]:
-    """The rows of a piece behind so many lines; of one with an odd cell by halves."""
-    try:
-        batch = read(text, layout)
-    except NotPlainError:
-        half = text.rfind(b"\n", 0, len(text) // 2) + 1
-        if len(text) < ODD or not half or text.count(b'"', 0, half) % 2:
-            yield csv_samples(split_lines(_lines(text, ()), line), layout)
+class _Text:
+    """A text that is read in blocks, and what of it is not taken yet."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._decoder = getincrementaldecoder("utf-8")()
+        self.rest = b""
+        self.start = 0
+        self.line = 0
+        self.is_last = False
+        self.read_on()
+        if self.rest.startswith(_MARK):
+            self.start = len(_MARK)
+
+    def read_on(self) -> bool:
+        """Read a further block; false: there was none before, either."""
+        if self.is_last:
+            return False
+        if len(self.rest) - self.start > LONGEST_LINE:
+            self._refuse_long()
+        piece = self._file.read(line_chunks.BLOCK)
+        if self._decoder.getstate()[0] or not piece.isascii():
+            self._decoder.decode(piece, final=not piece)
+        self.rest = self.rest[self.start :] + piece
+        self.start = 0
+        self.is_last = not piece
+        return True
+
+    def _refuse_long(self) -> None:
+        rest = self.rest[self.start :].decode(errors="ignore")
+        if len(rest) > LONGEST_LINE:
+            for _ in split_lines(bounded_lines(io.StringIO(rest, newline="")), self.line):
+                pass
+
+    def lines(self) -> Iterator[str]:
+        """The next lines, each taken as it is given out."""
+        while self.start < len(self.rest) or not self.is_last:
+            found = _LINE.match(self.rest, self.start)
+            if found is not None or self.is_last:
+                yield self.cut(len(self.rest) if found is None else found.end())
+            else:
+                self.read_on()
+
+    def cut(self, end: int) -> str:
+        """Take what lies before a place."""
+        taken = self.rest[self.start : end].decode()
+        self.line += max(1, taken.count("\n") + taken.count("\r") - taken.count("\r\n"))
+        self.start = end
+        return taken
+
+
+class _Reader:
+    """Reads rows of a layout."""
+
+    def __init__(self, layout: Layout) -> None:
+        self.layout = layout
+        self._slots = np.full(len(layout.header), -1, np.int32)
+        self._slots[layout.time] = 0
+        for place, column in enumerate(layout.columns, 1):
+            self._slots[column.index] = place
+        kinds = [_STAMPS[layout.stamps.unit], *(_KINDS[one.kind] for one in layout.columns)]
+        self._kinds = np.array(kinds, np.int32)
+        no_update = layout.gaps.no_update
+        self._absent = None if no_update is None else str(no_update).encode()
+        self._odd = np.empty((max(_ODD, len(kinds)), 4), np.int64)
+        self._labels = np.empty((max(_LABELS, len(kinds)), 3), np.int64)
+
+    def batch(self, text: _Text) -> Generator[Batch, None, tuple[int, int]]:
+        """Take what can be read at once.
+
+        Returns:
+            How that ended, and where an odd row ends.
+
+        Raises:
+            TraceError: a cell is none of its kind; the rows above it have been given out.
+        """
+        if text.start == len(text.rest):
+            return _ALL, 0
+        room = max(1, text.rest.count(b"\n", text.start) + text.rest.count(b"\r", text.start))
+        numbers = np.empty((len(self._kinds), room), np.int64)
+        says = np.empty((len(self._kinds), room), np.uint8)
+        lines = np.empty(room, np.int64)
+        table = np.zeros(2 * len(self._labels), np.int32)
+        ended, rows, at, end, count, odd, labels = read(
+            text.rest, text.start, text.is_last, csv.field_size_limit(), self._slots, self._kinds,
+            self._absent, numbers, says, lines, self._odd, self._labels, table,
+        )  # fmt: skip
+        found = text.rest
+        lines += text.line
+        fault = None
+        for row, place, start, stop in self._odd[:odd].tolist():
+            try:
+                self._read_odd(_cell(found, start, stop), place, row, numbers, says)
+            except TraceError as error:
+                rows, fault = row, TraceError(f"line {lines[row]}: {error}")
+                break
+        if rows:
+            words = [(of, _cell(found, *ends)) for of, *ends in self._labels[:labels].tolist()]
+            cells = {
+                column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
+                for place, column in enumerate(self.layout.columns, 1)
+            }
+            batch = batch_of(numbers[0, :rows], self.layout, cells)
+            is_plain = lines[rows - 1] - lines[0] == rows - 1
+            yield replace(batch, first=int(lines[0]), lines=None if is_plain else lines[:rows])
+        if fault is not None:
+            raise fault
+        text.start = at
+        text.line += count
+        return ended, end
+
+    def _read_odd(
+        self, text: str, place: int, row: int, numbers: NDArray[Any], says: NDArray[Any]
+    ) -> None:
+        """Put down what a cell says that is read as readers of rows do."""
+        if place == 0:
+            numbers[0, row] = ticks_of_cell(text, self.layout.stamps)
             return
-        yield from _batches(text[:half], layout, read, line)
-        yield from _batches(text[half:], layout, read, line + text.count(b"\n", 0, half))
-    else:
-        yield replace(batch, first=line + 1)
+        column = self.layout.columns[place - 1]
+        if not text or text.encode() == self._absent:
+            says[place, row] = NO_UPDATE
+            return
+        try:
+            value = as_declared(scalar_of_text(text, column.kind), column.kind)
+            says[place, row] = UNKNOWN if value is None else YES
+            if column.kind is Kind.REAL:
+                numbers[place].view(np.float64)[row] = value
+            else:
+                numbers[place, row] = value or 0
+        except TraceError as error:
+            raise TraceError(f"column `{column.called}`: {error}") from None
+
+    def _cells(
+        self,
+        column: Column,
+        values: NDArray[Any],
+        says: NDArray[Any],
+        words: Sequence[tuple[int, str]],
+        place: int,
+    ) -> Cells:
+        gaps = self.layout.gaps
+        if column.kind is Kind.LABEL:
+            own = {number: label for number, (of, label) in enumerate(words) if of == place}
+            labels = {label: at for at, label in enumerate(dict.fromkeys(own.values()))}
+            renumbered = np.zeros(len(words) + 1, np.int32)
+            renumbered[list(own)] = [labels[label] for label in own.values()]
+            places = renumbered[values]
+            given = says == YES
+            if "" in labels:  # of spaces that are no ASCII
+                given &= places != labels[""]
+            return cells_of_labels(places, given, tuple(labels) or ("",), gaps)
+        made = values.view(np.float64) if column.kind is Kind.REAL else values
+        if column.kind is Kind.BOOL:
+            made = values.astype(np.bool_)
+        if gaps:
+            if gaps.nan:
+                says[says == UNKNOWN] = NO_UPDATE
+            says[~kept(made, gaps) & (says == YES)] = NO_UPDATE
+        return Cells(made, None if (says == YES).all() else says)
 
 
-def _reader(size: int) -> tuple[ReadPiece, int]:
-    """What reads pieces, and so many bytes at a time."""
-    if size >= LARGE or "pyarrow.csv" in sys.modules:
-        with suppress(ImportError):
-            if not is_short_of_memory():
-                from rvmon.readers.csv_arrow import arrow_batch
-
-                return arrow_batch, 4 * line_chunks.BLOCK
-    from rvmon.readers.csv_numbers import number_batch
-
-    return number_batch, line_chunks.BLOCK
-
-
-def _with(body: bytes, texts: Iterator[bytes]) -> Iterator[bytes]:
-    if body:
-        yield body
-    yield from texts
-
-
-def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:
-    r"""A file in pieces of whole lines; the last line may lack its end."""
-    rest = b""
-    while piece := file.read(size):
-        whole, newline, tail = piece.rpartition(b"\n")
-        if newline:
-            yield rest + whole + newline
-            rest = tail
-        else:
-            rest += piece
-    if rest:
-        yield rest
-
-
-def _lines(text: bytes, texts: Iterable[bytes]) -> Iterator[str]:
-    """The lines of a piece, and of those behind it."""
-    for one in _with(text, iter(texts)):
-        yield from bounded_lines(io.StringIO(one.decode(), newline=""))
-
-
-def _rows_behind(
-    first: bytes,
-    texts: Iterator[bytes],
-    layout_of: Callable[[Iterator[tuple[int, list[str]]]], Layout],
-) -> Iterator[Row]:
-    rows = split_lines(_lines(first, texts))
-    yield from csv_samples(rows, layout_of(rows))
+def _cell(text: bytes, start: int, end: int) -> str:
+    """What a cell says; where its end is negative, quotes in it are doubled."""
+    if end >= 0:
+        return text[start:end].decode().strip()
+    return text[start:~end].decode().replace('""', '"').strip()

@@ -65,14 +65,6 @@ class Layout:
         return frozenset(column.name for column in self.columns)
 
 
-def _other_separator(header: list[str]) -> str:
-    """What to fix if the cells are not separated by commas."""
-    for separator, name in ((";", "semicolons"), ("\t", "tabs"), ("|", "bars")):
-        if len(header) == 1 and separator in header[0]:
-            return f". The columns look separated by {name}: separate them by commas"
-    return ""
-
-
 def read_layout(header: list[str], schema: Schema) -> Layout:
     """Match the header's names with the declared ones.
 
@@ -84,7 +76,7 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
         if name in seen:
             raise TraceError(f"column `{shorten(name)}` stands twice in the header")
         seen[name] = index
-    stamps = stamps_among(header, schema, _other_separator(header))
+    stamps = stamps_among(header, schema)
     return layout_of(header, stamps, schema)
 
 

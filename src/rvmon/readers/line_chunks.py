@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from functools import partial
-from typing import TextIO
+from typing import BinaryIO, TextIO
 
 from rvmon.errors import TraceError
 
@@ -32,12 +31,18 @@ def bounded_lines(text: TextIO) -> Iterator[str]:
         yield line
 
 
-def is_long_celled(body: bytes) -> bool:
-    """Whether a cell may be longer than whoever reads rows takes."""
-    # A longer line has a stretch of so many bytes without an end.
-    stretch = max(csv.field_size_limit() // 2, 1)
-    starts = range(0, len(body) - stretch, stretch)
-    return any(body.find(b"\n", start, start + stretch) < 0 for start in starts)
+def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:
+    r"""A file in pieces of whole lines; the last line may lack its end."""
+    rest = b""
+    while piece := file.read(size):
+        whole, newline, tail = piece.rpartition(b"\n")
+        if newline:
+            yield rest + whole + newline
+            rest = tail
+        else:
+            rest += piece
+    if rest:
+        yield rest
 
 
 def is_short_of_memory() -> bool:

@@ -59,7 +59,7 @@ def read_as(
     )
 
 
-def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> Stamps:
+def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
     """The column of stamps of a recording that has these columns.
 
     Raises:
@@ -72,14 +72,14 @@ def stamps_among(names: Collection[str], schema: Schema, remark: str = "") -> St
             return stamps
         units = "" if stamps.is_stated else _units_listed(stamps.column)
         meant = did_you_mean(stamps.column, names, f"there are {listed}")
-        raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}{remark}")
+        raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}")
     times = [name for name in DEFAULT_COLUMNS if name in names]
     if len(times) != 1:
         raise TraceError(
             "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), "
             f"in the header; found {'both' if times else listed}: name "
             f"{'one of them' if times else 'it'} with --time COLUMN[:UNIT], in Python "
-            f"time=…{remark}"
+            f"time=…"
         )
     return stamps_of(times[0])
 

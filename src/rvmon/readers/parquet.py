@@ -18,7 +18,6 @@ from rvmon.readers.line_chunks import is_short_of_memory
 from rvmon.readers.rows import Row
 from rvmon.readers.tables import arrow_cells, is_of_dates
 from rvmon.readers.values import first_line
-from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import ticks_of_stamp
 
@@ -138,22 +137,6 @@ def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Ite
         except (NotPlainError, TraceError):
             yield _rows_of([stamps, *arrays], layout, row)
         row += len(stamps)
-
-
-def parquet_samples(
-    path: str | Path, schema: Schema
-) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
-    """Row number from 1, ticks and values of each row; a null is no update.
-
-    Raises:
-        RvmonError: there is no pyarrow.
-        TraceError: with the row's number.
-    """
-    layout = parquet_layout(path, schema)
-    row = 0
-    for batch in parquet_batches(path, columns_read(layout)):
-        yield from _rows_of(batch, layout, row)
-        row += len(batch[0])
 
 
 def _rows_of(batch: list[Any], layout: Layout, before: int) -> Iterator[Row]:

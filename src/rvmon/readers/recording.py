@@ -6,25 +6,32 @@ import os
 import sys
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from errno import ENOENT
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
+from stat import S_ISFIFO
 from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
-from rvmon.readers.csv_rows import Layout, csv_samples, read_layout, split_lines
+from rvmon.readers.csv_dialect import bare_names, opened_as_csv
+from rvmon.readers.csv_rows import Layout, read_layout, split_lines
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
 from rvmon.readers.line_chunks import bounded_lines
-from rvmon.readers.messages.forms import MESSAGE_FORMATS, MESSAGE_FORMS, form_of_folder
+from rvmon.readers.messages.forms import (
+    ARRAYS,
+    MESSAGE_FORMATS,
+    MESSAGE_FORMS,
+    form_of_folder,
+)
 from rvmon.readers.places import endings_of, is_address, local_path, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Outage, Sample
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
@@ -41,9 +48,6 @@ FORMATS = {
     **MESSAGE_FORMATS,
 }
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
-
-TINY = 1 << 10
-"""Bytes of text that are sooner read line by line than as columns."""
 
 
 class FileRecording:
@@ -76,7 +80,8 @@ class FileRecording:
         self._ordered = ordered
         self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
-        if self.is_of_messages and schema.stamps is not None:
+        brings_stamps = self.is_of_messages and self._format not in ARRAYS
+        if brings_stamps and schema.stamps is not None:
             raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
         if not self.is_of_messages and schema.binding != BY_NAME:
             message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
@@ -88,6 +93,7 @@ class FileRecording:
         self.names: frozenset[str] | None = None
         self.end: int | None = None
         self._messages: MessageFile | None = None
+        self._known: tuple[list[str], Layout] | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
                 layout = self._layout(split_lines(bounded_lines(text)))
@@ -114,6 +120,11 @@ class FileRecording:
         """The columns, or topics and fields, that nothing is declared for."""
         return list(self.ignored) if self._messages is None else self._messages.unread
 
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost, in order; text is whole, or an error."""
+        return () if self._messages is None else self._messages.outages
+
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
         self._stamps = layout.stamps
@@ -125,26 +136,23 @@ class FileRecording:
         Raises:
             TraceError: with file and line; the samples before it have been given out.
         """
-        if self._format == "parquet":
-            from rvmon.readers.parquet import parquet_samples
+        with self._named_errors():
+            yield from self.rows.samples(self._each_row())
+            if not self.rows.count:
+                raise TraceError("holds no sample")
 
-            with self._named_errors():
-                yield from self._merged(parquet_samples(local_path(self.path), self._schema))
-            return
+    def _each_row(self) -> Iterator[Row]:
         if self._messages is not None:
-            with self._named_errors():
-                yield from self._merged(self._messages.rows(ordered=self._ordered))
-            return
-        with self._text() as text:
-            lines = bounded_lines(text)
-            if self._format == "csv":
-                rows = split_lines(lines)
-                yield from self._merged(csv_samples(rows, self._layout(rows)))
-            else:
-                from rvmon.readers.jsonl_rows import jsonl_samples
+            yield from self._messages.rows(ordered=self._ordered)
+        elif self._format == "jsonl" and not can_be_read_again(self.path):
+            from rvmon.readers.jsonl_rows import jsonl_samples
 
-                seen = self._seeing_unit(lines)
-                yield from self._merged(jsonl_samples(seen, self._schema, self.ignored))
+            with self._text() as text:
+                seen = self._seeing_unit(bounded_lines(text))
+                yield from jsonl_samples(seen, self._schema, self.ignored)
+        else:
+            for piece in self._batches():
+                yield from piece.numbered() if hasattr(piece, "numbered") else piece
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """The recording in order: rows as columns where it has such, else samples; see `__iter__`.
@@ -153,7 +161,7 @@ class FileRecording:
             TraceError: with file and line.
         """
         of_columns = self._messages is None and can_be_read_again(self.path)
-        if not (of_columns and self._ordered) or self._has_less_than(TINY):
+        if not (of_columns and self._ordered):
             yield from self
             return
         with self._named_errors():
@@ -167,12 +175,11 @@ class FileRecording:
 
             yield from parquet_batches_of(local_path(self.path), self._schema)
             return
-        with opened(self.path) as (plain, self._open_file):
-            size = os.fstat(self._open_file.fileno()).st_size
+        with self._opened() as (plain, self._open_file):
             if self._format == "csv":
                 from rvmon.readers.csv_batch import csv_batches
 
-                yield from csv_batches(plain, size, self._layout)
+                yield from csv_batches(plain, self._layout)
             else:
                 from rvmon.readers.jsonl_batch import jsonl_batches
 
@@ -187,18 +194,6 @@ class FileRecording:
             if number == 0 and self._schema.stamps is None and '"t_ns"' in line:
                 self._stamps = stamps_of("t_ns")
             yield line
-
-    def _has_less_than(self, size: int) -> bool:
-        """Whether it is a file of less text than so many bytes."""
-        with suppress(OSError):
-            is_text = self._format in ("csv", "jsonl") and can_be_read_again(self.path)
-            return is_text and Path(self.path).stat().st_size < size
-        return False
-
-    def _merged(self, rows: Iterator[Row]) -> Iterator[Sample]:
-        yield from self.rows.samples(rows)
-        if not self.rows.count:
-            raise TraceError("holds no sample")
 
     @property
     def fraction_read(self) -> float:
@@ -254,7 +249,15 @@ class FileRecording:
             _, header = next(rows)
         except StopIteration:
             raise TraceError("is empty: expected a header with a time column `t`") from None
-        return read_layout(header, self._schema)
+        if self._known is None or self._known[0] != header:
+            self._known = header, read_layout(*bare_names(header, self._schema))
+        return self._known[1]
+
+    def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:
+        """The text, and the file as it lies there."""
+        if self._format == "csv":
+            return opened_as_csv(self.path, self._schema.stamps)
+        return opened(self.path)
 
     @contextmanager
     def _text(self) -> Iterator[TextIO]:
@@ -265,7 +268,7 @@ class FileRecording:
             else:
                 # The mark that some editors begin a text with would make its first cell odd.
                 with (
-                    opened(self.path) as (plain, self._open_file),
+                    self._opened() as (plain, self._open_file),
                     TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
                 ):
                     yield text
@@ -307,7 +310,12 @@ def topics_of(path: str) -> Mapping[str, Topic]:
 
 def can_be_read_again(path: str) -> bool:
     """Whether a recording is a file, and not a stream that is gone when it was read."""
-    return path != "-" and (is_address(path) or not Path(path).is_fifo())
+    if path == "-" or is_address(path):
+        return path != "-"
+    try:
+        return not S_ISFIFO(os.stat(path).st_mode)
+    except OSError:
+        return True
 
 
 def format_of(path: str) -> str:

@@ -80,8 +80,8 @@ class Rows:
         for piece in pieces:
             rows: Iterable[Sample]
             if isinstance(piece, Batch):
-                batch = without_ignored(piece, self._schema.ignoring)
-                self._note_times(batch)
+                whole = without_ignored(piece, self._schema.ignoring)
+                batch = self._note_times(whole)
                 times, count = batch.times, len(batch.times)
                 start = 0 if held is None else int(times.searchsorted(held.t, "right"))
                 stop = max(start, int(times.searchsorted(times[-1]))) if count else 0
@@ -94,7 +94,7 @@ class Rows:
                     middle = batch.cut(start, stop)
                     note_batch(middle, self.alternations, self._conflicts)
                     yield middle
-                rows = batch.rows(stop, count)
+                rows = self._then_backwards(batch.rows(stop, count), whole, count)
             else:
                 rows = self._in_order(piece)
             for sample in rows:
@@ -121,21 +121,29 @@ class Rows:
     def _merged(self, held: Sample, sample: Sample) -> Sample:
         return Sample(held.t, merged(held, sample.values, self._schema.events, self._conflicts))
 
-    def _note_times(self, batch: Batch) -> None:
-        """See that rows are in order, and note the first instants."""
+    def _note_times(self, batch: Batch) -> Batch:
+        """The rows that are in order, whose first instants are noted."""
         times = batch.times
         if not len(times):
-            return
+            return batch
         if self._last is not None and times[0] < self._last:
-            raise self._backwards(batch.first, self._last, int(times[0]))
+            raise self._backwards(batch.number_of(0), self._last, int(times[0]))
         back = times[1:] < times[:-1]
         if back.any():
-            row = int(back.argmax())
-            raise self._backwards(batch.first + row + 1, int(times[row]), int(times[row + 1]))
+            batch = batch.cut(0, int(back.argmax()) + 1)
+            times = batch.times
         self._last = int(times[-1])
         self.count += len(times)
         if len(self.first) < LOOKED_AT:
             self.first += times[: LOOKED_AT - len(self.first)].tolist()
+        return batch
+
+    def _then_backwards(self, rows: Iterator[Sample], batch: Batch, row: int) -> Iterator[Sample]:
+        """The same; then it is an error if the batch has a further row, which is out of order."""
+        yield from rows
+        if row < len(batch.times):
+            times = batch.times
+            raise self._backwards(batch.number_of(row), int(times[row - 1]), int(times[row]))
 
     def _backwards(self, number: int, last: int, t: int) -> TimeOrderError:
         return TimeOrderError(

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
-from rvmon.trace.sample import Recording, Sample
+from rvmon.trace.sample import Outage, Recording, Sample
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
@@ -41,6 +41,11 @@ class Source:
     def end(self) -> int | None:
         """The end of the trace in ticks; `None`: its last sample."""
         return self.recording.end if self.until is None else self.until
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """The stretches that were lost."""
+        return getattr(self.recording, "outages", ())
 
     def samples(self) -> Iterator[Sample]:
         """The samples; what lies behind the end is not read, and may be broken."""

@@ -40,7 +40,7 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
             # Python reads 1_000 as a number; no recording means it.
             try:
                 if "_" not in text:
-                    return int(text) if kind is Kind.INT else double_of(text)
+                    return _whole_of(text) if kind is Kind.INT else double_of(text)
             except TraceError:
                 raise
             except ValueError:  # it may be NaN
@@ -62,6 +62,13 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
     raise TraceError(f"`{shorten(text)}` is not {DESCRIPTION[kind]}")
 
 
+def _whole_of(text: str) -> int:
+    number = int(text)
+    if -_LARGEST <= number < _LARGEST:
+        return number
+    raise TraceError(f"`{shorten(text)}` is too large for a whole number: 64 bits hold it no more")
+
+
 def double_of(text: str) -> float:
     """A number as a double; infinite only if it is called so.
 
@@ -79,6 +86,8 @@ def double_of(text: str) -> float:
 
 
 _CLASSES = {Kind.BOOL: bool, Kind.INT: int, Kind.REAL: float, Kind.LABEL: str}
+
+_LARGEST = 1 << 63
 
 _EXACT = 1 << 53
 """Floats up to here are the whole numbers that they stand for."""

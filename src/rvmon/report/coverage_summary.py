@@ -31,7 +31,7 @@ from rvmon.coverage.questions import (
 )
 from rvmon.coverage.ranking import Smallest, fewest, ranking
 from rvmon.coverage.record import UNKNOWN, Coverage, Ending, TestRecord
-from rvmon.report.percent import percent_text
+from rvmon.report.percent import counted
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.rules.goals import MOST_COMBINATIONS
@@ -303,24 +303,6 @@ def name_of(item: tuple[str, str]) -> str:
 def strategy_name(strategy: str) -> str:
     """A strategy for people."""
     return strategy or "no strategy"
-
-
-def counted(count: int, noun: str) -> str:
-    """A number of things.
-
-    >>> counted(1, "test"), counted(2000, "test")
-    ('1 test', '2,000 tests')
-    """
-    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
-
-
-def share_text(share: float) -> str:
-    """A share for people, that claims neither none nor all where that is not so.
-
-    >>> share_text(0.99999), share_text(0.5)
-    ('> 99 %', '50 %')
-    """
-    return percent_text(share, 1)
 
 
 def not_fine(record: TestRecord) -> str:

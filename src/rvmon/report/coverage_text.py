@@ -8,16 +8,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.coverage.answers import Comparison
 from rvmon.coverage.model import Group, combination
-from rvmon.report.coverage_summary import (
-    Summary,
-    cell_text,
-    counted,
-    is_grid,
-    name_of,
-    not_fine,
-    share_text,
-)
-from rvmon.report.percent import percent_text
+from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
+from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict.verdict import Verdict

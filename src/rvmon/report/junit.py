@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.diagnostics.shown import shown
-from rvmon.report.afterword import full_reason, without_attempts
-from rvmon.results.known import NONE_KNOWN, KnownFailures
+from rvmon.report.wording import full_reason, without_attempts
 from rvmon.trace.time import format_ticks
+from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 

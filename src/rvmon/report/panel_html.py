@@ -1,62 +1,66 @@
-"""One attempt on the page of a run: sentence, spec line, timeline, values."""
+"""One attempt on the page of a run: its sentence, lines of the specification, timelines."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
+from typing import NamedTuple
 
 from rvmon.explain.dissect import Strand
-from rvmon.report.afterword import forecast_sentence, with_afterword, without_attempts
-from rvmon.report.markup import Child, e, with_code
-from rvmon.report.run_page import Panel, RunPage
+from rvmon.report.markup import Child, e
+from rvmon.report.panels import Panel
 from rvmon.report.style import MARKS
 from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names
-from rvmon.report.view import View, moment, with_moments
+from rvmon.report.view import moment, with_moments
+from rvmon.report.wording import with_afterword, without_attempts
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.sample import Scalar
-from rvmon.verdict.attempt import Attempt, Blame
-from rvmon.verdict.verdict import Verdict
+from rvmon.verdict.attempt import Blame
+from rvmon.verdict.report import Report
 
 DEEPEST = 8
 """Parts that lie deeper are not indented further."""
 
 
-def parts_details(panel: Panel, origin: int, end: int) -> ET.Element | None:
-    """A row for the trigger and for each part of what is owed; nothing if there are none.
+def parts_timeline(panel: Panel, report: Report) -> ET.Element:
+    """A row for the trigger and for each part of what is required of an attempt.
 
     Args:
-        panel: with strands.
-        origin: the instant from which people count seconds, ticks.
-        end: the last instant of the run, ticks.
+        panel: with an attempt and strands.
+        report: of the run.
     """
-    if not panel.strands or panel.attempt is None:
-        return None
+    assert panel.attempt is not None  # noqa: S101 - as only these have strands
+    end = end_of(report)
     rows: list[Child] = []
     for part, strands in groupby(panel.strands, key=lambda strand: strand.part):
         rows.append(e("div", {"class": "part"}, part))
         rows += [_row(strand, panel, end) for strand in strands]
-    rows.append(axis_row(panel.view, origin))
-    overlay = e(
-        "div",
-        {"class": "overlay"},
-        *guides_of(panel.attempt, panel.view, end, panel.late),
-        e("div", {"class": "cursor"}),
+    rows.append(axis_row(panel.view, report.origin))
+    guides = guides_of(panel.attempt, panel.view, end, panel.late)
+    overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
+    return e("div", {"class": "timeline"}, *rows, overlay)
+
+
+def panel_timeline(panel: Panel, requirement: Requirement, report: Report) -> ET.Element:
+    """The attempt's window, and a track for each signal that the requirement reads."""
+    blame = None if panel.attempt is None else panel.attempt.blame
+    return timeline(
+        panel.attempt,
+        panel.tracks,
+        panel.view,
+        origin=report.origin,
+        end=end_of(report),
+        blamed=frozenset() if blame is None else blamed_names(requirement, blame),
+        late=panel.late,
+        ghost=panel.ghost,
     )
-    open_ = panel.attempt.verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE)
-    return e(
-        "details",
-        {"class": "parts", "open": open_},
-        e("summary", None, "when each part of it was true"),
-        e("div", {"class": "timeline"}, *rows, overlay),
-        e(
-            "p",
-            {"class": "legend"},
-            e("span", None, e("i", {"class": "key on"}), "true"),
-            e("span", None, e("i", {"class": "key unknown"}), "not known"),
-        ),
-    )
+
+
+def end_of(report: Report) -> int:
+    """The last instant of a run, ticks."""
+    return report.origin if report.end is None else report.end
 
 
 def _row(strand: Strand, panel: Panel, end: int) -> ET.Element:
@@ -83,196 +87,63 @@ def _changes(strand: Strand) -> tuple[tuple[int, Scalar], ...]:
     return tuple(changes)
 
 
-def panel_section(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET.Element:
-    """Draw a panel."""
-    report = content.run.report
-    requirement = content.spec.requirements[panel.requirement]
-    sentence = headline(content.run.name, panel, report.origin)
-    end = report.origin if report.end is None else report.end
-    blame = None if panel.attempt is None else panel.attempt.blame
-    drawing = timeline(
-        panel.attempt,
-        panel.tracks,
-        panel.view,
-        origin=report.origin,
-        end=end,
-        blamed=frozenset() if blame is None else blamed_names(requirement, blame),
-        late=panel.late,
-        ghost=panel.ghost,
-    )
-    return e(
-        "section",
-        {"id": panel.id, "data-verdict": panel.verdict.value},
-        e("h1", None, _badge(panel.verdict), e("span", None, *with_code(sentence))),
-        e("p", {"class": "requirement"}, requirement.text) if requirement.text else None,
-        spec_lines(requirement, blame),
-        drawing,
-        _cursor_controls(panel, report.origin),
-        _legend(panel, content),
-        parts_details(panel, report.origin, end),
-        _values(panel.attempt),
-        _siblings(panel, panels, content),
-    )
+def has_unknown(panel: Panel) -> bool:
+    """Whether something is unknown in a panel's tracks."""
+    return any(_is_unknown(track, panel) for track in panel.tracks)
 
 
-def _badge(verdict: Verdict) -> ET.Element:
-    return e(
-        "span",
-        {"class": "badge", "data-verdict": verdict.value},
-        f"{verdict.value} {MARKS[verdict].sign}",
-    )
-
-
-def _cursor_controls(panel: Panel, origin: int) -> ET.Element:
-    slider = {
-        "type": "range",
-        "min": 0,
-        "max": 1000,
-        "value": round(panel.view.fraction(panel.instant) * 1000),
-        "aria-label": "instant shown",
-    }
-    return e(
-        "div",
-        {"class": "controls"},
-        e("div", {"class": "name"}, e("button", {"class": "play", "type": "button"}, "▶ play")),
-        e("div", {"class": "plot"}, e("input", slider)),
-        e("output", {"class": "instant"}, moment(panel.instant, origin, panel.view)),
-    )
-
-
-def _legend(panel: Panel, content: RunPage) -> ET.Element | None:
-    parts: list[Child] = []
-    if not content.run.samples:
-        parts.append("The signals of this run were not kept.")
-    if panel.ghost is not None:
-        decided = ""
-        if panel.attempt is not None and panel.ghost.decided is not None:
-            after = moment(panel.ghost.decided, panel.attempt.triggered, panel.view)
-            decided = f", decided {after} after its trigger"
-        parts.append(
-            e(
-                "span",
-                None,
-                e("i", {"class": "key ghost"}),
-                f"nearest passing attempt: {panel.ghost.name}, attempt {panel.ghost.number}",
-                decided,
-            )
-        )
-    if any(_has_unknown(track, panel.view) for track in panel.tracks):
-        parts.append(e("span", None, e("i", {"class": "key unknown"}), "unknown"))
-    return e("p", {"class": "legend"}, *parts) if parts else None
-
-
-def _has_unknown(track: Track, view: View) -> bool:
+def _is_unknown(track: Track, panel: Panel) -> bool:
     if track.absent:
         return True
+    view = panel.view
     inside = any(value is None and view.start <= t <= view.end for t, value in track.changes)
     return inside or (track.kind is not TrackKind.EVENT and track.value_at(view.start) is None)
 
 
-def _values(attempt: Attempt | None) -> ET.Element | None:
-    """The propositions at trigger and decision, and what was captured or is still owed."""
-    if attempt is None:
-        return None
-    names = dict.fromkeys((*attempt.at_trigger, *attempt.at_decision))
-    rows = [
-        e(
-            "tr",
-            None,
-            e("th", {"scope": "row"}, e("code", None, name)),
-            e("td", None, _shown(attempt.at_trigger, name)),
-            e("td", None, _shown(attempt.at_decision, name)),
-        )
-        for name in names
-    ]
-    details: list[Child] = []
-    if rows:
-        head = e("tr", None, e("th"), e("th", None, "at the trigger"), e("th", None, "at the end"))
-        details.append(e("table", {"class": "values"}, head, *rows))
-    details.extend(
-        e("p", None, e("code", None, name), f" = {_scalar(value)} (captured at the trigger)")
-        for name, value in attempt.captured.items()
-    )
-    if attempt.owed:
-        details.append(e("p", None, "still owed: ", e("code", None, attempt.owed)))
-    if attempt.forecast is not None:
-        details.append(e("p", None, forecast_sentence(attempt.forecast)))
-    if attempt.robustness is not None:
-        details.append(e("p", None, f"robustness: {attempt.robustness:.4g}"))
-    if not details:
-        return None
-    return e("details", None, e("summary", None, "values at trigger and decision"), *details)
+class SpecLines(NamedTuple):
+    """A requirement's lines of its file.
+
+    Attributes:
+        place: name of the file, and line.
+        lines: number of each, and its text before, within and behind what failed.
+    """
+
+    place: str
+    lines: Sequence[tuple[int, str, str, str]]
 
 
-def _siblings(panel: Panel, panels: Sequence[Panel], content: RunPage) -> ET.Element | None:
-    """Links to the other attempts of the requirement, and how many are not shown."""
-    if panel.attempt is None:
-        return None
-    own = [one for one in panels if one.requirement == panel.requirement and one.attempt]
-    links = [
-        e(
-            "a",
-            {
-                "href": f"#{one.id}",
-                "data-verdict": one.attempt.verdict.value,
-                "aria-current": "true" if one is panel else None,
-            },
-            f"{one.attempt.numbered} {MARKS[one.attempt.verdict].sign}",
-        )
-        for one in own
-        if one.attempt is not None
-    ]
-    counts = content.run.report.counts[panel.requirement]
-    rest = sum(counts.values()) - len(links)
-    if rest <= 0 and len(links) == 1:
-        return None
-    more = [f" and {rest} more"] if rest > 0 else []
-    return e("p", {"class": "siblings"}, f"attempts of {panel.requirement}: ", *links, *more)
-
-
-def _shown(values: Mapping[str, Scalar], name: str) -> str:
-    return _scalar(values[name]) if name in values else ""
-
-
-def _scalar(value: Scalar) -> str:
-    if value is None:
-        return "unknown"
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def spec_lines(requirement: Requirement, blame: Blame | None) -> ET.Element | None:
+def spec_lines(requirement: Requirement, blame: Blame | None) -> SpecLines | None:
     """The requirement's text with line numbers; `None` if its place is not known."""
     span = requirement.span
     if span is None:
         return None
+    return SpecLines(f"{span.source.name}:{span.line}", list(_lines(requirement, blame)))
+
+
+def _lines(requirement: Requirement, blame: Blame | None) -> Iterator[tuple[int, str, str, str]]:
+    span = requirement.span
+    assert span is not None  # noqa: S101 - it was asked for
     text = span.source.text
-    first = text.rfind("\n", 0, span.start) + 1
+    position = text.rfind("\n", 0, span.start) + 1
     last = span.start + len(text[span.start : span.end].rstrip())
-    block = e("pre", {"class": "spec"})
-    position = first
-    lines = text[first:last].split("\n")
+    lines = text[position:last].split("\n")
     for number, line in enumerate(lines, span.line):
-        if number == span.line and len(lines) > 1 and line.endswith(f'"{requirement.text}"'):
-            position += len(line) + 1  # only id and text, which the page has already
-            continue
-        content = _marked(line, position, blame)
-        gutter = e("span", {"class": "gutter", "aria-hidden": "true"}, f"{number:>3}  ")
-        block.append(e("span", {"class": "line"}, gutter, *content))
+        has_more = number > span.line or len(lines) == 1
+        if has_more or not line.endswith(f'"{requirement.text}"'):
+            before, failed, after = (part.expandtabs(4) for part in _marked(line, position, blame))
+            yield number, before, failed, after  # else the page has id and text already
         position += len(line) + 1
-    place = f"{span.source.name}:{span.line}"
-    return e("figure", {"class": "source"}, e("figcaption", None, place), block)
 
 
-def _marked(line: str, position: int, blame: Blame | None) -> list[Child]:
-    """A line that starts at `position` of the text, in three parts if it is to blame."""
+def _marked(line: str, position: int, blame: Blame | None) -> tuple[str, str, str]:
+    """A line that starts at `position` of the text, cut where its blame starts and ends."""
     if blame is None:
-        return [line]
+        return line, "", ""
     start = min(max(blame.start - position, 0), len(line))
     end = min(max(blame.end - position, 0), len(line))
     if not line[start:end].strip():
-        return [line]
-    failed = e("mark", {"title": "this part failed"}, line[start:end])
-    return [line[:start], failed, line[end:]]
+        return line, "", ""
+    return line[:start], line[start:end], line[end:]
 
 
 def headline(run: str, panel: Panel, origin: int) -> str:

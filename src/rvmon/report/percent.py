@@ -1,4 +1,4 @@
-"""Percentages that never claim more than is so."""
+"""Figures for people: counts of things, and percentages that never claim more than is so."""
 
 from __future__ import annotations
 
@@ -34,3 +34,21 @@ def percent_text(part: float, whole: float) -> str:
     if rounded == 0:
         return "< 1 %"
     return "> 99 %" if rounded == 100 else f"{rounded} %"
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "test"), counted(2000, "test")
+    ('1 test', '2,000 tests')
+    """
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
+
+
+def share_text(share: float) -> str:
+    """A share for people, that claims neither none nor all where that is not so.
+
+    >>> share_text(0.99999), share_text(0.5)
+    ('> 99 %', '50 %')
+    """
+    return percent_text(share, 1)

@@ -6,17 +6,24 @@ import math
 import xml.etree.ElementTree as ET
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import groupby, islice
 
-from rvmon.report.markup import Child, data, e, page
-from rvmon.report.panel_html import headline, panel_section
-from rvmon.report.panels_of import opening, panel_id, panels_of
-from rvmon.report.run_page import Panel, RunPage
+from rvmon.report.markup import e
+from rvmon.report.pages import render
+from rvmon.report.panel_html import (
+    has_unknown,
+    headline,
+    panel_timeline,
+    parts_timeline,
+    spec_lines,
+)
+from rvmon.report.panels import Panel, RunPage, opening, panel_id, panels_of
 from rvmon.report.scene import Outline, Scene
-from rvmon.report.style import MARKS
 from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Track, TrackKind
-from rvmon.report.view import View, whole_run
+from rvmon.report.view import View, moment, whole_run
+from rvmon.report.wording import forecast_sentence
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.report import Report
@@ -90,50 +97,86 @@ MOST_DRAWN = 5_000
 """Attempts per requirement and verdict that are drawn: each is explained when it is looked at."""
 
 
-def overview(content: RunPage, panels: Sequence[Panel], view: View) -> ET.Element:
-    """A row per requirement, the worst first, which leads to its worst attempt.
+def run_page(content: RunPage) -> str:
+    """Write the page of a run.
 
-    Args:
-        content: of the page.
-        panels: that it shows.
-        view: the whole run.
+    Without a script it shows all attempts one below the other; the script shows one at a time,
+    moves the cursor and plays the scene. An address that ends in `#R2` opens on requirement R2.
     """
-    report = content.run.report
-    worst: dict[str, Panel] = {}
-    for panel in sorted(panels, key=lambda one: WORST_FIRST.index(one.verdict)):
-        worst.setdefault(panel.requirement, panel)
-    rows: list[Child] = [
-        _row(report, name, worst[name].id, view)
-        for name in sorted(worst, key=lambda name: WORST_FIRST.index(report.verdicts[name]))
-    ]
-    marks = (e("div", {"class": "here"}), e("div", {"class": "cursor"}))
-    overlay = e("div", {"class": "overlay"}, *marks)
-    timeline = e("div", {"class": "timeline"}, *rows, axis_row(view, report.origin), overlay)
-    back = e("a", {"class": "back", "href": content.back}, "← all tests") if content.back else None
+    report, samples, scene = content.run.report, content.run.samples, content.scene
+    panels = panels_of(content)
+    requirement, attempt = opening(report)
+    first = next(panel for panel in panels if panel.id == panel_id(requirement, attempt))
+    view = whole_run(report, samples[0].t if samples else report.origin)
     cut = [
         name
         for name, counts in report.counts.items()
-        if any(count > MOST_DRAWN for count in counts.values())
+        if any(n > MOST_DRAWN for n in counts.values())
     ]
-    sentence = f"Of {', '.join(cut)} the first {MOST_DRAWN:,} attempts of each verdict are drawn."
-    note = e("p", {"class": "soft"}, sentence) if cut else None
-    box = e("div", {"class": "all"}, timeline)
-    return e("nav", {"aria-label": "requirements"}, back, box, note)
+    return render(
+        "run.html",
+        title=headline(content.run.name, first, report.origin).replace("`", ""),
+        spec=content.spec,
+        run=content.run,
+        report=report,
+        back=content.back,
+        rows=_rows(report, panels, view),
+        axis=axis_row(view, report.origin),
+        cut=cut,
+        most_drawn=MOST_DRAWN,
+        panels=panels,
+        first=first,
+        timeline_of=lambda panel: panel_timeline(
+            panel, content.spec.requirements[panel.requirement], report
+        ),
+        parts_of=lambda panel: parts_timeline(panel, report),
+        siblings=partial(_siblings, panels, report),
+        scene=None if scene is None else scene_svg(scene, first.instant),
+        command=content.command,
+        facts=content.facts,
+        script=script_data(content, panels, view),
+        distinct=dict.fromkeys,
+        forecast_sentence=forecast_sentence,
+        has_unknown=has_unknown,
+        headline=headline,
+        in_words=_in_words,
+        moment=moment,
+        spec_lines=spec_lines,
+    )
 
 
-def _row(report: Report, name: str, address: str, view: View) -> ET.Element:
-    verdict = report.verdicts[name]
-    sign = e("span", {"class": "letter"}, f" {verdict.value} {MARKS[verdict].sign}")
-    bars = (
-        e("span", {"class": "bar", "data-verdict": shown.value, "style": place_of(left, width)})
-        for left, width, shown in _bars(report, name, view)
-    )
-    return e(
-        "a",
-        {"class": "row", "href": f"#{address}", "data-verdict": verdict.value},
-        e("span", {"class": "name"}, e("b", None, name), sign),
-        e("span", {"class": "plot"}, *bars),
-    )
+Bar = tuple[str, Verdict]
+"""The style of an attempt's place, and its verdict."""
+
+
+def _rows(
+    report: Report, panels: Sequence[Panel], view: View
+) -> list[tuple[str, Panel, list[Bar]]]:
+    """A row per requirement, the worst first, which leads to its worst attempt."""
+    worst: dict[str, Panel] = {}
+    for panel in sorted(panels, key=lambda one: WORST_FIRST.index(one.verdict)):
+        worst.setdefault(panel.requirement, panel)
+    names = sorted(worst, key=lambda name: WORST_FIRST.index(report.verdicts[name]))
+    return [
+        (
+            name,
+            worst[name],
+            [(place_of(left, width), shown) for left, width, shown in _bars(report, name, view)],
+        )
+        for name in names
+    ]
+
+
+def _siblings(panels: Sequence[Panel], report: Report, panel: Panel) -> tuple[list[Panel], int]:
+    """The attempts of a panel's requirement on the page, and how many are not shown."""
+    own = [one for one in panels if one.requirement == panel.requirement and one.attempt]
+    return own, max(sum(report.counts[panel.requirement].values()) - len(own), 0)
+
+
+def _in_words(value: Scalar) -> str:
+    if value is None:
+        return "unknown"
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float, Verdict]]:
@@ -153,71 +196,6 @@ def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float,
         if shown is not None:
             yield at / PLACES, count / PLACES, shown
         at += count
-
-
-def run_page(content: RunPage) -> str:
-    """Write the page of a run.
-
-    Without a script it shows all attempts one below the other; the script shows one at a time,
-    moves the cursor and plays the scene. An address that ends in `#R2` opens on requirement R2.
-    """
-    panels = panels_of(content)
-    requirement, attempt = opening(content.run.report)
-    first = next(panel for panel in panels if panel.id == panel_id(requirement, attempt))
-    sections = [panel_section(panel, panels, content) for panel in panels]
-    samples = content.run.samples
-    view = whole_run(content.run.report, samples[0].t if samples else content.run.report.origin)
-    sentence = headline(content.run.name, first, content.run.report.origin)
-    body = (
-        overview(content, panels, view),
-        e("main", {"data-open": first.id}, *sections, _aside(content, first)),
-        data("run", script_data(content, panels, view)),
-    )
-    return page(sentence.replace("`", ""), body, styles=["base.css", "run.css"], scripts=["run.js"])
-
-
-def _aside(content: RunPage, first: Panel) -> ET.Element:
-    parts: list[Child] = []
-    if content.scene is not None:
-        parts.append(e("figure", {"class": "scene"}, scene_svg(content.scene, first.instant)))
-    parts.append(
-        e(
-            "div",
-            {"class": "command"},
-            e("span", None, "see it again"),
-            e("code", {"id": "command"}, *_words(content.command)),
-            e("button", {"type": "button", "class": "copy"}, "copy"),
-        )
-    )
-    facts: list[Child] = []
-    for name, value in content.facts:
-        facts += [e("dt", None, name), e("dd", None, value)]
-    if facts:
-        parts.append(e("dl", {"class": "facts"}, *facts))
-    parts.append(_health(content))
-    return e("aside", None, *parts)
-
-
-def _words(command: str) -> list[Child]:
-    """A command that breaks anywhere but within an option."""
-    words: list[Child] = []
-    for word in command.split(" "):
-        words += [e("span", None, word) if word.startswith("-") else word, " "]
-    return words[:-1]
-
-
-def _health(content: RunPage) -> ET.Element | None:
-    findings = []
-    for one in content.run.report.health:
-        times = "" if one.count == 1 else f", {one.count} times"
-        remark = f": {one.remark}" if one.remark else ""
-        findings.append(
-            e("li", None, e("code", None, one.name), f" {one.kind.value}{times}{remark}")
-        )
-    findings += [e("li", None, str(one)) for one in content.run.report.illegal]
-    if not findings:
-        return None
-    return e("div", {"class": "health"}, e("h2", None, "Input health"), e("ul", None, *findings))
 
 
 READ_OUT = 2_000

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import os.path
 import re
-import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from rvmon.report.folder import made
-from rvmon.report.markup import Child, e, page, scroll, with_code
+from rvmon.report.pages import render
+from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
-from rvmon.report.run_page import JudgedRun, RunPage
-from rvmon.report.style import MARKS
-from rvmon.report.table_html import count_cell, legend
 from rvmon.report.terminal import in_short
-from rvmon.results.known import NONE_KNOWN, KnownFailures
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.sample import Sample
+from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
@@ -57,53 +55,54 @@ class Listed:
     error: str = ""
 
 
+class _Cell(NamedTuple):
+    """A verdict in the list, with why it is one."""
+
+    requirement: str
+    verdict: Verdict
+    reason: str | None
+    is_known: bool
+
+
+class _Row(NamedTuple):
+    """A recording's line: what it counts as, what may be typed to find it."""
+
+    one: Listed
+    group: str
+    searched: str
+    why: str
+    cells: Sequence[_Cell]
+
+
 def run_index(spec: CheckedSpec, recordings: Sequence[Listed], known: KnownFailures) -> str:
     """Write the list; without scripts it is whole, but cannot be filtered."""
     places = list(_GROUPS)
-    rows = [(_group(one, known), one) for one in recordings]
-    rows.sort(key=lambda row: (places.index(row[0]), -len(_failed(row[1]))))
-    counts = Counter(group for group, _ in rows)
-    totals = [f"{counts[group]:,} {words}" for group, words in _GROUPS.items() if counts[group]]
-    ids = next((list(one.report.verdicts) for one in recordings if one.report is not None), [])
-    folder = _folder([one.name for one in recordings])
-    titles = (
-        e("th", {"scope": "col", "title": spec.requirements[name].text}, name) for name in ids
-    )
-    head = e("tr", None, e("th", {"scope": "col"}, "recording"), *titles)
-    body = e("tbody", None, *(_row(group, one, ids, spec, known, folder) for group, one in rows))
-    table = e("table", {"class": "verdicts"}, e("thead", None, head), body)
-    title = f"{len(recordings):,} recordings, checked against {spec.name}"
-    where = e("p", {"class": "soft"}, "in ", e("code", None, folder)) if folder else None
-    header = e("header", None, e("h1", None, title), e("p", None, ", ".join(totals)), where)
-    return page(
-        title,
-        [
-            header,
-            e("section", None, e("h2", None, "Requirements"), _totals(spec, recordings, ids)),
-            e("section", None, e("h2", None, "Recordings"), _filters(counts), scroll(table)),
-            e("footer", None, legend("Verdicts")),
-        ],
-        styles=["base.css", "report.css"],
-        scripts=["index.js"],
+    rows = [_row(one, spec, known) for one in recordings]
+    rows.sort(key=lambda row: (places.index(row.group), -len(_failed(row.one))))
+    counts = Counter(row.group for row in rows)
+    groups = [(group, words, counts[group]) for group, words in _GROUPS.items() if counts[group]]
+    return render(
+        "index.html",
+        title=f"{len(recordings):,} recordings, checked against {spec.name}",
+        totals=[f"{count:,} {words}" for _, words, count in groups],
+        folder=_folder([one.name for one in recordings]),
+        requirements=list(_requirements(spec, recordings)),
+        asked=ASKED,
+        groups=groups,
+        rows=rows,
     )
 
 
-def _totals(spec: CheckedSpec, recordings: Sequence[Listed], ids: Sequence[str]) -> ET.Element:
-    """Of each requirement, how many recordings have which verdict."""
+def _requirements(
+    spec: CheckedSpec, recordings: Sequence[Listed]
+) -> Iterator[tuple[Requirement, Counter[Verdict], str]]:
+    """Each with how many recordings have which verdict, its severity and tags."""
     reports = [one.report for one in recordings if one.report is not None]
-    words = ("requirement", *(verdict.value for verdict in Verdict), "in words")
-    rows = []
-    for name in ids:
+    for name in reports[0].verdicts if reports else ():
         requirement = spec.requirements[name]
-        counts = Counter(report.verdicts[name] for report in reports)
-        cells = (count_cell(verdict, counts[verdict]) for verdict in Verdict)
         about = {"severity": requirement.severity, "tags": ", ".join(requirement.tags)}
         more = "; ".join(f"{word}: {value}" for word, value in about.items() if value)
-        text = e("td", {"class": "text"}, requirement.text, e("div", {"class": "soft"}, more))
-        rows.append(e("tr", None, e("th", {"scope": "row"}, name), *cells, text))
-    head = e("tr", None, *(e("th", {"scope": "col"}, word) for word in words))
-    body = e("tbody", None, *rows)
-    return scroll(e("table", {"class": "verdicts folds"}, e("thead", None, head), body))
+        yield requirement, Counter(report.verdicts[name] for report in reports), more
 
 
 def _folder(names: Sequence[str]) -> str:
@@ -130,62 +129,28 @@ def _group(one: Listed, known: KnownFailures) -> str:
     return next((one.value for one in order if one in verdicts), "P")
 
 
-def _filters(counts: Counter[str]) -> ET.Element:
-    """What a script makes use of; it is hidden where there is none."""
-    boxes = [
-        e(
-            "label",
-            None,
-            e("input", {"type": "checkbox", "value": group, "checked": "checked"}),
-            f" {words} ({counts[group]:,})",
-        )
-        for group, words in _GROUPS.items()
-        if counts[group]
-    ]
-    search = e("input", {"type": "search", "placeholder": ASKED, "aria-label": ASKED})
-    count = e("output", {"aria-live": "polite"})
-    return e("form", {"class": "filters", "hidden": "hidden"}, search, *boxes, count)
-
-
-def _row(
-    group: str,
-    one: Listed,
-    ids: Sequence[str],
-    spec: CheckedSpec,
-    known: KnownFailures,
-    folder: str,
-) -> ET.Element:
-    shown = one.name.removeprefix(folder)
-    name: Child = e("a", {"href": one.page}, shown) if one.page else shown
+def _row(one: Listed, spec: CheckedSpec, known: KnownFailures) -> _Row:
     failed = _failed(one)
     asked = [one.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
-    attributes = {"data-group": group, "data-name": " ".join(asked).strip().lower()}
-    first = e("th", {"scope": "row"}, name)
+    why, cells = "", []
     if one.report is None:
-        width = str(max(1, len(ids)))
-        message = in_short(one.error.removeprefix(f"{one.name}: "))
-        place = {"class": "text", "colspan": width, "title": one.error}
-        why = e("td", place, *with_code(f"{_BROKEN}: {message}"))
-        return e("tr", attributes, first, why)
-    failures = known.failures(one.report)
-    expected = known.expected(one.report)
-    cells = [
-        _cell(one, name, expected.get(name, "") if name not in failures else "") for name in ids
-    ]
-    return e("tr", attributes, first, *cells)
+        why = f"{_BROKEN}: {in_short(one.error.removeprefix(f'{one.name}: '))}"
+    else:
+        failures, expected = known.failures(one.report), known.expected(one.report)
+        cells = [
+            _cell(one.report, name, "" if name in failures else expected.get(name, ""))
+            for name in one.report.verdicts
+        ]
+    return _Row(one, _group(one, known), " ".join(asked).strip().lower(), why, cells)
 
 
-def _cell(one: Listed, requirement: str, known: str) -> ET.Element:
-    assert one.report is not None  # noqa: S101 - as only these have cells
-    verdict = one.report.verdicts[requirement]
-    text = f"{verdict.value} {MARKS[verdict].sign}"
-    attributes = {"data-verdict": verdict.value}
+def _cell(report: Report, requirement: str, known: str) -> _Cell:
+    verdict = report.verdicts[requirement]
     reason = f"known: {known}" if known else None
     if reason is None and verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
-        first = next(one.report.of(requirement, verdict), None)
+        first = next(report.of(requirement, verdict), None)
         reason = None if first is None else first.reason
-    link = e("a", {"href": f"{one.page}#{requirement}", "title": reason}, text)
-    return e("td", attributes, link, " known" if known else None)
+    return _Cell(requirement, verdict, reason, bool(known))
 
 
 COMPARED = 10

@@ -7,8 +7,8 @@ from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.report.afterword import forecast_sentence, full_reason, without_attempts
 from rvmon.report.terminal import wrapped
+from rvmon.report.wording import forecast_sentence, full_reason, without_attempts
 from rvmon.spec.checked.goals import BinKind
 from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.time import format_ticks

@@ -7,7 +7,6 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.report.afterword import duration_text
 from rvmon.report.markup import Child, e
 from rvmon.report.style import MARKS
 from rvmon.report.tracks import (
@@ -20,6 +19,7 @@ from rvmon.report.tracks import (
     stretches,
 )
 from rvmon.report.view import View, moment, round_instants, with_moments
+from rvmon.report.wording import duration_text
 from rvmon.verdict.attempt import Attempt
 
 WIDTH, HEIGHT = 1000, 100

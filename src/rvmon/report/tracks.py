@@ -6,10 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby, pairwise
+from typing import TYPE_CHECKING, Any
 
 from rvmon.readers.coalesce import updates_in
+from rvmon.readers.held import HeldRecording
 from rvmon.report.view import View
-from rvmon.spec.checked.formula import Binary, Compare, Literal, SignalValue, Unary
+from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.spec.checked.tense import subformulas
@@ -17,6 +19,11 @@ from rvmon.trace.health import Health, HealthKind
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Blame
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.readers.batch import Batch, Cells
 
 
 def concerned_names(requirement: Requirement) -> tuple[str, ...]:
@@ -32,7 +39,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
     """The names that the failed part of a requirement reads; if that is unknown, all it owed."""
     parts = subformulas(requirement.consequent)
-    owed = [part for part in parts if not isinstance(part, Unary | Binary)]
+    owed = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
         atom
         for atom in owed
@@ -213,58 +220,128 @@ _KINDS = {
 }
 
 
+def changes_of(
+    spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
+) -> Mapping[str, Changes]:
+    """By name what each signal and event of a run changed to, whichever requirements read it."""
+    found = {name: Changes(signal.stale_after) for name, signal in spec.signals.items()}
+    found |= {name: Changes(None) for name in spec.events}
+    ignoring = spec.ignoring
+    for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
+        if isinstance(piece, Sample):
+            for name, value in updates_in(piece.values, ignoring).items():
+                if name in found:
+                    found[name].add(piece.t, value, is_signal=name in spec.signals)
+        else:
+            for name, cells in piece.signals.items():
+                found[name].add_cells(piece, cells)
+            for name, events in piece.events.items():
+                found[name].add_occurrences(piece.times, events.says)
+    return found
+
+
 def tracks_of(
     spec: CheckedSpec,
     requirement: Requirement,
-    samples: Sequence[Sample],
+    found: Mapping[str, Changes],
     health: Sequence[Health] = (),
 ) -> tuple[Track, ...]:
-    """The tracks of the signals and events that a requirement reads, in its order."""
-    updates = _updates(spec, samples, concerned_names(requirement))
+    """The tracks of the signals and events that a requirement reads, in its order.
+
+    Args:
+        spec: its specification.
+        requirement: whose names are shown.
+        found: from `changes_of`.
+        health: of the run.
+    """
     absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
     return tuple(
-        _signal_track(spec.signals[name], requirement, seen)
+        _signal_track(spec.signals[name], requirement, found[name])
         if name in spec.signals
-        else Track(name, TrackKind.EVENT, tuple(_occurrences(seen)), absent=name in absent)
-        for name, seen in updates.items()
+        else Track(name, TrackKind.EVENT, tuple(found[name].found), absent=name in absent)
+        for name in concerned_names(requirement)
     )
 
 
-def _updates(
-    spec: CheckedSpec, samples: Iterable[Sample], names: Sequence[str]
-) -> Mapping[str, list[tuple[int, Value]]]:
-    updates: dict[str, list[tuple[int, Value]]] = {name: [] for name in names}
-    for sample in samples:
-        for name, value in updates_in(sample.values, spec.ignoring).items():
-            if name in updates:
-                updates[name].append((sample.t, value))
-    return updates
+class Changes:
+    """What a name changed to, and when.
+
+    Args:
+        stale_after: from when on a value counts as unknown, ticks behind its last update.
+
+    Attributes:
+        found: of a signal its changes, of an event where it may have occurred.
+    """
+
+    def __init__(self, stale_after: int | None) -> None:
+        self._stale_after = stale_after
+        self._last: int | None = None
+        self.found: list[tuple[int, Scalar]] = []
+
+    def add(self, t: int, value: Value, *, is_signal: bool) -> None:
+        """Add an update."""
+        if is_signal:
+            self._add_value(t, _known(value))
+        elif value is not False:
+            self.found.append((t, None if value is None else True))
+
+    def _add_value(self, t: int, known: Scalar) -> None:
+        self._grow_stale(t)
+        if not self.found or self.found[-1][1] != known:
+            self.found.append((t, known))
+        self._last = t
+
+    def _grow_stale(self, t: int | None) -> None:
+        """See whether the value is stale before an instant, or the end."""
+        if self._stale_after is None or self._last is None or self.found[-1][1] is None:
+            return
+        stale_at = self._last + self._stale_after + 1
+        if t is None or t > stale_at:
+            self.found.append((stale_at, None))
+
+    def add_cells(self, batch: Batch, cells: Cells) -> None:
+        """Add what rows say of a signal."""
+        import numpy as np
+
+        from rvmon.readers.batch_notes import last_said, unknown_in
+
+        rows = last_said(batch, cells)
+        times, values = batch.times[rows], cells.values[rows]
+        unknown = unknown_in(cells)
+        hidden = np.zeros(len(rows), bool) if unknown is None else unknown[rows]
+        differs = (values[1:] != values[:-1]) & ~(hidden[1:] & hidden[:-1])
+        differs |= hidden[1:] != hidden[:-1]
+        if self._stale_after is not None:
+            differs |= np.diff(times) > self._stale_after + 1
+        for row in [0, *(np.flatnonzero(differs) + 1).tolist()] if len(rows) else ():
+            if row:
+                self._last = int(times[row - 1])
+            value = values[row].item() if cells.labels is None else cells.labels[values[row]]
+            self._add_value(int(times[row]), None if hidden[row] else value)
+        if len(rows):
+            self._last = int(times[-1])
+
+    def add_occurrences(self, times: NDArray[Any], says: NDArray[Any]) -> None:
+        """Add what rows say of an event: of one instant the surest."""
+        from rvmon.readers.batch import UNKNOWN, YES
+
+        may = (says == UNKNOWN) | (says == YES)
+        found: dict[int, Scalar] = {}
+        for t, said in zip(times[may].tolist(), says[may].tolist(), strict=True):
+            found[t] = True if said == YES else found.get(t)
+        self.found += found.items()
+
+    def ended(self) -> tuple[tuple[int, Scalar], ...]:
+        """The changes of a signal, when all was added."""
+        self._grow_stale(None)
+        return tuple(self.found)
 
 
-def _occurrences(updates: Iterable[tuple[int, Value]]) -> Iterator[tuple[int, Scalar]]:
-    for t, value in updates:
-        if value is not False:
-            yield t, None if value is None else True
-
-
-def _signal_track(
-    signal: Signal, requirement: Requirement, updates: Sequence[tuple[int, Value]]
-) -> Track:
-    changes: list[tuple[int, Scalar]] = []
-    for index, (t, value) in enumerate(updates):
-        known = _known(value)
-        if not changes or changes[-1][1] != known:
-            changes.append((t, known))
-        if signal.stale_after is not None:
-            stale_at = t + signal.stale_after + 1
-            if known is not None and (
-                index + 1 == len(updates) or updates[index + 1][0] > stale_at
-            ):
-                changes.append((stale_at, None))
+def _signal_track(signal: Signal, requirement: Requirement, changes: Changes) -> Track:
     return Track(
         signal.name,
         _KINDS[signal.type.kind],
-        tuple(changes),
+        changes.ended(),
         signal.type.unit,
         thresholds(requirement, signal.name),
     )

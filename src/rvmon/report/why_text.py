@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from rvmon.explain.dissect import Anatomy, Strand
 from rvmon.explain.spans import Spans
-from rvmon.report.afterword import forecast_sentence, with_afterword
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import wrapped
+from rvmon.report.wording import forecast_sentence, with_afterword
 from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.time import format_ticks
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 
+from rvmon.starter.course import Course
+from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
 
@@ -57,6 +60,7 @@ class Column:
         first: the instant of the first update, ticks; `None` if there was none.
         gaps_in_value: whether it is unknown somewhere: at the first sample, or by a value.
         instants: of an event its occurrences, of a truth value where it became true; ticks.
+        course: how it goes over time.
     """
 
     name: str
@@ -71,11 +75,17 @@ class Column:
     first: int | None = None
     gaps_in_value: bool = False
     instants: tuple[int, ...] = ()
+    course: Course = field(default_factory=lambda: Course(0))
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether it is a number, and nowhere an infinite one."""
+        return self.low is not None and self.high is not None and isfinite(self.high - self.low)
 
     @property
     def changes(self) -> bool:
-        """Whether it is a number that is not always the same."""
-        return self.low is not None and self.low != self.high
+        """Whether it is such a number, and not always the same."""
+        return self.is_finite and self.low != self.high
 
     @property
     def is_event(self) -> bool:
@@ -95,6 +105,7 @@ class Profile:
         end: the last instant, ticks.
         samples: how many.
         lateness: how far its time goes backwards at most, ticks; 0 if it is in order.
+        outages: what it lost, as far as it says so.
     """
 
     path: str
@@ -104,3 +115,4 @@ class Profile:
     end: int
     samples: int
     lateness: int
+    outages: tuple[Outage, ...] = ()

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from rvmon.errors import TraceError
 from rvmon.readers.recording import FileRecording
-from rvmon.starter.column import Column, Profile, Shape
+from rvmon.starter.column import Column, Profile, Shape, Shapes
+from rvmon.starter.course import Course
 from rvmon.starter.shapes import shapes_of
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Kind, Schema
@@ -50,11 +51,41 @@ def profile_of(path: str, time: str | None = None) -> Profile:
         {name: shape.fields for name, shape in shapes.declared.items() if shape.kind is None},
         stamps=stamps,
     )
+    return followed(FileRecording(path, schema, ordered=False), shapes)
+
+
+def bound_profile(path: str, schema: Schema) -> Profile:
+    """Look over what a recording says of the names that are declared; errors as of `profile_of`."""
+    recording = FileRecording(path, schema, ordered=False)
+    kinds: dict[str, Kind | None] = {**schema.signals, **dict.fromkeys(schema.events)}
+    there = {
+        name: Shape(kind, (), schema.events.get(name, {}), schema.units.get(name, ""))
+        for name, kind in kinds.items()
+        if recording.names is None or name in recording.names
+    }
+    absent = dict.fromkeys((name for name in kinds if name not in there), "nothing feeds it")
+    return followed(recording, Shapes(there, absent))
+
+
+def followed(recording: FileRecording, shapes: Shapes) -> Profile:
+    """Follow names from sample to sample.
+
+    Args:
+        recording: has these names; it is read once.
+        shapes: what they are.
+
+    Raises:
+        TraceError: it cannot be read, or none of them has a value.
+    """
+    path = recording.path
     followed = {name: _Followed(shape) for name, shape in shapes.declared.items()}
     start = end = samples = 0
-    recording = FileRecording(path, schema, ordered=False)
     for sample in recording:
-        start, end = (start if samples else sample.t), sample.t
+        if not samples:
+            start = sample.t
+            for one in followed.values():
+                one.course.start = start
+        end = sample.t
         samples += 1
         for name, one in followed.items():
             one.take(sample.t, sample.values.get(name, _NOTHING), first=samples == 1)
@@ -64,7 +95,8 @@ def profile_of(path: str, time: str | None = None) -> Profile:
     left_out = {**shapes.left_out, **silent}
     if not kept:
         raise TraceError(f"{path}: no signal or event is found ({_reasons(left_out)})")
-    return Profile(path, kept, left_out, start, end, samples, recording.rows.lateness)
+    late, outages = recording.rows.lateness, tuple(recording.outages)
+    return Profile(path, kept, left_out, start, end, samples, late, outages)
 
 
 def _reasons(left_out: Mapping[str, str]) -> str:
@@ -103,6 +135,7 @@ class _Followed:
         self.before = False
         self.runs_are_single = True
         self.silent = 0
+        self.course = Course(0)
 
     def take(self, t: int, value: Value, *, first: bool) -> None:
         if value is _NOTHING:
@@ -114,10 +147,11 @@ class _Followed:
         self.first = t if self.first is None else self.first
         self.last = t
         self.updates += 1
+        self.course.note(t, value)
         match value:
             case bool():
                 self._truth(t, value)
-            case int() | float() if math.isfinite(value):
+            case int() | float() if value == value:
                 self.low, self.high = min(self.low, value), max(self.high, value)
             case None | float():
                 self.unknown = True
@@ -172,4 +206,5 @@ class _Followed:
             self.first,
             self.unknown,
             tuple(self.instants),
+            self.course,
         )

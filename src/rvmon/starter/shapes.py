@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from io import TextIOWrapper
 from typing import Any
 
@@ -11,16 +12,18 @@ import msgspec
 
 from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
+from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.places import local_path, opened
 from rvmon.readers.recording import format_of, messages_of
-from rvmon.starter.column import Shapes
+from rvmon.starter.column import Shape, Shapes
 from rvmon.starter.messages import message_shapes
 from rvmon.starter.seen import Seen, shapes_seen
-from rvmon.trace.schema import Stamps
+from rvmon.trace.schema import Kind, Stamps
+from rvmon.units import UnknownUnitError, parse_unit
 
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
@@ -42,7 +45,8 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     try:
         if form == "parquet":
             return _of_parquet(path, stamps)
-        with opened(path) as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
+        source = opened_as_csv(path, stamps) if form == "csv" else opened(path)
+        with source as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
             look = _of_csv if form == "csv" else _of_json
             return look(bounded_lines(text), path, stamps)
     except OSError as error:
@@ -60,14 +64,32 @@ def _of_csv(text: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:
         _, header = next(rows)
     except StopIteration:
         raise TraceError("is empty: expected a header with a time column `t`") from None
+    named = [name_and_unit(column) for column in header]
+    names = [
+        column if name in header else name for (name, _), column in zip(named, header, strict=True)
+    ]
     if stamps is None:
-        _require_time(header, path)
+        _require_time(names, path)
     columns = [Seen() for _ in header]
     for _, row in rows:
         for seen, cell in zip(columns, row, strict=False):
             if cell:
                 seen.add_text(cell)
-    return shapes_seen(_without_time(dict(zip(header, columns, strict=True)), stamps))
+    found = shapes_seen(_without_time(dict(zip(names, columns, strict=True)), stamps))
+    units = dict(named)
+    declared = {
+        name: replace(shape, unit=units[name] if _is_measured(shape, units.get(name, "")) else "")
+        for name, shape in found.declared.items()
+    }
+    return replace(found, declared=declared)
+
+
+def _is_measured(shape: Shape, unit: str) -> bool:
+    """Whether a number has a unit that is one."""
+    try:
+        return bool(unit) and shape.kind is Kind.REAL and parse_unit(unit) is not None
+    except UnknownUnitError:
+        return False
 
 
 def _of_parquet(path: str, stamps: Stamps | None) -> Shapes:

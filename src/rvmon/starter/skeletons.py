@@ -81,13 +81,13 @@ def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
 
 def _others(profile: Profile) -> Iterator[Skeleton]:
     """What can be said of any recording."""
-    yield from (_range(column) for column in profile.columns if column.low is not None)
+    yield from (_range(column) for column in profile.columns if column.is_finite)
     yield from (_happens(column, profile) for column in profile.columns if column.instants)
     yield from (_ever(column) for column in profile.columns)
 
 
 def _responses(columns: Sequence[Column]) -> Iterator[Skeleton]:
-    """The pair of which the second follows the first always, and soonest."""
+    """The pair of which the second follows the first always, and earliest."""
     candidates = [column for column in columns if column.instants][:MOST_CANDIDATES]
     found = []
     for trigger in candidates:

@@ -11,6 +11,7 @@ from rvmon.timed.model.expressions import Variable
 from rvmon.timed.model.network import Network
 from rvmon.timed.observation.outcome import Observation
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
+from rvmon.timed.runs.statistics import ERROR, Sampled
 from rvmon.timed.search.outcome import Outcome
 from rvmon.timed.search.suite import Suite, item_text
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -152,6 +153,14 @@ def suite_data(network: Network, suite: Suite) -> dict[str, Any]:
         "missing": [item_text(network, item, criterion) for item in suite.missing],
         "remark": suite.stopped,
     }
+
+
+def sampled_data(one: Sampled) -> dict[str, Any]:
+    """What random runs say of a query, for JSON."""
+    data = {"query": one.query.text, "id": one.query.id, "runs": one.runs, "value": one.value}
+    if one.margin is not None:
+        return {**data, "holds": one.holds, "error": ERROR, "margin": one.margin}
+    return {**data, "low": one.low, "high": one.high, "confidence": 1 - ERROR}
 
 
 def outcome_data(network: Network, outcome: Outcome) -> dict[str, Any]:

@@ -135,11 +135,13 @@ class Binding:
         bounds: by declared name.
         clock: which stamps count.
         definitions: texts of message definitions by type, for recordings that bring none along.
+        robot: what stands for `*` in the names of topics; empty: what the recording has.
     """
 
     bounds: Mapping[str, Bound] = field(default_factory=dict)
     clock: Clock = Clock.LOG
     definitions: Mapping[str, str] = field(default_factory=dict)
+    robot: str = ""
 
 
 BY_NAME = Binding()

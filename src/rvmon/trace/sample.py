@@ -51,6 +51,23 @@ class Sample:
     values: Mapping[str, Value]
 
 
+@dataclass(frozen=True, slots=True)
+class Outage:
+    """A stretch of a recording in which names were lost.
+
+    Attributes:
+        since: its first instant, ticks.
+        until: its last one.
+        why: it is one.
+        names: that were lost; `None`: all.
+    """
+
+    since: int
+    until: int
+    why: str
+    names: frozenset[str] | None = None
+
+
 class Recording(Protocol):
     """A finished trace that can be read once from its start."""
 

@@ -27,11 +27,13 @@ class Stamps:
         column: the name of the column, in JSON lines of the field.
         unit: `s`, `ms`, `us`, `ns`, or `iso` for dates and times of ISO 8601.
         is_stated: whether a person named the unit, or it is what goes without saying.
+        pattern: of dates that are no ISO 8601, as `datetime.strptime` takes it.
     """
 
     column: str
     unit: str
     is_stated: bool = False
+    pattern: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,15 +45,20 @@ _EPOCHS = {"ms": (1e11, 1e14), "us": (1e14, 1e17), "ns": (1e17, 1e20)}
 def stamps_of(text: str) -> Stamps:
     """Read `COLUMN` or `COLUMN:UNIT`; without a unit, a column `…_ns` holds nanoseconds.
 
+    Two columns, `SECONDS+NANOSECONDS`, are one in nanoseconds; a unit may be a pattern of dates.
+
     >>> stamps_of("stamp:ms")
     Stamps(column='stamp', unit='ms', is_stated=True)
     >>> stamps_of("t_ns")
     Stamps(column='t_ns', unit='ns', is_stated=False)
     """
+    column, pattern, rest = text.partition(":%")
+    if pattern:
+        return Stamps(column, "iso", is_stated=True, pattern=f"%{rest}")
     column, colon, unit = text.rpartition(":")
     if colon and unit in UNITS:
         return Stamps(column, unit, is_stated=True)
-    return Stamps(text, "ns" if text.endswith("_ns") else "s")
+    return Stamps(text, "ns" if text.endswith("_ns") or "+" in text else "s")
 
 
 def ticks_of_cell(text: str, stamps: Stamps) -> int:

@@ -19,7 +19,7 @@ from rvmon.cdv.execute import execute
 from rvmon.cdv.plan import plan
 from rvmon.cdv.summarise import summarise
 from rvmon.coverage.record import Ending
-from rvmon.loading import load
+from rvmon.session import load
 from rvmon.verdict.verdict import Verdict
 
 pytestmark = pytest.mark.campaign

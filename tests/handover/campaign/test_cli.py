@@ -43,16 +43,32 @@ def demo(tmp_path_factory):
 
 
 def test_the_page_has_what_the_model_says(demo):
-    """Its claims about all runs, and that runs of the correct robot conform to it."""
+    """Its claims about all runs; the robot plays its edges, and runs of the robot conform to it."""
     page = (demo / "report.html").read_text()
     section = page[page.index("<h2>The model</h2>") :]
-    claims = re.findall(r'<th scope="row">(R\d)</th><td>(\w)</td><td>(\w)</td>', section)
-    assert claims == [(f"R{number}", "T", "T") for number in range(1, 5)]
-    assert re.findall(r"<li>([\w-]+): 1 of 1 run conform", section)[:3] == [
-        "pseudorandom",
-        "constrained",
-        "model-based",
+    claims = re.findall(
+        r'<th scope="row">(R\d)</th><td>(\w)<a href="(\S+)">.*?</td>'
+        r"<td>([\d.]+) % \((\d+)–(\d+) %\)</td><td>(\w)</td>",
+        section.replace("%", " %").replace("  ", " "),
+    )
+    assert [(name, some, every) for name, some, *_, every in claims] == [
+        (f"R{number}", "T", "T") for number in range(1, 5)
     ]
+    assert all((demo / address).exists() for _, _, address, *_ in claims)
+    assert all(float(low) <= float(share) <= float(high) for *_, share, low, high, _ in claims)
+    row = (
+        r'<th scope="row">{} ([\w-]+)</th><td>(\d+)</td><td>(\d+) {}</td>'
+        r'<td class="text">(.*?)</td>'
+    )
+    edges = re.findall(row.format("edges of", "played"), section)
+    assert sum(int(played) for _, _, played, _ in edges) >= 40
+    for _, there_are, played, others in edges:
+        assert int(there_are) - int(played) == others.count(" → ")
+        assert "not shown" not in others
+    runs = re.findall(row.format("runs,", "conform"), section)
+    assert [name for name, *_ in runs][:3] == ["pseudorandom", "constrained", "model-based"]
+    assert all(count == conforming == "1" for _, count, conforming, _ in runs)
+    assert 'title="the witness of R1, played">T</a>' in page
 
 
 def test_the_paper_stands_beside_the_spread_over_seeds(demo):

@@ -13,8 +13,8 @@ from handover.generator.files import directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot import mutants
-from handover.robot.handover import END, HandoverRobot
-from handover.world.measures import contact_force
+from handover.robot.handover import END, HANDOVER_POINT, HandoverRobot
+from handover.world.measures import contact_forces
 from rvmon.cdv.checker import Checker
 
 pytestmark = pytest.mark.campaign
@@ -48,14 +48,6 @@ class SaysReleased(HandoverRobot):
         self.node.publish("released")
         yield self.behaviour.release_s
         return "done"
-
-
-class OpensWhenItWithholds(HandoverRobot):
-    def decide(self):
-        next_state = yield from super().decide()
-        if next_state == "done":
-            self.gripper.open()
-        return next_state
 
 
 class OpensAtDone(HandoverRobot):
@@ -149,6 +141,39 @@ class SaysMore(HandoverRobot):
         return "done"
 
 
+class OpensTwice(HandoverRobot):
+    def release(self):
+        next_state = yield from super().release()
+        self.gripper.open()
+        return next_state
+
+
+class InformsTwice(HandoverRobot):
+    def send_signal(self):
+        next_state = yield from super().send_signal()
+        yield 1.0
+        self.node.publish("informed", latched=True)
+        return next_state
+
+
+class Creeps(HandoverRobot):
+    """Moves six centimetres while it waits, slower than anybody looks."""
+
+    def send_signal(self):
+        x, z = HANDOVER_POINT
+        path = yield from self.arm.plan(x + 0.06, z)
+        next_state = yield from super().send_signal()
+        next(self.arm.follow(self.arm.interpolate(path.goal, 15.0)))
+        return next_state
+
+
+class IgnoresHeight(HandoverRobot):
+    def go_to(self, x, z):
+        _, height = self.sensors.piece()
+        on_table = x != HANDOVER_POINT[0]
+        return (yield from super().go_to(x, z - height + 0.05 if on_table else z))
+
+
 class GivesNoReason(HandoverRobot):
     def give_up(self, reason):
         self.node.publish("timed_out")
@@ -183,8 +208,8 @@ PLANTED = {
     "resets-fast": (other(reset_s=0.9), "released", "T14"),
     "gives-no-time-to-take": (other(release_s=1.9), "released", "T31"),
     "says-released": (SaysReleased, "released", "T5 T6"),
-    "opens-when-it-withholds": (OpensWhenItWithholds, "withheld-no-gaze", "T2 T3 T7 T8"),
-    "drops-what-it-withholds": (OpensWhenItWithholds, "withheld-hand-far", "T1 T9"),
+    "opens-when-it-withholds": (mutants.DropsWhatItWithholds, "withheld-no-gaze", "T2 T3 T7 T8"),
+    "drops-what-it-withholds": (mutants.DropsWhatItWithholds, "withheld-hand-far", "T1 T9"),
     "opens-at-done": (OpensAtDone, "no-posture", "T1 T2 T3 T8 T32"),
     "opens-at-done-after-release": (OpensAtDone, "released", "T32"),
     "grips-again": (GripsAgain, "released", "T6 T12"),
@@ -204,6 +229,11 @@ PLANTED = {
     "gives-no-reason": (GivesNoReason, "no-posture", "T48"),
     "gives-all-reasons": (GivesAllReasons, "hand-in-the-grip", "T49 T50 T51 T52 T53 T54 T56"),
     "sees-a-hand": (GivesAllReasons, "nobody-comes", "T55"),
+    "opens-twice": (OpensTwice, "released", "T61"),
+    "informs-twice": (InformsTwice, "never-ready", "T62"),
+    "creeps": (Creeps, "never-ready", "T60"),
+    "hears-while-it-resets": (other(only_fresh=False), "activated-during-reset", "T18"),
+    "ignores-height": (IgnoresHeight, "piece-stands-high", "T34"),
     "never-decides": (mutants.NeverDecides, "withheld-no-gaze", "T11"),
     "ends-silently": (mutants.EndsSilently, "released", "T19"),
 }
@@ -245,7 +275,7 @@ def test_a_clamped_hand_bears_what_one_finger_presses():
     world = begun(TESTS["hand-hidden-by-noise"]).world
     world.run(17_200_000_000)
     scene = world.scene
-    by_finger = [contact_force(scene.hand, finger) for finger in scene.fingers]
+    by_finger = [contact_forces(scene.hand)[finger] for finger in scene.fingers]
     assert min(by_finger) > 140
     assert world.human.hand_force() == max(by_finger) < sum(by_finger)
 

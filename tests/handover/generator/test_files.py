@@ -47,8 +47,14 @@ TESTS = st.builds(
         dropout=st.just(("gaze",)),
     ),
     scene=st.builds(
-        SceneFaults, st.floats(0.01, 2), st.floats(0, 1), st.floats(0, 1), st.booleans()
+        SceneFaults,
+        st.floats(0.01, 2),
+        st.floats(0, 1),
+        st.floats(0, 1),
+        st.floats(0, 0.1),
+        st.booleans(),
     ),
+    arrives_s=st.none() | st.floats(0, 60),
 )
 
 

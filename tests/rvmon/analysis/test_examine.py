@@ -15,10 +15,10 @@ from rvmon.explain.example import Budget
 from rvmon.explain.search import shortest_examples
 from rvmon.monitor import compile_spec
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.oracle import evaluate
-from rvmon.testing.show import show_spec
 
 SPEC = """
 event a, b, c

@@ -236,7 +236,7 @@ def test_the_same_verdicts_as_of_columns(tmp_path):
             "`unit` is of a signal that",
         ),
         ('[bind.speed]\ntopic="/a"\nvalue="x +"', r"value = 'x \+': found the end"),
-        ('[bind.speed]\ntopic="/a"\nvalue="sin(x)"', "no function `sin` in a value"),
+        ('[bind.speed]\ntopic="/a"\nvalue="sinh(x)"', "no function `sinh` in a value"),
         ('[bind.speed]\ntopic="/a"\nvalue="sqrt(x, y)"', "`sqrt` takes 1 numbers, not 2"),
         (
             '[bind.speed]\ntopic="/a"\nvalue="yaw(x + 1)"',

@@ -13,7 +13,7 @@ from rvmon.cdv.plan import plan
 from rvmon.coverage.database import read
 from rvmon.coverage.hits import count_of, merged
 from rvmon.errors import RvmonError
-from rvmon.loading import load
+from rvmon.session import load
 
 SPEC = """signal speed : real
 requirement L1
@@ -74,6 +74,18 @@ def test_all_models_are_gathered(campaign):
     assert count_of(hits, "both", "yes") == 1
     old = merged([one.outcome.hits for one in results.played if one.job.robot == "old"])
     assert old.keys() == {"states", "transitions", "pairs of transitions"}
+
+
+def test_states_give_transitions_by_themselves(campaign):
+    """From each to each other one; where some are listed, none but these, and the pairs of them."""
+    three = replace(campaign, states=("stands", "moves", "waits"), transitions=None)
+    groups = coverage_model(three, "new").groups
+    assert len(groups["transitions"].items) == 6
+    assert "moves → moves" not in groups["transitions"].items
+    assert not groups["pairs of transitions"].items
+    listed = coverage_model(campaign, "new").groups
+    assert list(listed["transitions"].items) == ["stands → moves", "moves → stands"]
+    assert not coverage_model(replace(three, transitions=()), "new").groups["transitions"].items
 
 
 def test_a_database_and_a_page_each(campaign, tmp_path):

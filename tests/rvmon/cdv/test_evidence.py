@@ -38,7 +38,7 @@ def made(campaign, tmp_path, monkeypatch):
 def verify(capsys, campaign, *words):
     """The exit code of verifying, and what it says."""
     capsys.readouterr()
-    verified = ["evidence", "verify", "e.zip", *words]
+    verified = ["evidence", "e.zip", *words]
     code = main(verified) if campaign is None else cli.main(campaign, verified)
     told = capsys.readouterr()
     return code, told.out + told.err
@@ -80,7 +80,7 @@ def test_only_its_own_program_plays_tests(made, campaign, capsys):
     """`rvmon` checks the rest and says who does; another campaign says that it is none of it."""
     made(1)
     code, told = verify(capsys, None)
-    assert (code, "evidence verify e.zip`" in told) == (2, True)
+    assert (code, "evidence e.zip`" in told) == (2, True)
     code, told = verify(capsys, campaign(robots={"other": cdv.Robot(Reckless, None)}))
     assert (code, "has no robot toy" in told) == (2, True)
 

@@ -43,7 +43,7 @@ def test_the_unmodified_robot_passes(played):
     assert [one["tests"] for one in strategies.values()] == [20, 20, 1]
     assert all(one["statements"]["percent"] == 100 for one in strategies.values())
     root = ET.parse(folder / "junit.xml").getroot()  # noqa: S314 - our own
-    assert len(list(root.iter("testcase"))) == 42
+    assert len(list(root.iter("testcase"))) == 43  # the last: nothing unreachable is hit
     assert not list(root.iter("failure"))
 
 
@@ -83,4 +83,4 @@ def test_a_fault_in_the_robot_fails(tmp_path):
 def test_it_is_small():
     """All of a second robot's testbench."""
     lines = sum(len(path.read_text().splitlines()) for path in EXAMPLE.glob("*.py"))
-    assert lines <= 150
+    assert lines <= 160

@@ -12,7 +12,7 @@ from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import verdict_table
 from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError
-from rvmon.loading import load
+from rvmon.session import load
 
 pytestmark = [
     pytest.mark.process,

@@ -73,3 +73,16 @@ def test_names_of_tests_do_not_steer_a_terminal(campaign, capsys):
     told = capsys.readouterr()
     assert "\x1b" not in told.err + told.out
     assert "[bold]not[/]" in told.err
+
+
+def test_a_requirement_that_no_test_triggers_is_pointed_out(campaign, tmp_path, spec, capsys):
+    """The page leads to a run that says what its trigger lacked; others are not named there."""
+    spec.write_text(
+        f'{spec.read_text()}requirement Far "Up high"\n  upon level >= 50\n  then within 1 s over\n'
+    )
+    assert main(campaign(("low", {"level": 3.0})), ["run", "--jobs", "1", "--out", "out"]) == 0
+    page = (tmp_path / "out/report.html").read_text()
+    told = page.partition("triggered by no test, and so untested: ")[2].partition("</p>")[0]
+    assert told.count("<a ") == 1
+    assert 'href="runs/toy-low.html#Far"' in told
+    capsys.readouterr()

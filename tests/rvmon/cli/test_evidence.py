@@ -1,4 +1,4 @@
-"""`rvmon run --evidence` and `rvmon evidence verify`: what is kept, and what is found to differ."""
+"""`rvmon run --evidence` and `rvmon evidence`: what is kept, and what is found to differ."""
 
 import csv
 import hashlib
@@ -64,7 +64,7 @@ def run(*words, out="e.zip"):
 def verify(capsys, *words):
     """The exit code of verifying, and what it says."""
     capsys.readouterr()
-    code = main(["evidence", "verify", "e.zip", *words])
+    code = main(["evidence", "e.zip", *words])
     told = capsys.readouterr()
     return code, told.out + told.err
 

@@ -174,3 +174,15 @@ def test_stamps_have_a_name_and_a_unit(name, text, time, tmp_path, monkeypatch, 
     assert {"x"} <= set(rvmon.load("made.rv").schema.signals) <= {"x", "t"}
     [command] = [line for line in shown.splitlines() if line.startswith("try:")]
     assert main([*command.split()[2:], "--format", "json"]) == 0
+
+
+def test_a_number_that_is_infinite_somewhere_has_no_range(tmp_path, monkeypatch):
+    """A range of the finite ones would fail on the recording that it was made of."""
+    monkeypatch.chdir(tmp_path)
+    rows = [f"{t / 10},{'-inf' if t == 7 else t % 5},{t % 3}" for t in range(40)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,x,y", *rows, ""]))
+    assert main(["init", "a.csv"]) == 0
+    assert main(["run", "a.rv", "a.csv"]) == 0
+    text = (tmp_path / "a.rv").read_text()
+    assert "y stays in its range" in text
+    assert "x stays in its range" not in text

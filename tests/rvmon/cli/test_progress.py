@@ -5,7 +5,7 @@ from contextlib import redirect_stderr
 
 import pytest
 
-from rvmon.cli import main, progress
+from rvmon.cli import main, output
 
 
 class Screen(io.StringIO):
@@ -25,7 +25,7 @@ def screen(tmp_path, monkeypatch):
         rows = (f'{{"t": {number}, "p": true}}\n' for number in range(9000))
         (tmp_path / f"{name}.jsonl").write_text("".join(rows))
     monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setattr(progress, "PATIENCE_S", 0)
+    monkeypatch.setattr(output, "PATIENCE_S", 0)
     return Screen()
 
 
@@ -48,7 +48,7 @@ def test_a_single_recording_shows_how_far_it_is_read(screen):
 
 def test_short_work_and_files_show_no_bar(screen, monkeypatch):
     """Nothing is in the way of what is told."""
-    monkeypatch.setattr(progress, "PATIENCE_S", 1e9)
+    monkeypatch.setattr(output, "PATIENCE_S", 1e9)
     with redirect_stderr(screen):
         assert main(["run", "s.rv", "one.jsonl", "two.jsonl"]) == 0
     assert screen.getvalue() == ""

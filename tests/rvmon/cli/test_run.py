@@ -106,7 +106,7 @@ def test_severity_and_tags_are_shown_and_kept(files, capsys):
     said = [(one.get("name"), one.get("value")) for one in ET.parse("j.xml").iter("property")]  # noqa: S314
     assert ("severity", "high") in said
     assert [value for name, value in said if name == "tag"] == ["safety", "knocks", "safety"]
-    assert main(["evidence", "verify", "e.zip"]) == 0
+    assert main(["evidence", "e.zip"]) == 0
 
 
 def told(text: str) -> dict:

@@ -121,5 +121,7 @@ def test_a_number_of_many_digits_in_a_file_is_refused(tmp_path):
     """A whole number that is none of 64 bits is an error of the recording."""
     path = tmp_path / "a.csv"
     path.write_text(f"t,x\n0,1\n1,{'9' * 400}\n")
-    with pytest.raises(rvmon.TraceError, match=r"sample at 1 s: `x` is a number too large"):
+    with pytest.raises(
+        rvmon.TraceError, match=r"line 3: column `x`: .* is too large for a whole number"
+    ):
         spec_of("x > 0").evaluate(path, allow_missing=True)

@@ -7,13 +7,14 @@ import re
 import struct
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from enum import IntEnum
 from itertools import product
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from tests.tools.plan_reader import (
+from tests.rvmon.core.plan_reader import (
     HEADER,
     SECTIONS,
     Plan,
@@ -32,7 +33,7 @@ from rvmon.core.measures import Measure
 from rvmon.core.nodes import NodeOp
 from rvmon.core.packed import Packed
 from rvmon.core.plan import pack
-from rvmon.core.programs import DEPTH, Code
+from rvmon.core.programs import DEPTH, OPERATIONS, Code
 from rvmon.core.sections import RECORDS, Section, hash_of
 from rvmon.errors import RvmonError
 from rvmon.monitor.compiled.code_plan import plan_alone
@@ -132,11 +133,11 @@ def test_automata_are_those_of_their_judges():
         if plan is None:
             continue
         read = Plan(pack(plan).data)
-        judges = iter(read.records["JUDGES"])
+        judges, forms = (iter(read.records[name]) for name in ("JUDGES", "FORMS"))
         for part in (plan, *plan.units):
             for (_, rule), judge in zip(part.judges, judges, strict=False):
                 if judge["automaton"] < 0:
-                    form = read.records["FORMS"][judge["form"]]
+                    form = next(forms)
                     assert rule.automaton is None or form["windows"][1] > 1
                 else:
                     assert rule.automaton is not None
@@ -223,6 +224,9 @@ def test_packing_is_deterministic():
     assert len(found) == 1
 
 
+CALCULATED = [SimpleNamespace(name=op.name, value=number) for op, number in OPERATIONS.items()]
+
+
 @pytest.mark.parametrize(
     ("prefix", "numbers"),
     [
@@ -230,11 +234,11 @@ def test_packing_is_deterministic():
         ("ATOM_", AtomOp),
         ("NODE_", NodeOp),
         ("OP_", Operator),
-        ("CODE_", Code),
+        ("CODE_", (*Code, *CALCULATED)),
         ("MEASURE_", Measure),
     ],
 )
-def test_what_c_enumerates_has_the_same_numbers(prefix: str, numbers: type[IntEnum]):
+def test_what_c_enumerates_has_the_same_numbers(prefix: str, numbers: Iterable[IntEnum]):
     """Each name of plan.h is one of ours, with its number."""
     found = {name[len(prefix) :]: n for name, n in enumerators().items() if name.startswith(prefix)}
     assert found == {one.name: one.value for one in numbers}

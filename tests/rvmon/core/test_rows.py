@@ -5,10 +5,10 @@ import random
 
 import numpy as np
 import pytest
+from tests.rvmon.core.tables import planned_for, random_table, rows_differ
 from tests.tools.compare import differences
 from tests.tools.forms import Compiler
 from tests.tools.law import judge
-from tests.tools.tables import planned_for, random_table, rows_differ
 
 import rvmon
 from rvmon.testing.case import Case
@@ -45,7 +45,7 @@ def test_without_a_declared_column_all_is_unknown(form, tmp_path):
         parquet = pytest.importorskip("pyarrow.parquet")
         table, trace = arrow.table(trace), tmp_path / "a.parquet"
         parquet.write_table(table, trace)
-    with pytest.raises(rvmon.MissingNameError, match="`e`, read by R1"):
+    with pytest.raises(rvmon.errors.MissingNameError, match="`e`, read by R1"):
         spec.evaluate(trace)
     report = spec.evaluate(trace, allow_missing=True)
     assert report.verdicts == {"R1": "I"}

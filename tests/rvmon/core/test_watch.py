@@ -5,8 +5,8 @@ import struct
 from dataclasses import replace
 
 import pytest
+from tests.rvmon.core.plan_reader import Plan, layouts
 from tests.tools.coverage import with_random_coverage
-from tests.tools.plan_reader import Plan, layouts
 from tests.tools.watched import truths_plan
 
 import rvmon

@@ -7,15 +7,15 @@ from tests.tools import build
 
 from rvmon.explain.dissect import dissect
 from rvmon.explain.spans import both, outside, union
-from rvmon.explain.truths import Eye, subformulas
+from rvmon.explain.truths import Eye, look_through, parts_of, subformulas
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.case import show_case
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-from rvmon.testing.law.kleene import Truth
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Truths
-from rvmon.testing.show import show_case
+from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.verdict import Verdict
@@ -45,11 +45,12 @@ def test_subformulas_have_the_truth_of_the_oracle(time, seed):
         end = max(samples[-1].t, samples[-1].t if case.end is None else case.end)
         word = word_of(spec, samples, end=end, names=case.names)
         attempt = Attempt("R1", 1, samples[0].t, None, Verdict.INCONCLUSIVE)
-        eye = Eye(spec, requirement, samples, end, attempt, case.names)
+        seen = look_through(spec, [parts_of(requirement, attempt)], samples, end, case.names)
+        eye = Eye(requirement, attempt, seen)
         truths = Truths(word, {})
         for _, formula in subformulas(requirement.consequent, 0):
-            seen = eye.truth(formula)
-            sure, may = seen.sure, seen.may
+            found = eye.truth(formula)
+            sure, may = found.sure, found.may
             for i, letter in enumerate(word.letters):
                 shown = _shown(sure, may, letter.instant)
                 assert shown is truths.truth(formula, i), (show_case(case), formula, letter.instant)

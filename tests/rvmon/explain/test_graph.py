@@ -11,8 +11,8 @@ from rvmon.explain.example import Budget
 from rvmon.explain.graph import ANY, cubes_of, graph_of
 from rvmon.explain.search import shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
+from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.show import show_spec
 
 pytestmark = pytest.mark.law
 

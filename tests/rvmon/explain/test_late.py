@@ -3,7 +3,8 @@
 import pytest
 
 import rvmon
-from rvmon.explain.late import late_arrivals
+from rvmon.explain.late import late_in, waits_of
+from rvmon.explain.truths import look_through
 from rvmon.trace.sample import Sample
 
 SECOND = 10**9
@@ -68,7 +69,7 @@ def test_what_came_too_late_is_found_with_its_instant(name, time):
     spec = rvmon.loads(HEAD.format(time=time) + text + "\n")
     samples = [Sample(round(t * SECOND), values) for t, values in rows]
     report = spec.evaluate(rows)
-    found = late_arrivals(
-        spec.checked, spec.requirements["R"], report.attempts, samples, report.end
-    )
+    waits = waits_of(spec.requirements["R"], report.attempts)
+    seen = look_through(spec.checked, waits.values(), samples, report.end)
+    found = late_in(report.attempts, waits, seen)
     assert found == {number: round(t * SECOND) for number, t in expected.items()}

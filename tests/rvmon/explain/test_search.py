@@ -9,9 +9,9 @@ import rvmon
 from rvmon.explain.example import Budget
 from rvmon.explain.search import difference_of, shortest_examples, verdict_of
 from rvmon.monitor import compile_spec
+from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.oracle import evaluate
-from rvmon.testing.show import show_spec
 
 pytestmark = pytest.mark.law
 

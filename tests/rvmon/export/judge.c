@@ -37,8 +37,8 @@ static void read_note(const rv_monitor *m, const rv_record *record)
         for (i = 0; i < note.count; i++) {
             sum = sum ^ note.words[i];
         }
-        for (i = 0; i < note.standing_count; i++) {
-            sum = sum ^ note.standing[i];
+        for (i = 0; i < note.state_count; i++) {
+            sum = sum ^ note.state[i];
         }
         while (piece != NULL) {
             int32_t count;

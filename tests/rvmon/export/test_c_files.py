@@ -6,8 +6,8 @@ import subprocess
 from itertools import islice
 
 import pytest
+from tests.rvmon.export.exported import HEAP, Exported
 from tests.tools.differential import cases_of
-from tests.tools.exported import HEAP, Exported
 from tests.tools.hostile import FORGERIES, hostile_names
 
 import rvmon

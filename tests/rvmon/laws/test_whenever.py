@@ -15,9 +15,9 @@ from rvmon.spec.checked.formula import Compare, Formula, SignalAtom
 from rvmon.spec.checked.specification import Mode
 from rvmon.spec.checked.tense import subformulas
 from rvmon.testing.case import Case
+from rvmon.testing.generate.choices import signals
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.testing.generate.vocabulary import signals
-from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.strategies import specs, traces
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report

@@ -159,7 +159,7 @@ def test_what_a_connection_lost_is_unknown_until_it_is_back(knocks_at, expected)
         door.driver.offer({"knock": True})
     door.at(3)
     door.driver.found()
-    door.clock.set_ns(3 * S + 1)
+    door.clock.set_ns(3 * S + 2)
     if knocks_at == 3:
         door.driver.offer({"knock": True})
     door.at(9)

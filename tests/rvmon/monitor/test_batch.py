@@ -78,7 +78,7 @@ def test_the_time_column_is_no_signal(tmp_path):
     spec = rvmon.loads("spec s\nsignal t : real\nrequirement R1\n  always t < 5\n")
     table = {"t": np.array([0.0, 1.0])}
     (tmp_path / "a.csv").write_text("t\n0\n1\n")
-    with pytest.raises(rvmon.MissingNameError, match="`t`, read by R1"):
+    with pytest.raises(rvmon.errors.MissingNameError, match="`t`, read by R1"):
         spec.evaluate(table)
     reports = [
         spec.evaluate(trace, allow_missing=["t"])

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from tests.tools.python_abi import HEADER, comparison, declared
+from tests.rvmon.native.python_abi import HEADER, comparison, declared
 
 import rvmon.native
 import rvmon.native.sources

@@ -1,19 +1,17 @@
 """Files read in pieces of columns: the same report as sample by sample."""
 
 import random
-import sys
+from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pytest
+from tests.tools.csv_rows import samples_of_csv
 
 import rvmon
-from rvmon.readers import csv_batch, line_chunks, recording
+from rvmon.readers import line_chunks
 from rvmon.readers import parquet as parquet_module
 from rvmon.readers.batch import Batch
-from rvmon.readers.decimals import Cells, decimals, instants, whole_numbers
 from rvmon.readers.source import Source
-from rvmon.trace.time import ticks_of_text
 
 SPEC = """
 spec watch "A base"
@@ -31,12 +29,6 @@ requirement R2 "b"
 requirement R3 "c"
   always (count >= 3 -> within 1 s (count < 1 or stop))
 """
-
-
-@pytest.fixture(autouse=True)
-def none_is_tiny(monkeypatch):
-    """Little text is read in columns, too."""
-    monkeypatch.setattr(recording, "TINY", 0)
 
 
 def csv_text(seed: int, rows: int = 2000) -> str:
@@ -58,7 +50,7 @@ def by_rows(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Repor
     """The report of the slow way, on the samples up to an instant."""
     opened = spec.recording(path)
     monitor = spec.monitor(sources=opened.names)
-    for sample in opened:
+    for sample in samples_of_csv(spec, path) if path.suffix == ".csv" else opened:
         if end is None or sample.t <= end:
             monitor.step_ns(sample.t, sample.values)
     return monitor.finish_ns(end)
@@ -71,16 +63,10 @@ def in_columns(spec: rvmon.Spec, path: Path, end: int | None = None) -> rvmon.Re
     return spec.judge(Source(spec.recording(path), end, is_cut=True))
 
 
-@pytest.fixture(params=["numpy", "arrow"])
-def cut_into(request, monkeypatch):
-    """Has files read in pieces of so many bytes, by NumPy or by Arrow."""
-
-    def cut(size):
-        monkeypatch.setattr(line_chunks, "BLOCK", size)
-        if request.param == "arrow":
-            monkeypatch.setattr(csv_batch, "LARGE", size)
-
-    return cut
+@pytest.fixture
+def cut_into(monkeypatch):
+    """Has files read in pieces of so many bytes."""
+    return partial(monkeypatch.setattr, line_chunks, "BLOCK")
 
 
 @pytest.mark.law
@@ -185,10 +171,10 @@ CELLS = {
 """Files with a cell to be filled in, and what is."""
 
 
-def told(spec: rvmon.Spec, path: Path) -> rvmon.Report | str:
+def told(judge, spec: rvmon.Spec, path: Path) -> rvmon.Report | str:
     """What is said of a file, or of its fault."""
     try:
-        return spec.evaluate(path, allow_missing=True)
+        return judge(spec, path)
     except rvmon.TraceError as error:
         return str(error)
 
@@ -197,38 +183,13 @@ def told(spec: rvmon.Spec, path: Path) -> rvmon.Report | str:
 @pytest.mark.parametrize(
     "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
 )
-def test_a_large_file_is_read_as_a_small_one(text, tmp_path, monkeypatch):
-    """Whatever Arrow takes for a number, or does not: report and errors are those of rows."""
+def test_a_cell_is_read_as_in_rows(text, tmp_path):
+    """Whatever is taken for a number, or is not: report and errors are those of rows."""
     path = tmp_path / "a.csv"
     path.write_text(text)
     spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    with monkeypatch.context() as patched:
-        patched.setattr(recording, "TINY", 1 << 30)
-        by_rows = told(spec, path)
-    assert told(spec, path) == by_rows
-    monkeypatch.setattr(csv_batch, "LARGE", len(text))
-    assert told(spec, path) == by_rows
-
-
-def test_without_arrow_a_large_file_is_read_too(tmp_path, monkeypatch):
-    """It is not needed for CSV."""
-    (tmp_path / "a.csv").write_text(csv_text(1))
-    spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    expected = spec.evaluate(tmp_path / "a.csv")
-    monkeypatch.setattr(csv_batch, "LARGE", 999)
-    monkeypatch.setitem(sys.modules, "rvmon.readers.csv_arrow", None)
-    assert in_columns(spec, tmp_path / "a.csv") == expected
-
-
-def test_where_memory_is_limited_arrow_is_not_asked(tmp_path, monkeypatch):
-    """It reserves more than `--max-memory` may allow."""
-    resource = pytest.importorskip("resource")
-    (tmp_path / "a.csv").write_text(csv_text(1))
-    spec = rvmon.loads(SPEC.format(time="held", stale=""))
-    monkeypatch.setattr(csv_batch, "LARGE", 999)
-    monkeypatch.setattr("rvmon.readers.csv_arrow.arrow_batch", lambda *_: pytest.fail("it is"))
-    monkeypatch.setattr(resource, "getrlimit", lambda _: (1 << 30, 1 << 30))
-    assert in_columns(spec, tmp_path / "a.csv").verdicts
+    expected = told(by_rows, spec, path)
+    assert told(lambda spec, path: spec.evaluate(path, allow_missing=True), spec, path) == expected
 
 
 @pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
@@ -242,29 +203,3 @@ def test_a_cell_that_rows_refuse_is_refused(text, tmp_path, cut_into):
     (tmp_path / "a.csv").write_text(text.format("a" * 131073))
     with pytest.raises(rvmon.TraceError, match=r"line \d: .*field larger than field limit"):
         spec.evaluate(tmp_path / "a.csv", allow_missing=True)
-
-
-def cells(texts: list[str]) -> Cells:
-    ends = np.cumsum([len(text) for text in texts])
-    joined = np.frombuffer("".join(texts).encode(), np.uint8)
-    return Cells(joined, ends - [len(text) for text in texts], ends)
-
-
-def test_numbers_are_exact():
-    """Decimals are the nearest doubles, seconds the nearest ticks, as read one by one."""
-    rng = random.Random(3)
-    texts = ["0", "-0", "+5", "-0.0", ".5", "5.", "000.250", "999999999999999", "-1.000000001"]
-    for _ in range(500):
-        whole, part = rng.randrange(10 ** rng.randint(1, 6)), rng.randint(0, 9)
-        behind = f".{rng.randrange(10**part):0{part}d}" if part else ""
-        texts.append(f"{rng.choice(['', '-', '+'])}{whole}{behind}")
-    read = decimals(cells(texts))
-    assert read is not None
-    assert [repr(x) for x in read.tolist()] == [repr(float(text)) for text in texts]
-    texts.remove("999999999999999")
-    texts += ["1700000000.123456789", "-1700000000.999999999"]
-    ticks = instants(cells(texts), "s")
-    assert ticks is not None
-    assert ticks.tolist() == [ticks_of_text(text) for text in texts]
-    numbers = ["0", "-7", "+12", "-1700000000123456789", "9223372036854775807"]
-    assert whole_numbers(cells(numbers)).tolist() == [int(text) for text in numbers]

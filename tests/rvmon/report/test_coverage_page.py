@@ -10,7 +10,7 @@ from tests.tools.hostile import hostile_names
 from rvmon.coverage.database import Database
 from rvmon.coverage.model import Group, Item, Subject, combination, group_of, model_of
 from rvmon.coverage.record import TestRecord
-from rvmon.report import coverage_tests
+from rvmon.report import coverage_page as pages
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
 
@@ -136,7 +136,7 @@ def test_what_failed_as_expected_is_not_wrong(door):
 
 def test_of_many_tests_those_have_a_line_that_are_spoken_of(door, monkeypatch):
     """And every link still leads somewhere."""
-    monkeypatch.setattr(coverage_tests, "MOST", 10)
+    monkeypatch.setattr(pages, "MOST", 10)
     for number in range(50):
         record = TestRecord(f"dull-{number}", "week 2", number=number, when=90 * SECOND)
         door.record(record, hits_of(("gaze", "yes")))

@@ -12,7 +12,7 @@ from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
 from rvmon.report.run_html import run_page
 from rvmon.report.run_pages import Listed, run_index
-from rvmon.results.known import NONE_KNOWN
+from rvmon.verdict.known_failures import NONE_KNOWN
 
 
 def test_pages_are_fit_for_everybody(chromium, tmp_path):

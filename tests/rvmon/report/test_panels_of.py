@@ -3,7 +3,7 @@
 import pytest
 
 import rvmon
-from rvmon.report.panels_of import opening
+from rvmon.report.panels import opening
 
 
 def test_a_specification_without_requirements_has_no_page():

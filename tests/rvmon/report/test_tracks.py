@@ -1,17 +1,22 @@
 """What timelines show of signals and events."""
 
+import random
 from itertools import pairwise
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rvmon
+from rvmon.readers import line_chunks
+from rvmon.readers.held import HeldRecording
 from rvmon.report.tracks import (
     PLACES,
     Threshold,
     Track,
     TrackKind,
     blamed_names,
+    changes_of,
     concerned_names,
     occurrences,
     polylines,
@@ -28,7 +33,7 @@ from rvmon.verdict.report import report_of
 from rvmon.verdict.verdict import Verdict
 
 SECOND = 1_000_000_000
-SPEC = rvmon.loads("""
+SPEC_TEXT = """
 spec arm
 signal ok, other : bool input
 signal gap : real [m] input stale after 200 ms
@@ -41,13 +46,14 @@ requirement R1
 requirement R2
   upon ok
   then for 1 s not other
-""").checked
+"""
+SPEC = rvmon.loads(SPEC_TEXT).checked
 R1, R2 = SPEC.requirements.values()
 
 
 def track(name, samples, requirement=R1, health=()):
     """The track of one name."""
-    tracks = tracks_of(SPEC, requirement, samples, health)
+    tracks = tracks_of(SPEC, requirement, changes_of(SPEC, samples), health)
     return next(one for one in tracks if one.name == name)
 
 
@@ -176,3 +182,25 @@ def test_nothing_is_drawn_behind_the_end_of_the_run():
     """A value does not go on when the run is over."""
     pieces = stretches(Track("x", TrackKind.SWITCH, ((0, True),)), View(0, 100), 40)
     assert [(piece.left, piece.right) for piece in pieces] == [(0, 0.4)]
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("seed", range(30))
+def test_held_columns_give_the_tracks_of_samples(seed, tmp_path, monkeypatch):
+    """Values, gaps, staleness, labels and events are those of the samples, wherever blocks end."""
+    rng, t, rows = random.Random(seed), 0, ["t,gap,mode,go,pick,pick.id"]
+    for _ in range(60):
+        t += rng.choice([0, 1, 100_000_000, 200_000_000, 200_000_001, SECOND])
+        gap = rng.choice(["1.0", "2", "nan", ""])
+        mode = rng.choice([*SPEC.signals["mode"].type.labels, ""])
+        cells = [gap, mode, rng.choice(["0", "1", ""]), rng.choice("01"), rng.choice(["3", ""])]
+        rows.append(f"{t // SECOND}.{t % SECOND:09d}," + ",".join(cells))
+    (tmp_path / "a.csv").write_text("\n".join(rows))
+    monkeypatch.setattr(line_chunks, "BLOCK", rng.choice([100, 1 << 20]))
+    recording = rvmon.loads(SPEC_TEXT).recording(tmp_path / "a.csv")
+    held = HeldRecording(recording.pieces(), SPEC.events)
+    assert repr(list(held)) == repr(list(recording))
+    for requirement in (R1, R2):
+        assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks_of(
+            SPEC, requirement, changes_of(SPEC, list(recording))
+        )

@@ -14,7 +14,7 @@ from rvmon.spec.rules.rule import MOST
 from rvmon.spec.syntax.effort import DEEPEST, LARGEST
 from rvmon.spec.syntax.parse import grammar
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, ITEM_WORDS, RESERVED
-from rvmon.units.table import unit_table
+from rvmon.units import unit_table
 
 DOCS = Path(__file__).parents[3] / "docs" / "reference"
 PAGE = (DOCS / "language.md").read_text(encoding="utf-8")

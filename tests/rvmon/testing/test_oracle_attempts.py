@@ -34,7 +34,7 @@ from tests.tools.build import (
 from rvmon.errors import RvmonError
 from rvmon.spec.checked.formula import Captured, Formula
 from rvmon.spec.checked.specification import Capture, ForEach, TimeModel
-from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 from rvmon.verdict.verdict import Verdict

@@ -9,10 +9,10 @@ from tests.tools.law import judge
 
 import rvmon
 from rvmon.spec.checked.specification import Requirement
+from rvmon.testing.case import show_spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.oracle import evaluate
-from rvmon.testing.show import show_spec
 
 NOT_WRITTEN = {"RV022", "RV023", "RV025", "RV042"}
 """What random specs hold and the language refuses: `rate(x)` compared with a number that is not

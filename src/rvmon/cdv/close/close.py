@@ -123,15 +123,15 @@ def close(
                     ended = f"after {budget.seconds:g} s"
     except KeyboardInterrupt:
         ended = INTERRUPTED
-    sizes = {}
+    choices = {}
     for times in range(1, margin + 1):
         found = _smallest(tests, goals, times)
-        sizes[times] = len(found.places)
+        choices[times] = [tests[place].played.job.test.name for place in found.places]
     kept = {*found.places, *_gone_wrong(tests)}
     return Closed(
         tests=tests,
         suite=[one.played for place, one in enumerate(tests) if place in kept],
-        sizes=sizes,
+        choices=choices,
         fewest=found.at_least,
         goals=goals.met + len(goals.open),
         share=goals.share,

@@ -32,6 +32,7 @@ def closed_document(closed: Closed) -> dict[str, object]:
         "suite": [one.job.test.name for one in closed.suite],
         "sizes": closed.sizes,
         "at_least": closed.fewest,
+        "trade": closed.trade,
         "open": [{"goal": goal, "hole": hole} for goal, hole in closed.open.items()],
         "proved": _texts(closed.proved),
         "argued": _texts(closed.argued),

@@ -29,6 +29,39 @@ class Added:
 
 
 @dataclass(frozen=True, slots=True)
+class Choice:
+    """Tests that were chosen in some way, and how many mutants they kill.
+
+    Attributes:
+        times: each goal is shown by so many of them; `None`: by the margin, and they are chosen by
+            mutants as well; 0: they are all that were played.
+        tests: how many.
+        killed: of the mutants that choose.
+        held_out: of those that do not.
+    """
+
+    times: int | None
+    tests: int
+    killed: int
+    held_out: int
+
+
+@dataclass(frozen=True, slots=True)
+class Trade:
+    """What choices of tests cost, in faults that they do not see.
+
+    Attributes:
+        mutants: of the code, that choose.
+        held_out: that do not.
+        choices: from the smallest on.
+    """
+
+    mutants: int
+    held_out: int
+    choices: Sequence[Choice]
+
+
+@dataclass(frozen=True, slots=True)
 class Closed:
     """A campaign whose holes were looked for.
 
@@ -36,7 +69,7 @@ class Closed:
         tests: that were played, in order.
         suite: of these the fewest known that meet as much with the margin that was asked for, and
             one for all that went wrong.
-        sizes: how many meet as much, by the tests that show each goal, up to the margin.
+        choices: the names of those that meet as much, by how many show each goal, up to the margin.
         fewest: no suite of that margin has fewer; its size if it is known to be the smallest.
         goals: how many there are, without those that cannot be met.
         share: of the coverage model that is covered, from 0 to 1, without what cannot be.
@@ -47,11 +80,12 @@ class Closed:
         groups: what was measured beside what the campaign measures.
         seconds: that it took.
         ended: why it ended with open goals; empty if there is none.
+        trade: what the suite sees of mutants, if it was chosen by them as well.
     """
 
     tests: Sequence[Added]
     suite: Sequence[Played]
-    sizes: Mapping[int, int]
+    choices: Mapping[int, Sequence[str]]
     fewest: int
     goals: int
     share: float
@@ -62,6 +96,12 @@ class Closed:
     groups: Sequence[Group]
     seconds: float
     ended: str
+    trade: Trade | None = None
+
+    @property
+    def sizes(self) -> dict[int, int]:
+        """How many tests meet as much, by how many show each goal, up to the margin."""
+        return {times: len(names) for times, names in self.choices.items()}
 
     @property
     def needed(self) -> int:

@@ -18,6 +18,7 @@ from rvmon.cdv.close.goals import Goals
 from rvmon.cdv.close.learned import Draw, Learned
 from rvmon.cdv.close.mutate import Mutator
 from rvmon.cdv.close.witnesses import Proof, Witness, Witnesses
+from rvmon.cdv.closing import STRATEGY
 from rvmon.cdv.files import TestError, from_json, to_json
 from rvmon.cdv.outcome import Played
 from rvmon.cdv.plan import plan
@@ -26,9 +27,6 @@ from rvmon.coverage.nearest import Goal, nearness
 from rvmon.errors import RvmonError
 
 _Option = TypeVar("_Option", bound=Hashable)
-
-STRATEGY = "closed"
-"""That of all tests that are made to close holes."""
 
 WITNESSES = 2
 """Tests of one run of the model, each with other times."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.close.outcome import Added, Closed
+from rvmon.cdv.close.outcome import Added, Closed, Trade
 from rvmon.coverage.nearest import Goal
-from rvmon.report.coverage_summary import counted, name_of, share_text
-from rvmon.report.percent import percent_text
+from rvmon.report.coverage_summary import name_of
+from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
 
 if TYPE_CHECKING:
@@ -45,6 +45,8 @@ def print_closed(closed: Closed, console: Console) -> None:
         style=style,
     )
     console.print(_suite_text(closed))
+    if closed.trade is not None:
+        console.print(_trade(closed.trade))
 
 
 def _suite_text(closed: Closed) -> str:
@@ -59,8 +61,31 @@ def _suite_text(closed: Closed) -> str:
     for one in fewer:
         text += f"; {closed.sizes[one]} would do with {counted(one, 'test')} for each"
     if kept := len(closed.suite) - closed.needed:
-        text += f"; {kept} more are kept for what went wrong"
+        why = "what went wrong" if closed.trade is None else "what went wrong, or kills a mutant"
+        text += f"; {kept} more are kept for {why}"
     return f"{text}."
+
+
+def _trade(trade: Trade) -> Table:
+    """What each choice of tests sees of planted faults."""
+    from rich.table import Table
+
+    title = f"Of {trade.mutants + trade.held_out} mutants of the code are killed"
+    table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
+    table.add_column("by")
+    chosen, held_out = f"of {trade.mutants} that choose", f"of {trade.held_out} held out"
+    for heading in ("tests", chosen, held_out):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for one in trade.choices:
+        figures = (one.tests, one.killed, one.held_out)
+        table.add_row(_choice_text(one.times), *map(str, figures))
+    return table
+
+
+def _choice_text(times: int | None) -> str:
+    if times is None:
+        return "the suite, with what kills more"
+    return f"each goal by {counted(times, 'test')}" if times else "all that were played"
 
 
 def _table(useful: Sequence[Added], closed: Closed) -> Table:

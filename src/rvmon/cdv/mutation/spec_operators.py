@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Compare,
@@ -184,7 +185,7 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
         for changed in operator.changes(formula):
             yield operator.name, changed
     match formula:
-        case Unary(operand=operand):
+        case Unary(operand=operand) | Amount(operand=operand):
             for name, changed in changes(operand):
                 yield name, replace(formula, operand=changed)
         case Binary(left=left, right=right):

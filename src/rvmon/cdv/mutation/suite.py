@@ -20,8 +20,7 @@ from rvmon.coverage.model import Subject
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
 from rvmon.execute.ended import Ended
-from rvmon.loading import load
-from rvmon.session import Spec
+from rvmon.session import Spec, load
 
 Progress = Callable[[int], None]
 """Called with the number of those that are done."""

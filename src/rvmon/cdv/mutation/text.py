@@ -9,8 +9,7 @@ from rvmon.cdv.mutation.question import TITLES, question
 from rvmon.cdv.mutation.report import MutationReport, SuiteTried
 from rvmon.cdv.mutation.spec_mutants import SpecMutant
 from rvmon.cdv.mutation.tried import How, Tried
-from rvmon.report.coverage_summary import counted
-from rvmon.report.percent import percent_text
+from rvmon.report.percent import counted, percent_text
 from rvmon.report.terminal import plain_table
 
 HEAD = (

@@ -82,7 +82,7 @@ class Monitor(FedMonitor[Attempt]):
         checked, options = self.compiled.checked, self.options
         self._feed = Feed(checked, self._planned, self._core, options.sources, options.settle)
         self._report: Report | None = None
-        self._torn: int | None = None
+        self._interrupted: int | None = None
         self._core.reset()
         self._note_times()
         self._attend()
@@ -199,7 +199,7 @@ class Monitor(FedMonitor[Attempt]):
         decided = self._core.flush()
         self._note_times()
         report = self._reported(end)
-        self._report = report if self._torn is None else capped(report, self._torn)
+        self._report = report if self._interrupted is None else capped(report, self._interrupted)
         return self._report, decided
 
     def _reported(self, end: int | None) -> Report:
@@ -243,7 +243,7 @@ class Monitor(FedMonitor[Attempt]):
             seen = [verdict for verdict in so_far if counts[VERDICTS.index(verdict)]]
             # What has passed was triggered: it is undetermined only if something came too late.
             found[name] = fold(seen, complete=bool(determined or not seen))
-        return found if self._torn is None else not_passed(found)
+        return found if self._interrupted is None else not_passed(found)
 
     def snapshot(self) -> bytes:
         """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
@@ -270,7 +270,7 @@ class Monitor(FedMonitor[Attempt]):
     def _put_away(self) -> bytes:
         if self._report is not None:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
-        state = {"torn": self._torn, **self._feed.state()}
+        state = {"interrupted": self._interrupted, **self._feed.state()}
         return written(self.compiled, self.options, self._planned, self._core, state)
 
     def take_up(self, document: Mapping[str, Any]) -> None:
@@ -283,8 +283,8 @@ class Monitor(FedMonitor[Attempt]):
             SnapshotError: it fits no such monitor.
         """
         state = put_back(document, self._planned, self._core)
-        torn = state["torn"]
-        self._torn = None if torn is None else whole_ticks(torn)
+        interrupted = state["interrupted"]
+        self._interrupted = None if interrupted is None else whole_ticks(interrupted)
         self._feed.take_up(state)
         self._attend()
         self._note_times()

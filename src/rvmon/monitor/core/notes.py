@@ -55,12 +55,12 @@ class Note:
 
     Attributes:
         words: of the note.
-        standing: how all stood at the decision; empty if nobody asks.
+        state: of the propositions at the decision; empty if nobody asks.
         letters: by which a network judged; `None` if none did.
     """
 
     words: Sequence[int]
-    standing: Sequence[int]
+    state: Sequence[int]
     letters: Letters | None
 
     @property
@@ -84,11 +84,11 @@ class Note:
         return self.words[2]
 
 
-def note_of(data: bytes, standing: bytes | None, pieces: Any, last: bytes | None) -> Note:
+def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -> Note:
     """A note as the core gives it out."""
     return Note(
         _words(data),
-        () if standing is None else _words(standing),
+        () if state is None else _words(state),
         None if last is None else Letters((*pieces, last)),
     )
 
@@ -103,15 +103,15 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes]]) -> Not
     """
     (head,) = unpack_from("=q", notes, 8 * place)
     words = unpack_from(f"={head >> 40}q", notes, 8 * place)
-    standing: Sequence[int] = ()
+    state: Sequence[int] = ()
     if words[1] >= 0:
         (count,) = unpack_from("=q", notes, 8 * words[1])
-        standing = unpack_from(f"={count}q", notes, 8 * words[1])
+        state = unpack_from(f"={count}q", notes, 8 * words[1])
     letters = None
     if head >> 8 & _NETWORK and words[3] >= 0:
         pieces, last = spans[words[3] & _SPAN]
         letters = Letters((*pieces, last))
-    return Note(words, standing, letters)
+    return Note(words, state, letters)
 
 
 def _words(data: bytes) -> Sequence[int]:
@@ -151,8 +151,8 @@ class Told:
         return truths(note.words[_HEAD:], len(self._texts))
 
     def _stood(self, note: Note) -> tuple[tuple[int, ...], tuple[int, ...], Standing]:
-        """The leaves, the propositions, and how these stood."""
-        words, propositions = note.standing, self._propositions
+        """The leaves, the propositions, and how these were."""
+        words, propositions = note.state, self._propositions
         leaves = truths(words[2:], len(self._texts))
         at = 2 + self._leaf_words
         values = truths(words[at:], len(propositions))

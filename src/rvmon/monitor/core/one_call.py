@@ -1,4 +1,4 @@
-"""One call at a time: a monitor has no room for two, and tells of one that was torn."""
+"""One call at a time: a monitor has no room for two, and tells of one that was interrupted."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
 BEFORE_ALL = 1 - TIME_LIMIT
-"""The instant of a call that was torn before any sample was taken."""
+"""The instant of a call that was interrupted before any sample was taken."""
 
 
 def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
@@ -21,14 +21,14 @@ def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
     return {name: fold([verdict], complete=False) for name, verdict in verdicts.items()}
 
 
-def capped(report: Report, torn: int) -> Report:
+def capped(report: Report, interrupted: int) -> Report:
     """A report without verdicts that are not known, and why.
 
     Args:
         report: of the run.
-        torn: how far it had come when a call was interrupted, ticks.
+        interrupted: how far it had come when a call was interrupted, ticks.
     """
-    first = None if torn == BEFORE_ALL else torn
+    first = None if interrupted == BEFORE_ALL else interrupted
     remark = "what followed was not evaluated in full"
     why = Health(HealthKind.INTERRUPTED, "monitor", 1, first, tuple(report.verdicts), remark)
     return replace(report, verdicts=not_passed(report.verdicts), health=(why, *report.health))
@@ -43,11 +43,11 @@ class Guarded(Protocol):
 
     Attributes:
         _reached: how far its run has come, ticks.
-        _torn: how far it had come when a call was interrupted or failed; `None`: none was.
+        _interrupted: how far it had come when a call was interrupted or failed; `None`: none was.
     """
 
     _reached: int | None
-    _torn: int | None
+    _interrupted: int | None
 
     def _enter(self) -> None:
         """Begin a call."""
@@ -86,9 +86,9 @@ class OneCall:
             raise
         except BaseException as error:
             # No function is called up to the mark: another interrupt cannot come before it.
-            if self._guarded._torn is None and error is not self._spared:
+            if self._guarded._interrupted is None and error is not self._spared:
                 reached = self._guarded._reached
-                self._guarded._torn = BEFORE_ALL if reached is None else reached
+                self._guarded._interrupted = BEFORE_ALL if reached is None else reached
             raise
         finally:
             self._spared = None

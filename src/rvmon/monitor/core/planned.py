@@ -305,6 +305,7 @@ def planned_as(
         return {label: plan.labels[label] for label in type_.labels}
 
     names = (*plan.signals, *plan.events)
+    ignoring = spec.ignoring
     payloads = [spec.events[name].fields for name in plan.events]
     types = [type_ for payload in payloads for type_ in payload.values()]
     kinds = [*plan.signals.values(), *(Kind.BOOL for _ in payloads), *plan.fields.values()]
@@ -318,7 +319,7 @@ def planned_as(
             *map(labels, types),
         ),
         bytes(map(_KINDS.index, kinds)),
-        bytes(name in made.single or name in spec.ignoring for name in names),
+        bytes(name in made.single or name in ignoring for name in names),
         made.single,
         made.readers,
         compiled,

@@ -10,8 +10,10 @@ import numpy as np
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.monitor.core.findings import Findings
+from rvmon.monitor.core.losses import Losses
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recorded import report_of_run
+from rvmon.monitor.inputs.intake import Turn
 from rvmon.monitor.inputs.validate import Validator
 from rvmon.readers.batch import NO_UPDATE, YES
 from rvmon.readers.coalesce import Conflicts, coalesce
@@ -89,6 +91,13 @@ class RecordingRun:
         self.core = planned.monitor(absent & planned.numbers.keys())
         self._row = 0
         self._end = source.end
+        self._losses = Losses(checked, planned, self.core, None)
+        turns = [
+            turn
+            for one in source.outages
+            for turn in self._losses.lose(one.names, one.since, one.until, one.why)
+        ]
+        self._turns = sorted(turns, key=_comes_before)
 
     def take(self, piece: Batch | Sample) -> None:
         """Judge a piece of the recording, behind those before."""
@@ -100,6 +109,8 @@ class RecordingRun:
     def _take_sample(self, sample: Sample) -> None:
         t = whole_ticks(sample.t)
         values = sample.values
+        if self._turns:
+            self._lose_until(t)
         if not self.core.judge(t, values, False):
             values = self._validator.check(t, values)
             if not self.core.judge(t, self._planned.plain(t, values), True):
@@ -110,6 +121,11 @@ class RecordingRun:
         if self._findings is not None:
             self._findings.note_sample(t, values)
         self._row += 1
+
+    def _lose_until(self, t: int) -> None:
+        """Have lost, and found, what a sample at an instant finds lost."""
+        while self._turns and _comes_before(self._turns[0]) <= t:
+            self._losses.turn(self._turns.pop(0))
 
     def _take_batch(self, batch: Batch) -> None:
         """Judge rows; those that take a closer look as samples."""
@@ -166,12 +182,24 @@ class RecordingRun:
                     found.append(_cells(cells, kind, words))
         return tuple(found)
 
+    def finish(self) -> int | None:
+        """End the run where the recording ends; gives the last instant of the trace."""
+        _, last, _ = self.core.times()
+        self._lose_until(self._end if self._end is not None else last or 0)
+        return self.core.finish(self._end)
+
     def report(self) -> Report:
-        """End the run."""
+        """End the run, and say what was found."""
         origin, _, _ = self.core.times()
-        report = report_of_run(self._planned, self.core, origin or 0, self.core.finish(self._end))
-        health = () if self._findings is None else self._findings.found(self.core)
-        return replace(report, health=health)
+        report = report_of_run(self._planned, self.core, origin or 0, self.finish())
+        if self._findings is None:
+            return report
+        return replace(report, health=(*self._findings.found(self.core), *self._losses.health()))
+
+
+def _comes_before(turn: Turn) -> int:
+    """The first instant at which names are as a turn says: what is found is so behind its own."""
+    return turn.t + (not turn.lost)
 
 
 def _cells(

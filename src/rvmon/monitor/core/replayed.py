@@ -1,4 +1,4 @@
-"""Networks as they stood, from the letters that the core kept."""
+"""Networks as they were, from the letters that the core kept."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def at_decision(
     verdict: bool,
     t: int,
 ) -> Network | None:
-    """The network that decided, as it stood then.
+    """The network that decided, as it was then.
 
     Args:
         compiled: the requirement.
@@ -108,18 +108,18 @@ def at_decision(
         return None
     noted = _noted(compiled, gap, letters, position, better=not verdict)
 
-    def stood(stamp: int, before: int) -> Network:
+    def network_at(stamp: int, before: int) -> Network:
         return Network(compiled.network_plan, gap, noted, position, stamp, before)
 
     if triggered > position == t:
-        return stood(2 * triggered, 2 * t + 1)
+        return network_at(2 * triggered, 2 * t + 1)
     if t == position:
         # It was known as the attempt began, perhaps before that: since the letter before.
         last = max((at for at, _ in noted if at < t), default=t - 1)
-        return stood(2 * t + 1, 2 * last + 1)
+        return network_at(2 * t + 1, 2 * last + 1)
     # What became known by then is no news at the decision.
-    network = stood(2 * t, 2 * t - 1)
-    return stood(2 * t + 1, 2 * t) if network.truth(position) is None else network
+    network = network_at(2 * t, 2 * t - 1)
+    return network_at(2 * t + 1, 2 * t) if network.truth(position) is None else network
 
 
 def at_moment(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Collection, Iterator
-from contextlib import closing
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from rvmon.errors import TraceError
@@ -12,9 +13,11 @@ from rvmon.readers.messages.match import matched
 from rvmon.readers.messages.rows import message_rows
 from rvmon.readers.messages.skew import Skew
 from rvmon.readers.messages.topic import Message, Messages
+from rvmon.readers.messages.transforms import WithTransforms, pairs_asked, sends_transforms
 from rvmon.readers.places import local_path
 from rvmon.readers.rows import Row
 from rvmon.trace.binding import Clock
+from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Schema
 
 
@@ -26,21 +29,59 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
         TraceError: it cannot be read.
         OSError: it cannot be opened.
     """
+    definitions = schema.binding.definitions
+    with _sizes():
+        match form:
+            case "mcap":
+                from rvmon.readers.messages.mcap import mcap_messages
+
+                return mcap_messages(path, definitions)
+            case "tables":
+                from rvmon.readers.messages.tables import TableMessages
+
+                return TableMessages(path)
+            case "ulog":
+                from rvmon.readers.messages.ulog import ulog_messages
+
+                return ulog_messages(path)
+            case "dataflash":
+                from rvmon.readers.messages.dataflash import dataflash_messages
+
+                return dataflash_messages(path)
+            case "tlog":
+                from rvmon.readers.messages.tlog import TelemetryMessages
+
+                return TelemetryMessages(path)
+            case "mdf":
+                from rvmon.readers.messages.mdf import mdf_messages
+
+                if (measured := mdf_messages(path)) is not None:
+                    return measured
+                from rvmon.readers.messages.can import FrameMessages
+
+                return FrameMessages(path, definitions)
+            case "can":
+                from rvmon.readers.messages.can import FrameMessages
+
+                return FrameMessages(path, definitions)
+            case "hdf5" | "mat":
+                from rvmon.readers.messages.arrays import array_messages
+
+                return array_messages(path, schema.stamps)
+            case _:
+                from rvmon.readers.messages.ros import BagMessages
+
+                return BagMessages(path, form, definitions)
+
+
+@contextmanager
+def _sizes() -> Iterator[None]:
+    """Messages take little memory, unless what the file says of their sizes is wrong."""
     try:
-        if form == "mcap":
-            from rvmon.readers.messages.mcap import mcap_messages
-
-            return mcap_messages(path, schema.binding.definitions)
-        if form == "tables":
-            from rvmon.readers.messages.tables import TableMessages
-
-            return TableMessages(path)
-        from rvmon.readers.messages.ros import BagMessages
-
-        return BagMessages(path, form, schema.binding.definitions)
-    except MemoryError:  # to open it takes little, unless what it says of its sizes is wrong
+        yield
+    except MemoryError:
         raise TraceError(
-            "cannot be opened: a size in it is beyond the memory: copy it again if it is damaged, "
+            "cannot be read: a size in it is beyond the memory: copy it again if it is damaged, "
             "or raise --max-memory"
         ) from None
 
@@ -65,6 +106,7 @@ class MessageFile:
         end: the last instant of the recording; `None` where another clock counts.
         count: of its messages; 0 if nobody knows.
         skew: of the clocks of those who sent what was read last.
+        outages: what it lost, in order.
 
     Raises:
         RvmonError: what reads it is not installed.
@@ -90,10 +132,30 @@ class MessageFile:
             self.end = None
         self.names = frozenset(self._bounds)
         self.skew = Skew()
+        self.outages = tuple(self._of_names(source.outages))
+        if source.outages and Clock.HEADER in clocks:
+            raise TraceError(
+                f"{source.outages[0].why}, and when by the clock of headers nobody knows: judge it "
+                'with `clock = "log"`'
+            )
+
+    def _of_names(self, outages: Sequence[Outage]) -> Iterator[Outage]:
+        """Outages of topics as those of the names that they feed."""
+        for one in outages:
+            if one.names is None:
+                yield one
+            elif fed := {name for name, own in self._bounds.items() if own.topic in one.names}:
+                yield replace(one, names=frozenset(fed))
 
     def _opened(self) -> Messages:
         path, form = self._place
-        return open_messages(local_path(path), form, self._schema)
+        source = open_messages(local_path(path), form, self._schema)
+        schema = self._schema
+        bound = [one.topic for one in schema.binding.bounds.values()]
+        pairs = pairs_asked([*bound, *schema.columns.values(), *schema.signals])
+        if pairs and sends_transforms(source.topics):
+            return WithTransforms(source, pairs)
+        return source
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, as they were recorded.
@@ -101,13 +163,13 @@ class MessageFile:
         Raises:
             TraceError: one cannot be read.
         """
-        with closing(self._opened()) as source:
+        with closing(self._opened()) as source, _sizes():
             yield from source.read(topics)
 
     def rows(self, *, ordered: bool) -> Iterator[Row]:
         """The rows of its messages; see `message_rows`."""
         if not self._bounds:
             raise TraceError("holds no topic that is read")
-        with closing(self._ready.pop() if self._ready else self._opened()) as source:
+        with closing(self._ready.pop() if self._ready else self._opened()) as source, _sizes():
             self.skew = skew = Skew()
             yield from message_rows(source, self._bounds, self._schema, skew, ordered=ordered)

@@ -2,11 +2,32 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import os
 
-MESSAGE_FORMATS = {".bag": "ros1", ".db3": "ros2", ".mcap": "mcap"}
+MESSAGE_FORMATS = {
+    ".bag": "ros1",
+    ".db3": "ros2",
+    ".mcap": "mcap",
+    ".ulg": "ulog",
+    ".bin": "dataflash",
+    ".tlog": "tlog",
+    ".mf4": "mdf",
+    ".asc": "can",
+    ".blf": "can",
+    ".trc": "can",
+    ".log": "can",
+    ".h5": "hdf5",
+    ".hdf": "hdf5",
+    ".hdf5": "hdf5",
+    ".mat": "mat",
+}
 """File name endings and the formats of messages they stand for; a bag of ROS 2 is a folder."""
 
+DATABASES = (".dbc", ".kcd", ".sym", ".arxml")
+"""Endings of files that say what frames of CAN hold."""
+
+ARRAYS = frozenset({"hdf5", "mat"})
+"""The formats in which the stamps are an array among others."""
 
 TOPICS = "topics.toml"
 """In a folder of tables that are one recording: says which file is which topic."""
@@ -19,4 +40,7 @@ MESSAGE_FORMS = frozenset({*MESSAGE_FORMATS.values(), *_FOLDERS.values()})
 
 def form_of_folder(path: str) -> str:
     """The format of a folder that is one recording; empty of other folders, and of files."""
-    return next((form for name, form in _FOLDERS.items() if Path(path, name).is_file()), "")
+    if not os.path.isdir(path):
+        return ""
+    found = (form for name, form in _FOLDERS.items() if os.path.isfile(os.path.join(path, name)))
+    return next(found, "")

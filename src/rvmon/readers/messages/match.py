@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rvmon.errors import TraceError
 from rvmon.readers.messages.by_names import arrays_with_names
@@ -45,6 +46,8 @@ def matched(schema: Schema, topics: Mapping[str, Topic]) -> Matched:
         bound = schema.binding.bounds.get(name)
         if bound is None or name in schema.columns:
             bound = _by_name(name, schema, columns, topics)
+        if bound is not None and "*" in bound.topic:
+            bound = replace(bound, topic=_topic_like(name, bound.topic, schema, topics))
         if bound is not None and bound.topic in topics:
             _expect_fit(name, bound, schema, topics[bound.topic])
             bounds[name] = bound
@@ -52,6 +55,25 @@ def matched(schema: Schema, topics: Mapping[str, Topic]) -> Matched:
     unread = [name for name in topics if name not in read]
     unread += [column for column, (topic, _) in columns.items() if column != topic]
     return Matched(bounds, tuple(unread))
+
+
+def _topic_like(name: str, pattern: str, schema: Schema, topics: Mapping[str, Topic]) -> str:
+    """The one topic that a pattern stands for, or the pattern itself if there is none.
+
+    Raises:
+        TraceError: there are several.
+    """
+    if schema.binding.robot:
+        return pattern.replace("*", schema.binding.robot)
+    like = re.escape(pattern).replace(r"\*", "[^/]+")
+    found = [topic for topic in topics if re.fullmatch(like, topic)]
+    if len(found) > 1:
+        listed = ", ".join(found[:4]) + (", …" if len(found) > 4 else "")
+        raise TraceError(
+            f"`{name}` is bound to {pattern}, and there are {listed}: say which robot is meant, as "
+            '`robot = "robot_1"` at the top of the binding'
+        )
+    return found[0] if found else pattern
 
 
 def _columns(topics: Mapping[str, Topic]) -> dict[str, tuple[str, Field | None]]:

@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import partial
+from os import SEEK_END
 from pathlib import Path
+from struct import Struct
 from typing import Any, BinaryIO
+from zlib import crc32
 
 import msgspec
 
@@ -18,6 +22,12 @@ from rvmon.readers.values import first_line, shorten
 from rvmon.trace.schema import Kind
 
 _MAGIC = b"\x89MCAP0\r\n"
+
+_FOOTER = Struct("<BQQQI8s")
+"""Opcode, length, where the summary and its offsets begin, their checksum, the magic."""
+
+_BEFORE_SUM = 25
+"""Bytes of the footer that the checksum is of, too."""
 
 Decode = Callable[[bytes], Any]
 
@@ -43,6 +53,7 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
         raise TraceError("is an empty file: record it again")
     if not head.startswith(_MAGIC):
         raise TraceError("is no MCAP file: it begins otherwise")
+    _refuse_damaged_summary(path)
     # Behind the magic: one byte, the length in eight, and the profile, led by its length in four.
     if head[17:21] == b"\4\0\0\0" and head[21:25] == b"ros2":
         found = BagMessages(path, "ros2", definitions)
@@ -50,6 +61,27 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
             return found
         found.close()
     return _OtherMessages(path, definitions)
+
+
+def _refuse_damaged_summary(path: Path) -> None:
+    """Refuse a file whose times and counts are not what their checksum says: no reader looks at it.
+
+    Raises:
+        TraceError: it is such a file.
+    """
+    with open(path, "rb") as file:
+        footer = max(0, file.seek(0, SEEK_END) - _FOOTER.size)
+        file.seek(footer)
+        tail = file.read()
+        if len(tail) < _FOOTER.size:
+            return
+        opcode, length, start, _, expected, _ = _FOOTER.unpack(tail)
+        if (opcode, length) != (2, 20) or not 0 < start <= footer or expected == 0:
+            return  # it is cut, which others tell; or it has none
+        file.seek(start)
+        summary = file.read(footer + _BEFORE_SUM - start)
+    if crc32(summary) != expected:
+        raise TraceError("its summary is damaged: copy it again, or try `mcap recover`")
 
 
 def mcap_reader(file: BinaryIO) -> Any:
@@ -67,6 +99,8 @@ def mcap_reader(file: BinaryIO) -> Any:
 
 class _OtherMessages:
     """An open MCAP file of any encodings; see `mcap_messages`."""
+
+    outages: tuple[()] = ()
 
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
         self._definitions = definitions
@@ -116,9 +150,10 @@ class _OtherMessages:
         name, encoding = channel.topic, channel.message_encoding
         type_name = schema.name if schema is not None else "no type"
         language = schema.encoding if schema is not None else ""
-        if encoding == "json":
-            leaves = dict(self._json_leaves(schema, name))
-            return Topic(name, type_name, leaves), _json_object
+        if encoding in _OBJECTS:
+            decode_object = partial(_object, _OBJECTS[encoding]())
+            leaves = dict(self._object_leaves(schema, name, decode_object))
+            return Topic(name, type_name, leaves), decode_object
         if encoding in ("cdr", "ros1"):
             form, is_ros1 = _ROS.get(language, ("msg", encoding == "ros1"))
             text = schema.data.decode("utf-8", "replace") if schema is not None else ""
@@ -127,11 +162,11 @@ class _OtherMessages:
         if encoding == "protobuf" and language == "protobuf":
             decode = _protobuf(schema)
             return Topic(name, type_name, dict(_protobuf_leaves(decode(b"").DESCRIPTOR))), decode
-        known = "JSON, Protocol Buffers, CDR and ROS 1"
+        known = "JSON, MessagePack, CBOR, Protocol Buffers, CDR and ROS 1"
         fault = f"its messages are encoded as `{shorten(encoding)}`: there is {known}"
         return Topic(name, type_name, {}, fault), bytes
 
-    def _json_leaves(self, schema: Any, topic: str) -> Iterator[tuple[str, Kind]]:
+    def _object_leaves(self, schema: Any, topic: str, decode: Decode) -> Iterator[tuple[str, Kind]]:
         """The fields that the first message has, and those that the schema declares.
 
         What is wrong with them does not matter unless the topic is read.
@@ -139,10 +174,11 @@ class _OtherMessages:
         first = next(iter(self._reader.iter_messages(topics=[topic])), None)
         with suppress(TraceError, msgspec.DecodeError):
             if first is not None:
-                yield from _found_leaves(_json_object(first[2].data), "")
+                yield from _found_leaves(decode(first[2].data), "")
         with suppress(TraceError, msgspec.DecodeError):
             if schema is not None and schema.encoding == "jsonschema":
-                yield from _described_leaves(_json_object(schema.data), "", 0)
+                described = _object(_json, schema.data)
+                yield from _described_leaves(described, "", 0)
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, in the order in which they were recorded."""
@@ -182,8 +218,35 @@ def mcap_errors() -> Iterator[None]:
         ) from None
 
 
-def _json_object(data: bytes) -> Mapping[str, Any]:
-    found = decoded(data, msgspec.json.decode)
+def _json(data: bytes) -> Any:
+    return decoded(data, msgspec.json.decode)
+
+
+def _cbor() -> Decode:
+    try:
+        from cbor2 import CBORDecodeError, loads
+    except ImportError:
+        raise not_installed("a message of CBOR", "cbor2") from None
+
+    def decode(data: bytes) -> Any:
+        try:
+            return loads(data)
+        except CBORDecodeError as error:
+            raise TraceError(f"it is no CBOR ({first_line(error)})") from None
+
+    return decode
+
+
+_OBJECTS: Mapping[str, Callable[[], Decode]] = {
+    "json": lambda: _json,
+    "msgpack": lambda: msgspec.msgpack.decode,
+    "cbor": _cbor,
+}
+"""What decodes messages that are objects with fields by name, by their encoding."""
+
+
+def _object(decode: Decode, data: bytes) -> Mapping[str, Any]:
+    found = decode(data)
     if not isinstance(found, dict):
         raise TraceError(f"it is no object: `{shorten(str(found))}`")
     return found

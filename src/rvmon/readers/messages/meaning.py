@@ -26,8 +26,7 @@ from functools import cache
 from importlib import resources
 
 from rvmon.readers.messages.topic import Topic
-from rvmon.units.table import parse_unit
-from rvmon.units.unit import Unit
+from rvmon.units import Unit, UnknownUnitError, parse_unit
 
 
 class Sort(Enum):
@@ -73,7 +72,10 @@ def meaning_of(path: str, topic: Topic) -> Meaning:
     ('m/s', ('velocity', 'speed'))
     """
     # Names of elements may have dots.
-    steps = re.sub(r"\[[^\[\]]*\]", "[]", path).split(".")
+    plain = re.sub(r"\[[^\[\]]*\]", "[]", path)
+    if plain in topic.units:
+        return _told(topic.units[plain])
+    steps = plain.split(".")
     type_name = plain_type(topic.type)
     found = UNKNOWN
     for place, step in enumerate(steps, 1):
@@ -100,6 +102,15 @@ def plain_type(type_name: str) -> str:
     ('sensor_msgs/Imu', 'sensor_msgs/Imu')
     """
     return re.sub(r"[/.]msg[/.]", "/", type_name)
+
+
+@cache
+def _told(unit: str) -> Meaning:
+    """What is measured in a unit that a recording writes, if that is one."""
+    try:
+        return Meaning(Sort.MEASURED, (parse_unit(unit),))
+    except UnknownUnitError:
+        return UNKNOWN
 
 
 @cache

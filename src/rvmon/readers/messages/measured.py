@@ -11,13 +11,12 @@ from rvmon.readers.messages.meaning import Sort, meaning_of
 from rvmon.readers.messages.topic import Topic
 from rvmon.trace.binding import Applied, Bound, Constant, Elements, Field, Term
 from rvmon.trace.schema import Schema
-from rvmon.units.table import parse_unit
-from rvmon.units.unit import PLAIN, Unit
+from rvmon.units import PLAIN, Unit, parse_unit
 
 _ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==", "!="})
 """Operations whose arguments are in one unit."""
 
-_TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not"})
+_TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not", "any", "all"})
 
 
 @dataclass(frozen=True, slots=True)

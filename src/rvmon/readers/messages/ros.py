@@ -45,6 +45,8 @@ class BagMessages:
         TraceError: it is no bag, or a damaged one.
     """
 
+    outages: tuple[()] = ()
+
     def __init__(self, path: Path, form: str, definitions: Mapping[str, str]) -> None:
         self._form = form
         reader = bag_readers()[form]

@@ -20,11 +20,12 @@ from typing import Any
 from rvmon.diagnostics.nearest import cannot_read, did_you_mean
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import TraceError
+from rvmon.readers.csv_dialect import opened_as_csv
 from rvmon.readers.csv_rows import read_layout, split_lines
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import TOPICS
 from rvmon.readers.messages.topic import Message, Topic
-from rvmon.readers.places import endings_of, opened
+from rvmon.readers.places import endings_of
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
 from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_cell
@@ -64,6 +65,7 @@ class TableMessages:
 
     end: int | None = None
     count = 0
+    outages: tuple[()] = ()
 
     def __init__(self, folder: Path) -> None:
         self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
@@ -137,7 +139,7 @@ def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
     """The lines of a file, split; errors inside name it."""
     try:
         with (
-            opened(str(table.path)) as (plain, _),
+            opened_as_csv(table.path, table.stamps) as (plain, _),
             TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
         ):
             yield split_lines(bounded_lines(text))

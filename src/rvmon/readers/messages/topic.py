@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
 
@@ -22,6 +23,7 @@ class Topic:
         messages: the types of the fields that are messages themselves, by their path, as far as
             the definition names them.
         doubtful: the fields whose kind is not known: nothing was seen of them.
+        units: of the fields whose unit the recording says itself, by their path.
     """
 
     name: str
@@ -30,6 +32,7 @@ class Topic:
     fault: str = ""
     messages: Mapping[str, str] = field(default_factory=dict)
     doubtful: frozenset[str] = frozenset()
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 Message = tuple[str, int, Any]
@@ -48,6 +51,10 @@ class Messages(Protocol):
     topics: Mapping[str, Topic]
     end: int | None
     count: int
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost, of which topics; `names` are of these."""
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
         """The messages of these topics, as they were recorded.

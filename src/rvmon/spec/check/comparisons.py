@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import ceil, floor
 
 from rvmon.diagnostics.span import Span
+from rvmon.spec.check.choices import decided, spread
 from rvmon.spec.check.operands import Operands
 from rvmon.spec.check.quantities import Placed, compare
-from rvmon.spec.check.values import Age, Quantity, Scope, Value
+from rvmon.spec.check.values import Age, AmountOf, Extreme, Quantity, Scope, Value
 from rvmon.spec.checked.formula import (
+    Amount,
+    Binary,
+    BinaryOp,
     Compare,
     CompareOp,
     Constant,
     Formula,
     Interval,
     Literal,
+    Measured,
     Probe,
     ProbeAtom,
     Unary,
     UnaryOp,
 )
+from rvmon.spec.checked.reads import names_in
 from rvmon.spec.rules import names as name_rules
 from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
@@ -79,13 +86,25 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
         Refusal: the sides cannot be compared.
         Reported: a side is wrong.
     """
-    left, right = _sides(operands, node, scope)
+    sides = _sides(operands, node, scope)
+    return decided(spread(sides, node.span, lambda values: _compared(node, *values)), node.span)
+
+
+def _compared(node: Comparison, left: Value, right: Value) -> Formula:
     if isinstance(left, Age):
         limit = _comparable(right, node.right.span)
         return _age(left, node.op, limit, node.span)
     if isinstance(right, Age):
         limit = _comparable(left, node.left.span)
         return _age(right, node.op.mirrored, limit, node.span)
+    if isinstance(left, AmountOf):
+        return _amount(left, node.op, _comparable(right, node.right.span), node.span)
+    if isinstance(right, AmountOf):
+        return _amount(right, node.op.mirrored, _comparable(left, node.left.span), node.span)
+    if isinstance(left, Extreme):
+        return _extreme(left, node.op, _comparable(right, node.right.span), node.span)
+    if isinstance(right, Extreme):
+        return _extreme(right, node.op.mirrored, _comparable(left, node.left.span), node.span)
     first = _comparable(left, node.left.span)
     second = _comparable(right, node.right.span)
     return _quantities(node.op, first, second, node.span)
@@ -114,7 +133,61 @@ def _may_be_signal(operands: Operands, expression: Expression, scope: Scope) -> 
     return not isinstance(expression, Name) or operands.known(expression.text, scope)
 
 
+def _amount(amount: AmountOf, op: CompareOp, limit: Placed, span: Span) -> Formula:
+    """All comparisons are made of `>= n`, which grows with what there is."""
+    value, place = limit
+    if value.constant is None:
+        raise Refusal(rules.amount_alone(span))
+    exact = value.constant * value.unit.factor
+    if amount.share or amount.measured is Measured.COUNT:
+        if value.unit.dimension:
+            raise Refusal(rules.mismatch(span, "no unit", value.unit.symbol, "compared with"))
+        exact *= amount.window if amount.share else 1
+    else:
+        exact = Fraction(ticks_of(value, place))
+
+    def at_least(least: int) -> Formula:
+        if least <= 0:
+            return Constant(True, span)
+        return Amount(amount.measured, amount.operand, amount.window, least, span)
+
+    up, above = at_least(ceil(exact)), at_least(floor(exact) + 1)
+    match op:
+        case CompareOp.GE:
+            return up
+        case CompareOp.GT:
+            return above
+        case CompareOp.LT:
+            return Unary(UnaryOp.NOT, up, None, span)
+        case CompareOp.LE:
+            return Unary(UnaryOp.NOT, above, None, span)
+    same = Binary(BinaryOp.AND, up, Unary(UnaryOp.NOT, above, None, span), None, span)
+    return same if op is CompareOp.EQ else Unary(UnaryOp.NOT, same, None, span)
+
+
+def _extreme(extreme: Extreme, op: CompareOp, limit: Placed, span: Span) -> Formula:
+    """`max(x, D) <= c` is: `x <= c` all through the last D; `max(x, D) >= c`: at some instant."""
+    bound = limit[0].node
+    if bound is not None and any(names_in(bound)):
+        raise Refusal(rules.extreme_alone(span))
+    every = (CompareOp.LT, CompareOp.LE) if extreme.greatest else (CompareOp.GT, CompareOp.GE)
+
+    def over(how: CompareOp) -> Formula:
+        one = compare(how, (extreme.quantity, extreme.span), limit, span)
+        whole = UnaryOp.HISTORICALLY if how in every else UnaryOp.ONCE
+        return Unary(whole, one, Interval(0, extreme.window), span)
+
+    if op not in _EQUALITY:
+        return over(op)
+    same = Binary(BinaryOp.AND, over(CompareOp.LE), over(CompareOp.GE), None, span)
+    return same if op is CompareOp.EQ else Unary(UnaryOp.NOT, same, None, span)
+
+
 def _comparable(value: Value, span: Span) -> Placed:
+    if isinstance(value, AmountOf):
+        raise Refusal(rules.amount_alone(span))
+    if isinstance(value, Extreme):
+        raise Refusal(rules.extreme_alone(span))
     if isinstance(value, Age):
         raise Refusal(rules.age_alone(span))
     if not isinstance(value, Quantity) or value.truth:

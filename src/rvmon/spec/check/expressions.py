@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import assert_never
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
+from rvmon.spec.check.choices import either, spread
 from rvmon.spec.check.comparisons import closed_interval, compared, ticks_of
 from rvmon.spec.check.functions import applied
 from rvmon.spec.check.quantities import arithmetic
 from rvmon.spec.check.table import Table, close_name, close_unit
-from rvmon.spec.check.values import EVERYWHERE, Age, Closure, Quantity, Scope, Value
+from rvmon.spec.check.values import (
+    EVERYWHERE,
+    Age,
+    AmountOf,
+    Chosen,
+    Closure,
+    Extreme,
+    Quantity,
+    Scope,
+    Value,
+)
+from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Binary,
     BoundAtom,
@@ -37,6 +50,7 @@ from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.effort import Cost, Effort
 from rvmon.spec.syntax.expressions import (
     Call,
+    Choice,
     Comparison,
     Edge,
     Expression,
@@ -55,8 +69,7 @@ from rvmon.spec.syntax.expressions import (
 from rvmon.spec.syntax.expressions import Window as WindowSyntax
 from rvmon.spec.syntax.items import ConstItem, DefineItem
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
 
 def formula_of(value: Value, span: Span) -> Formula:
@@ -74,6 +87,12 @@ def formula_of(value: Value, span: Span) -> Formula:
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
         case Age():
             raise Refusal(rules.age_alone(span))
+        case AmountOf():
+            raise Refusal(rules.amount_alone(span))
+        case Extreme():
+            raise Refusal(rules.extreme_alone(span))
+        case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
+            return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
         case _:
             return value
 
@@ -91,6 +110,12 @@ def number_of(value: Value, span: Span) -> Quantity:
             raise Refusal(rules.label_use(span))
         case Age():
             raise Refusal(rules.age_alone(span))
+        case AmountOf():
+            raise Refusal(rules.amount_alone(span))
+        case Extreme():
+            raise Refusal(rules.extreme_alone(span))
+        case Chosen():
+            raise Refusal(rules.choice_alone(span))
         case _:
             raise Refusal(rules.needs_number(span))
 
@@ -150,6 +175,17 @@ class Checker:
         values = self.values(expressions, scope)
         return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
+    def calculated(
+        self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
+    ) -> Value:
+        """An operation on numbers, or on choices between them."""
+
+        def made(values: Sequence[Value]) -> Quantity:
+            pairs = zip(values, args, strict=True)
+            return arithmetic(op, [(number_of(v, e.span), e.span) for v, e in pairs], span)
+
+        return spread(self.values(args, scope), span, made)
+
     def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
         """What the expressions stand for.
 
@@ -206,10 +242,11 @@ class Checker:
                 return self._infix(expression, scope)
             case Comparison():
                 return compared(self, expression, scope)
+            case Choice(condition=condition, chosen=chosen, otherwise=otherwise):
+                sides = self.values((chosen, otherwise), scope)
+                return Chosen(self.formula(condition, scope), *sides)
             case Operation(op=op, args=args, span=span):
-                spans = [arg.span for arg in args]
-                quantities = self.quantities(args, scope)
-                return arithmetic(op, list(zip(quantities, spans, strict=True)), span)
+                return self.calculated(op, args, scope, span)
             case Path() | Quantified() | LeadsTo():
                 raise Refusal(property_rules.path_outside(expression.span))
             case _:

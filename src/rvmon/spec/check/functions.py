@@ -6,11 +6,11 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.operands import Operands
-from rvmon.spec.check.quantities import arithmetic
-from rvmon.spec.check.values import Age, Quantity, Scope, Value
+from rvmon.spec.check.values import Age, AmountOf, Extreme, Quantity, Scope, Value
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Interval,
+    Measured,
     Probe,
     ProbeAtom,
     Unary,
@@ -19,15 +19,32 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.spec.checked.functions import FUNCTIONS, Argument, Function
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.spec.checked.tense import future_part, is_pulse
 from rvmon.spec.rules import names as name_rules
+from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal, Reported
 from rvmon.spec.syntax.expressions import Call, Name
 from rvmon.spec.syntax.fixes import NEVER
 from rvmon.trace.schema import Kind
-from rvmon.units.table import parse_unit, quotient
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN, parse_unit, quotient
 
+_INSTEAD = {
+    **dict.fromkeys(
+        ("mean", "average", "avg", "median", "percentile"),
+        "bound the share that is off: `share(x > 2, 10 s) <= 10 %`, or all: `max(x, 10 s) <= 2`",
+    ),
+    **dict.fromkeys(
+        ("sum", "integral"),
+        "bound what adds up, `count(e, D)`, `duration(φ, D)`, or publish the sum as a signal",
+    ),
+    **dict.fromkeys(
+        ("variance", "stddev"), "bound the spread: `max(x, D) <= 2 and min(x, D) >= 1`"
+    ),
+}
+"""What says nearly the same as functions that there are not."""
+_EXTREMES = (NumericOp.MIN, NumericOp.MAX)
 _COUNTS = ("no argument", "one argument", "two arguments")
 
 
@@ -54,12 +71,42 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
             return ProbeAtom(probe, _named(operands, call, scope, function)[0], call.span)
         case UpdateFunction() as of_updates:
             return _of_updates(operands, of_updates, _named(operands, call, scope, function))
+        case NumericOp() as op if op in _EXTREMES and len(call.args) == 2:
+            extreme = _extreme(operands, op, call, scope)
+            return extreme or operands.calculated(op, call.args, scope, call.span)
         case NumericOp() as op:
-            quantities = operands.quantities(call.args, scope)
-            placed = zip(quantities, (arg.span for arg in call.args), strict=True)
-            return arithmetic(op, list(placed), call.span)
+            return operands.calculated(op, call.args, scope, call.span)
+        case Measured() as measured:
+            return _amount(operands, measured, call, scope)
         case None:
             return Age(_named(operands, call, scope, function)[0])
+
+
+def _amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> AmountOf:
+    """How much of a formula there was, which has to be known at once."""
+    formula = operands.formula(call.args[0], scope)
+    if (ahead := future_part(formula)) is not None:
+        raise Refusal(rules.amount_of_future(ahead.span or call.span, call.function.text))
+    held = operands.table.time is TimeModel.HELD
+    if measured is Measured.COUNT and held and not is_pulse(formula):
+        raise Refusal(rules.count_of_state(call.args[0].span))
+    window = operands.duration(call.args[1], scope)
+    if window == 0:
+        raise Refusal(time_rules.no_duration(call.args[1].span))
+    return AmountOf(measured, formula, window, call.function.text == "share")
+
+
+def _extreme(operands: Operands, op: NumericOp, call: Call, scope: Scope) -> Extreme | None:
+    """That of a window, if the second argument is a duration and the first is no time."""
+    first, second = operands.values(call.args, scope)
+    if not isinstance(first, Quantity) or not isinstance(second, Quantity):
+        return None
+    time = parse_unit("s").dimension
+    is_window = second.constant is not None and second.unit.dimension == time
+    if first.constant is not None or not is_window or first.unit.dimension == time:
+        return None
+    window = operands.duration(call.args[1], scope)
+    return Extreme(op is NumericOp.MAX, first, call.args[0].span, window)
 
 
 def _check_count(call: Call, function: Function) -> None:
@@ -107,5 +154,5 @@ def _unknown(operands: Operands, call: Call) -> Diagnostic:
             call.function.span, name, f"put a space before the bracket: `{name} {rest[:20]}`"
         )
     fix = did_you_mean(name, [*FUNCTIONS, *operands.table.declared])
-    fix = NEVER if name == "never" else fix
+    fix = NEVER if name == "never" else _INSTEAD.get(name, fix)
     return name_rules.unknown_function(call.function.span, name, fix)

@@ -5,6 +5,7 @@ Source: Maidl, The common fragment of CTL and LTL, FOCS 2000: ACTL^det.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import assert_never
 
 from rvmon.diagnostics.span import Span
@@ -33,6 +34,32 @@ def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
         Refusal: the property is not in the fragment; which part and why is in the message.
     """
     return _Linear(place, time).of(property_.formula, True)
+
+
+def shown_form(property_: Property, place: Span, time: TimeModel) -> Formula:
+    """The formula of a run that shows a property of some path.
+
+    Raises:
+        Refusal: no single run shows it.
+    """
+    denied = Property(property_.id, property_.text, StateNot(property_.formula), property_.span)
+    try:
+        formula = linear_form(denied, place, time)
+    except Refusal as refusal:
+        if any(isinstance(part, ModelAtom) for part in _parts(property_.formula)):
+            raise
+        raise Refusal(rules.not_shown(property_.span or place)) from refusal
+    return Unary(UnaryOp.NOT, formula, None, property_.span)
+
+
+def _parts(state: StateFormula) -> Iterator[StateFormula]:
+    yield state
+    match state:
+        case StateNot(operand=operand) | PathUnary(operand=operand):
+            yield from _parts(operand)
+        case StateBinary(left=left, right=right) | PathBinary(left=left, right=right):
+            yield from _parts(left)
+            yield from _parts(right)
 
 
 class _Linear:

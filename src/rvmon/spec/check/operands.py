@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from rvmon.diagnostics.span import Span
 from rvmon.spec.check.table import Table
 from rvmon.spec.check.values import Quantity, Scope, Value
+from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import Formula
 from rvmon.spec.syntax.expressions import Expression
 
@@ -21,6 +23,11 @@ class Operands(Protocol):
 
     def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
         """What the operands stand for."""
+
+    def calculated(
+        self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
+    ) -> Value:
+        """An operation on numbers, or on choices between them."""
 
     def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
         """The same, which have to be numbers."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import reduce
+from typing import assert_never
 
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.values import Quantity
@@ -11,12 +13,15 @@ from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
 from rvmon.spec.checked.formula import Arithmetic, Compare, CompareOp, Constant, Literal, Numeric
 from rvmon.spec.rules import types as rules
 from rvmon.spec.rules.rule import Refusal
-from rvmon.units.table import base_unit, product, quotient, root
-from rvmon.units.unit import PLAIN, Unit
+from rvmon.units import PLAIN, Unit, base_unit, parse_unit, product, quotient, root
 
 Placed = tuple[Quantity, Span]
 """A quantity with the place of its expression."""
 
+_RADIAN = parse_unit("rad")
+_OF_ANGLES = {UnitRule.OF_ANGLE: PLAIN, UnitRule.PLACES: parse_unit("m")}
+_HIGHEST = 9
+"""Of units, powers up to there have a meaning."""
 _DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
 
 
@@ -41,15 +46,37 @@ def arithmetic(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
     Raises:
         Refusal: the units do not fit, or a constant is out of range.
     """
+    rule = op.entry.unit
     try:
-        match op.entry.unit:
+        match rule:
             case UnitRule.PRODUCT | UnitRule.QUOTIENT:
                 return _scale(op, args, span)
             case UnitRule.ROOT:
                 return _root(op, args[0], span)
-            case UnitRule.SAME:
-                return _alike(op, args, span)
-    except (ZeroDivisionError, OverflowError):
+            case UnitRule.POWER if args[0][0].unit.symbol:
+                return _power(op, args, span)
+            case UnitRule.SAME | UnitRule.DIRECTION:
+                unit = _common_unit(args, _DOING.get(op, "beside"), span)
+                return _applied(op, args, unit, unit if rule is UnitRule.SAME else _RADIAN, span)
+            case UnitRule.SIGN:
+                return _applied(op, args, args[0][0].unit, PLAIN, span)
+            case UnitRule.PLAIN | UnitRule.POWER | UnitRule.BITS:
+                _check_dimension(op, args, PLAIN, whole=rule is UnitRule.BITS)
+                return _applied(op, args, PLAIN, PLAIN, span)
+            case UnitRule.TO_ANGLE:
+                _check_dimension(op, args, PLAIN)
+                return _applied(op, args, PLAIN, _RADIAN, span)
+            case UnitRule.OF_ANGLE | UnitRule.PLACES:
+                _check_dimension(op, args, _RADIAN)
+                return _applied(op, args, _RADIAN, _OF_ANGLES[rule], span)
+            case UnitRule.TURN:
+                _check_dimension(op, args, _RADIAN)
+                unit = _common_unit(args, "beside", span)
+                turn = Quantity(constant=parse_unit("rev").factor / unit.factor, unit=unit), span
+                return _applied(op, (*args, turn), unit, unit, span)
+            case _:
+                assert_never(rule)
+    except (ArithmeticError, ValueError):
         raise Refusal(rules.out_of_range(span)) from None
 
 
@@ -62,19 +89,47 @@ def node_of(placed: Placed) -> Numeric:
     return _nodes((placed,), placed[0].unit)[0]
 
 
-def _alike(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
-    """Operations on values of one unit, which is that of the result."""
-    unit = _common_unit(args, _DOING.get(op, "beside"), span)
+def _check_dimension(
+    op: NumericOp, args: Sequence[Placed], unit: Unit, *, whole: bool = False
+) -> None:
+    """Refuse an argument of another kind than a function of such values takes."""
+    for value, place in args:
+        if value.unit.dimension != unit.dimension and not _bare_zero(value):
+            raise Refusal(rules.argument_unit(place, op, value.unit.symbol, unit.symbol))
+        if whole and not _is_integral(value):
+            raise Refusal(rules.argument_kind(place, op, "a number of type `int`"))
+
+
+def _applied(
+    op: NumericOp, args: Sequence[Placed], unit: Unit, result: Unit, span: Span
+) -> Quantity:
+    """An operation on values that are brought to `unit`; its result comes in another."""
+    truth = op is NumericOp.BIT
     constants = [_exact(value, unit) for value, _ in args if value.constant is not None]
-    if len(constants) == len(args):
-        return Quantity(constant=_folded(op, constants, span), unit=unit)
+    if len(constants) == len(args) and not truth:
+        return Quantity(constant=_folded(op, constants, span), unit=result)
     node = Arithmetic(op, _nodes(args, unit))
-    return Quantity(node, unit=unit, integral=_is_whole(op, args))
+    return Quantity(node, unit=result, integral=_is_whole(op, args), truth=truth)
+
+
+def _power(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
+    """A power of what has a unit, which has to be known beforehand."""
+    (base, _), (exponent, place) = args
+    power = exponent.constant
+    if power is None or exponent.unit.symbol or power.denominator != 1 or abs(power) > _HIGHEST:
+        raise Refusal(rules.power_of_unit(place, base.unit.symbol))
+    inverse = quotient(PLAIN, base.unit)
+    factors = [base.unit if power > 0 else inverse] * abs(int(power))
+    unit = reduce(product, factors, PLAIN)
+    if base.constant is not None:
+        return Quantity(constant=_folded(op, [base.constant, power], span), unit=unit)
+    return Quantity(Arithmetic(op, (node_of(args[0]), Literal(int(power)))), unit=unit)
 
 
 def _folded(op: NumericOp, constants: Sequence[Fraction], span: Span) -> Fraction:
     """The result for constants, which stay within what is written in a few hundred digits."""
-    value = Fraction(op.entry.apply(*constants))
+    whole = op.entry.unit is UnitRule.BITS
+    value = Fraction(op.entry.apply(*(map(int, constants) if whole else constants)))
     if max(value.numerator.bit_length(), value.denominator.bit_length()) > 4096:
         raise Refusal(rules.out_of_range(span))
     return value
@@ -133,10 +188,11 @@ def _bare_zero(value: Quantity) -> bool:
 
 def _is_whole(op: NumericOp, args: Sequence[Placed]) -> bool:
     """Whether only whole numbers come in, and go out."""
-    return op.entry.whole and all(
-        value.integral if value.constant is None else value.constant.denominator == 1
-        for value, _ in args
-    )
+    return op.entry.whole and all(_is_integral(value) for value, _ in args)
+
+
+def _is_integral(value: Quantity) -> bool:
+    return value.integral if value.constant is None else value.constant.denominator == 1
 
 
 def _exact(value: Quantity, unit: Unit) -> Fraction:

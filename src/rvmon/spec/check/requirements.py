@@ -9,7 +9,7 @@ from typing import TypeVar
 from rvmon.diagnostics.span import Span
 from rvmon.spec.check.coverage import present
 from rvmon.spec.check.expressions import Checker
-from rvmon.spec.check.linear import linear_form
+from rvmon.spec.check.linear import linear_form, shown_form
 from rvmon.spec.check.normalise import (
     derived_response,
     normalised,
@@ -22,6 +22,7 @@ from rvmon.spec.check.traps import capture_traps, traps_at_start, traps_at_trigg
 from rvmon.spec.check.values import EVERYWHERE, Quantity, Scope
 from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import Bound, BoundAtom, Captured, FieldValue, Formula
+from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.specification import (
     Capture,
     EndPolicy,
@@ -48,6 +49,7 @@ from rvmon.spec.syntax.items import (
     AtEndClause,
     Bare,
     Clause,
+    CoverMonitor,
     ForEachClause,
     LetClause,
     PropertyClause,
@@ -61,7 +63,7 @@ from rvmon.spec.syntax.items import (
     WrittenMonitor,
 )
 from rvmon.trace.schema import Kind
-from rvmon.units.unit import PLAIN
+from rvmon.units import PLAIN
 
 _C = TypeVar("_C", bound=Clause)
 
@@ -106,6 +108,23 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement 
         scope=scopes[0] if scopes else "",
         run_share=share,
     )
+
+
+def checked_goal(checker: Checker, item: RequirementItem, span: Span) -> Cover | None:
+    """Check what is monitored as a cover goal; `None` if it is wrong, and then that is reported."""
+    try:
+        for clause in item.clauses:
+            if not isinstance(clause, PropertyClause | TextClause | TagsClause):
+                raise Refusal(property_rules.not_of_a_goal(clause.span))
+        ctl = _property(checker, item)
+        if ctl is None:
+            raise Refusal(property_rules.no_goal(span))
+        return Cover(item.name.text, shown_form(ctl, span, checker.table.time), item.span, ctl)
+    except Refusal as refusal:
+        checker.report(refusal.finding)
+    except Reported:
+        pass
+    return None
 
 
 def check_clauses(checker: Checker, item: RequirementItem) -> None:
@@ -155,6 +174,8 @@ def _parts(
             if ctl is None:
                 raise Refusal(property_rules.nothing_written(span))
             return normalised(linear_form(ctl, span, checker.table.time))
+        case CoverMonitor():
+            raise AssertionError("a goal is no requirement")
 
 
 def _property(checker: Checker, item: RequirementItem) -> Property | None:

@@ -7,9 +7,10 @@ from dataclasses import replace
 from rvmon.spec.check.coverage import checked_cover, checked_coverpoint, checked_cross
 from rvmon.spec.check.expressions import Checker
 from rvmon.spec.check.properties import checked_property
-from rvmon.spec.check.requirements import check_clauses, checked_requirement
+from rvmon.spec.check.requirements import check_clauses, checked_goal, checked_requirement
 from rvmon.spec.check.table import Table, close_name, close_unit
 from rvmon.spec.check.values import EVERYWHERE
+from rvmon.spec.checked.goals import Cover
 from rvmon.spec.checked.specification import (
     CheckedSpec,
     Event,
@@ -26,11 +27,10 @@ from rvmon.spec.rules import time as time_rules
 from rvmon.spec.rules import types as type_rules
 from rvmon.spec.rules.rule import Findings, Refusal, Reported
 from rvmon.spec.syntax.expressions import Expression, Name
-from rvmon.spec.syntax.items import ConstItem, DefineItem, TypeSyntax
+from rvmon.spec.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
 from rvmon.spec.syntax.walk import expressions_in
 from rvmon.trace.schema import Kind
-from rvmon.units.table import UnknownUnitError, parse_unit
-from rvmon.units.unit import Unit
+from rvmon.units import Unit, UnknownUnitError, parse_unit
 
 
 def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
@@ -54,13 +54,19 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
     if spec.delay is not None:
         delay = _duration(checker, spec.delay.delay)
     requirements: dict[str, Requirement] = {}
+    goals: dict[str, Cover] = {}
     for name, item in spec.requirements.items():
         check_clauses(checker, item)
+        if isinstance(item.body, CoverMonitor):
+            goal = checked_goal(checker, item, item.body.span)
+            goals.update({} if goal is None else {name: goal})
+            continue
         requirement = checked_requirement(checker, item)
         if requirement is not None:
             requirements[name] = requirement
     check_unused(checker, spec)
-    properties = {name: r.ctl for name, r in requirements.items() if r.ctl is not None}
+    stated: list[Requirement | Cover] = [*requirements.values(), *goals.values()]
+    properties = {one.id: one.ctl for one in stated if one.ctl is not None}
     for name, alone in spec.properties.items():
         if found := checked_property(checker, name, alone.formula):
             properties[name] = found
@@ -68,7 +74,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
         name: cover
         for name, syntax in spec.covers.items()
         if (cover := checked_cover(checker, syntax))
-    }
+    } | goals
     coverpoints = {
         name: point
         for name, syntax in spec.coverpoints.items()

@@ -10,8 +10,7 @@ from rvmon.spec.check.values import FieldOf
 from rvmon.spec.checked.specification import Event, Signal, TimeModel
 from rvmon.spec.names.resolved import Declared, DeclaredEvent, DeclaredSignal
 from rvmon.spec.syntax.items import ConstItem, DefineItem
-from rvmon.units.table import unit_table
-from rvmon.units.unit import Unit
+from rvmon.units import Unit, unit_table
 
 _LONG_NAMES = {
     "metre": "m",

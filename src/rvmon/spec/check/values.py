@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from rvmon.spec.checked.formula import Formula, Numeric
+from rvmon.diagnostics.span import Span
+from rvmon.spec.checked.formula import Formula, Measured, Numeric
 from rvmon.spec.checked.specification import Event, Signal, Type
 from rvmon.spec.syntax.expressions import Expression
 from rvmon.spec.syntax.items import ConstItem, DefineItem
-from rvmon.units.unit import PLAIN, Unit
+from rvmon.units import PLAIN, Unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,50 @@ class Age:
     name: str
 
 
-Value = Formula | Quantity | Age
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """`if φ then x else y` of numbers; a comparison of it is one of each, beside φ."""
+
+    condition: Formula
+    chosen: Value
+    otherwise: Value
+
+
+@dataclass(frozen=True, slots=True)
+class AmountOf:
+    """`count(φ, D)`, `duration(φ, D)`, `share(φ, D)`; only compared with constants.
+
+    Attributes:
+        measured: a share is the duration, divided by D.
+        operand: φ.
+        window: D, ticks.
+        share: whether it is one.
+    """
+
+    measured: Measured
+    operand: Formula
+    window: int
+    share: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Extreme:
+    """`min(x, D)`, `max(x, D)`; only compared with what stays as it is.
+
+    Attributes:
+        greatest: whether it is the greatest value of the last D, and not the least.
+        quantity: x.
+        span: of x.
+        window: D, ticks.
+    """
+
+    greatest: bool
+    quantity: Quantity
+    span: Span
+    window: int
+
+
+Value = Formula | Quantity | Age | AmountOf | Extreme | Chosen
 
 
 @dataclass(frozen=True, slots=True)

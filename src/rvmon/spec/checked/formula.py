@@ -221,5 +221,33 @@ class Binary:
     span: Span | None = None
 
 
+class Measured(StrEnum):
+    """What is measured of a formula over the last D."""
+
+    COUNT = "count"
+    """The positions at which it holds, of those that `once[0, D]` looks at."""
+
+    DURATION = "duration"
+    """The ticks at which it holds, of those up to the one before this instant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Amount:
+    """`count(φ, D) >= n`, `duration(φ, D) >= n ticks`; where φ is not born it does not hold.
+
+    Attributes:
+        measured: which of the two.
+        operand: φ, of the present and past.
+        window: D, ticks.
+        least: n, 1 or more.
+    """
+
+    measured: Measured
+    operand: Formula
+    window: int
+    least: int
+    span: Span | None = None
+
+
 Atom = Constant | SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
-Formula = Atom | Unary | Binary
+Formula = Atom | Unary | Binary | Amount

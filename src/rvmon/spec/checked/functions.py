@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import Probe, UpdateFunction
+from rvmon.spec.checked.formula import Measured, Probe, UpdateFunction
 from rvmon.spec.checked.operators import UnaryOp, Window
 
 
@@ -37,7 +37,7 @@ class Function:
     """
 
     name: str
-    means: UnaryOp | Probe | UpdateFunction | NumericOp | None
+    means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | None
     arguments: tuple[Argument, ...]
     doc: str
     more: bool = False
@@ -62,12 +62,29 @@ _OF_UPDATES = (
 )
 
 
+_AMOUNTS = (
+    Function(
+        *("count", Measured.COUNT, (Argument.FORMULA, Argument.DURATION)),
+        "how often φ was true in the last D, beside a number",
+    ),
+    Function(
+        *("duration", Measured.DURATION, (Argument.FORMULA, Argument.DURATION)),
+        "for how long φ was true in the last D, beside a duration",
+    ),
+    Function(
+        *("share", Measured.DURATION, (Argument.FORMULA, Argument.DURATION)),
+        "that duration divided by D, beside a number or `%`",
+    ),
+)
+
+
 def _all() -> Iterator[Function]:
     for op in UnaryOp:
         if op.entry.called:
             length = (Argument.DURATION,) if op.entry.window is Window.LENGTH else ()
             yield Function(op.entry.word, op, (Argument.FORMULA, *length), op.entry.doc)
     yield from _OF_UPDATES
+    yield from _AMOUNTS
     for operation in NumericOp:
         if operation.is_function:
             entry = operation.entry

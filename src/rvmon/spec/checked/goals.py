@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from rvmon.diagnostics.span import Span
+from rvmon.spec.checked.ctl import Property
 from rvmon.spec.checked.formula import Formula
 
 
@@ -17,11 +18,13 @@ class Cover:
         id: of the goal.
         formula: true at the start of a run that shows the goal: `eventually` what is written.
         span: of the item.
+        ctl: the property that is shown, for model checking; `None` for `cover ID = …`.
     """
 
     id: str
     formula: Formula
     span: Span | None = None
+    ctl: Property | None = None
 
 
 class BinKind(StrEnum):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     Bound,
     BoundAtom,
@@ -78,6 +79,8 @@ def _both_facts(formula: Formula) -> Both:
             return _both_facts(operand)[0], {}
         case Unary() | Binary():
             return read(formula, _both_facts, _Facts())
+        case Amount():
+            return {}, {}
         case Compare():
             key, same = _compared(formula)
             return {key: same, **dict.fromkeys(_events(formula), True)}, {key: not same}
@@ -106,6 +109,8 @@ def truth_at(formula: Formula, facts: Facts) -> bool | None:
             return facts.get(_key(formula))
         case Unary() | Binary():
             return read(formula, lambda part: truth_at(part, facts), _Here(facts))
+        case Amount():
+            return None
 
 
 class _Here(Reading[bool | None]):

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Arithmetic,
     Binary,
     BinaryOp,
@@ -43,7 +44,7 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
         seen.add(id(node))
         yield node
         match node:
-            case Unary(operand=operand):
+            case Unary(operand=operand) | Amount(operand=operand):
                 waiting.append(operand)
             case Binary(left=left, right=right):
                 waiting += (right, left)
@@ -121,7 +122,7 @@ def _pulses(formula: Formula) -> Pulses:
             return reads_field(left) or reads_field(right), False
         case ProbeAtom(probe=probe):
             return probe is not Probe.KNOWN, False
-        case SignalAtom() | BoundAtom():
+        case SignalAtom() | BoundAtom() | Amount():
             return False, False
         case Unary(op=op) | Binary(op=op) if op.entry.tense is not Tense.PRESENT:
             return op.entry.pulse, False

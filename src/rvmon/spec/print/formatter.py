@@ -59,6 +59,7 @@ def _row(pieces: Sequence[Piece]) -> Row:
 _CLAUSES = frozenset(
     {
         *("UPON", "WHENEVER", "THEN", "MONITOR_AS_RESPONSE", "MONITOR_AS_WRITTEN"),
+        "MONITOR_AS_COVER",
         *("TEXT_CLAUSE", "SEVERITY", "TAGS"),
         *(
             "LET",
@@ -140,10 +141,16 @@ def _item_lines(pieces: Sequence[Piece]) -> list[str]:
 def _starts_line(pieces: Sequence[Piece], number: int) -> bool:
     piece = pieces[number]
     if piece.kind in _CLAUSES and piece.depth == 0:
-        return True
+        return piece.kind != "THEN" or not _within_choice(pieces[:number])
     if pieces[0].kind != "REQUIREMENT":
         return False
     return number == (3 if pieces[2].kind == "STRING" else 2)
+
+
+def _within_choice(before: Sequence[Piece]) -> bool:
+    """Whether an `if` waits for its `then`."""
+    kinds = [piece.kind for piece in before if piece.depth == 0]
+    return kinds.count("IF") > kinds.count("ELSE")
 
 
 def _own_comments(rest: str) -> tuple[list[str], str]:

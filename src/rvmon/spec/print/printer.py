@@ -7,6 +7,7 @@ from typing import assert_never
 
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
+    Amount,
     Arithmetic,
     Binary,
     BinaryOp,
@@ -19,6 +20,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Interval,
     Literal,
+    Measured,
     Numeric,
     ProbeAtom,
     SignalAtom,
@@ -91,6 +93,9 @@ def _formula(formula: Formula, level: int) -> str:
             return f"{format_numeric(left)} {op} {format_numeric(right)}"
         case Unary():
             return _unary(formula)
+        case Amount(measured=measured, operand=operand, window=window, least=least):
+            enough = str(least) if measured is Measured.COUNT else format_duration(least)
+            return f"{measured}({_formula(operand, 0)}, {format_duration(window)}) >= {enough}"
         case Binary(op=op):
             text = _binary(formula)
             return f"({text})" if op.entry.level < level else text
@@ -132,12 +137,20 @@ def _binary(formula: Binary) -> str:
     if op.entry.chained:
         operands = _chain(formula, op)
         texts = [_left(operand, level + 1) for operand in operands[:-1]]
-        return f" {op.entry.word} ".join((*texts, _formula(operands[-1], level + 1)))
+        texts.append(_formula(operands[-1], level + 1))
+        if op is not BinaryOp.IFF:
+            pairs = zip(operands, texts, strict=True)
+            texts = [f"({text})" if _is_kin_of_until(one) else text for one, text in pairs]
+        return f" {op.entry.word} ".join(texts)
     right = formula.right
     same = isinstance(right, Binary) and right.op is op
     right_level = level if same else level + 1
     left = _left(formula.left, level + 1)
     return f"{left} {op.entry.word}{_window(formula.interval)} {_formula(right, right_level)}"
+
+
+def _is_kin_of_until(formula: Formula) -> bool:
+    return isinstance(formula, Binary) and formula.op.entry.level == BinaryOp.UNTIL.entry.level
 
 
 def _chain(formula: Formula, op: BinaryOp) -> list[Formula]:
@@ -197,7 +210,8 @@ def _arithmetic(numeric: Arithmetic) -> str:
         case NumericOp.NEG:
             return f"-{_numeric(numeric.args[0], _NEGATIVE)}"
         case op:
-            return f"{op}({', '.join(_numeric(arg, _SUM) for arg in numeric.args)})"
+            written = numeric.args[: op.entry.most]  # a turn is behind those of an angle
+            return f"{op}({', '.join(_numeric(arg, _SUM) for arg in written)})"
 
 
 def _literal(literal: Literal, level: int) -> str:

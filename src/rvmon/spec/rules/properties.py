@@ -60,6 +60,11 @@ nothing_written = Breach(
 )
 
 
+no_goal = Breach(
+    NOT_LINEAR, "there is no property that runs should show", "add a clause `property E<> (…)`"
+)
+
+
 def reads_model(span: Span, text: str) -> Diagnostic:
     """A clock or location in a property that is monitored."""
     return finding(
@@ -74,6 +79,16 @@ some_path = Breach(
     NOT_LINEAR,
     "`{}` speaks of some path, and a run shows one only",
     "check it with `rvmon verify`; what some run should show is a goal: `cover ID = φ`",
+)
+not_shown = Breach(
+    NOT_LINEAR,
+    "`{}` is shown by no single run",
+    "as a goal take `E<> φ` or `E[φ U ψ]`; or check it with `rvmon verify`",
+)
+not_of_a_goal = Breach(
+    NOT_LINEAR,
+    "`{}` means nothing for `monitor as cover`: a goal has no attempts",
+    "remove the clause",
 )
 choice_of_paths = Breach(
     NOT_LINEAR,

@@ -44,6 +44,29 @@ def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
     )
 
 
+def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diagnostic:
+    """`a unless b and c`: the connective may belong to what stands beside it alone.
+
+    Args:
+        whole: the operator with both its sides.
+        operator: of the `until` family.
+        connective: that stands beside it.
+        near: the side that both may claim.
+    """
+    first, second = short(operator.text), short(connective.text)
+    behind = connective.start >= whole.end
+    text, side = short(whole.text), short(near.text)
+    other = f"{first} ({side} {second} …)" if behind else f"(… {second} {side}) {first}"
+    own = f"({text}) {second} …" if behind else f"… {second} ({text})"
+    return finding(
+        REACH,
+        f"`{first}` beside `{second}` can be read in two ways here",
+        whole,
+        connective,
+        fix=f"write `… {other}` or `{own}`" if behind else f"write `{other} …` or `{own}`",
+    )
+
+
 def mixed_chain(first: Span, second: Span) -> Diagnostic:
     """Two different operators of the `until` family without brackets."""
     return finding(

@@ -76,6 +76,58 @@ def age_alone(span: Span) -> Diagnostic:
     )
 
 
+amount_alone = Breach(
+    WRONG_TYPE,
+    "`{}` can only be compared with a constant",
+    "write `count(e, 5 s) >= 3`, `duration(φ, 60 s) <= 4 s`, `share(φ, 1 h) >= 70 %`",
+)
+
+
+extreme_alone = Breach(
+    WRONG_TYPE,
+    "`{}` can only be compared with a constant, or with a captured value",
+    "write `max(x, 5 s) <= 1`, or capture the other side: `let v = y`",
+)
+
+
+def count_of_state(span: Span) -> Diagnostic:
+    """A count of what holds for a while, at each tick."""
+    text = short(span.text)
+    return finding(
+        WRONG_TYPE,
+        f"in `time held` `{text}` holds at every nanosecond of a stretch, and is not counted",
+        span,
+        fix=f"count where it begins, `rise({text})`, or measure it: `duration({text}, …)`",
+    )
+
+
+def amount_of_future(span: Span, name: str) -> Diagnostic:
+    """An amount of what is not known at once."""
+    return finding(
+        WRONG_TYPE,
+        f"`{name}` is of the past, and `{short(span.text)}` speaks of the future",
+        span,
+        fix="count what shows that it came, as in `count(e and once[0, 3 s] a, 1 min)`",
+    )
+
+
+choice_alone = Breach(
+    WRONG_TYPE,
+    "`{}` is a choice, expected one number",
+    "compare each side: `if φ then x <= 1 else x <= 2`",
+)
+
+
+def many_outcomes(span: Span, most: int) -> Diagnostic:
+    """Choices within choices."""
+    return finding(
+        WRONG_TYPE,
+        f"`{short(span.text)}` chooses between more than {most} numbers",
+        span,
+        fix="split it into several requirements",
+    )
+
+
 not_constant = Breach(
     WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"
 )
@@ -94,6 +146,33 @@ def argument_count(span: Span, name: str, takes: str, given: int) -> Diagnostic:
 def argument_kind(span: Span, name: str, needed: str) -> Diagnostic:
     """An argument of the wrong kind; `needed` says which kind is needed, with its article."""
     return finding(WRONG_ARGUMENTS, f"`{name}` needs {needed}, `{short(span.text)}` is none", span)
+
+
+def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
+    """An argument of another unit than a function takes; `needed` is empty for a plain number."""
+    text = short(span.text)
+    shown = f"comes in [{unit}]" if unit else "has no unit"
+    fix = (
+        f"divide it by 1 {unit}"
+        if unit
+        else "declare it in `[rad]` or `[deg]`: an angle is no plain number"
+    )
+    return finding(
+        UNIT_MISMATCH,
+        f"`{name}` takes {'an angle' if needed else 'a plain number'}, `{text}` {shown}",
+        span,
+        fix=fix,
+    )
+
+
+def power_of_unit(span: Span, unit: str) -> Diagnostic:
+    """A power of something with a unit that is not known beforehand."""
+    return finding(
+        UNIT_MISMATCH,
+        f"`{short(span.text)}` leaves open which power of [{unit}] comes out",
+        span,
+        fix="write a whole number up to 9, or divide the base by one of its units",
+    )
 
 
 def mismatch(span: Span, left: str, right: str, doing: str) -> Diagnostic:

@@ -22,6 +22,7 @@ from rvmon.spec.syntax.items import (
     BinSyntax,
     ConstItem,
     CoverItem,
+    CoverMonitor,
     CoverpointItem,
     CrossItem,
     DefineItem,
@@ -144,23 +145,32 @@ class Builder(ExpressionBuilder):
     def requirement(self, meta: Meta, children: Children) -> RequirementItem:
         _, name, *rest = children
         text = _string(rest.pop(0)) if isinstance(rest[0], Token) else ""
-        body, *clauses = rest
+        (body, early), *clauses = rest
+        clauses = [*early, *clauses]
         return RequirementItem(self.ident(name), text, body, tuple(clauses), self.span(meta))
 
-    def bare(self, meta: Meta, children: Children) -> Bare:
-        return Bare(children[0])
+    def bare(self, meta: Meta, children: Children) -> tuple[Bare, Children]:
+        return Bare(children[0]), []
 
-    def upon(self, meta: Meta, children: Children) -> Triggered:
-        return Triggered(Mode.UPON, children[1], children[3])
+    def upon(self, meta: Meta, children: Children) -> tuple[Triggered, Children]:
+        return self._triggered(Mode.UPON, children)
 
-    def whenever(self, meta: Meta, children: Children) -> Triggered:
-        return Triggered(Mode.WHENEVER, children[1], children[3])
+    def whenever(self, meta: Meta, children: Children) -> tuple[Triggered, Children]:
+        return self._triggered(Mode.WHENEVER, children)
 
-    def response(self, meta: Meta, children: Children) -> ResponseMonitor:
-        return ResponseMonitor(children[-1], self.span(meta))
+    def _triggered(self, mode: Mode, children: Children) -> tuple[Triggered, Children]:
+        """A trigger with what is owed, and the clauses between the two."""
+        _, trigger, *clauses, _, consequent = children
+        return Triggered(mode, trigger, consequent), clauses
 
-    def written(self, meta: Meta, children: Children) -> WrittenMonitor:
-        return WrittenMonitor(self.span(meta))
+    def response(self, meta: Meta, children: Children) -> tuple[ResponseMonitor, Children]:
+        return ResponseMonitor(children[-1], self.span(meta)), []
+
+    def written(self, meta: Meta, children: Children) -> tuple[WrittenMonitor, Children]:
+        return WrittenMonitor(self.span(meta)), []
+
+    def shown(self, meta: Meta, children: Children) -> CoverMonitor:
+        return CoverMonitor(self.span(meta))
 
     def text_clause(self, meta: Meta, children: Children) -> TextClause:
         return TextClause(str(children[0]), _string(children[1]), self.span(meta))
@@ -184,7 +194,7 @@ class Builder(ExpressionBuilder):
 
     def run_share(self, meta: Meta, children: Children) -> RunShareClause:
         at_least = children[0].endswith("least")
-        return RunShareClause(at_least, self.number(meta, children[1:]), self.span(meta))
+        return RunShareClause(at_least, self.literal(meta, children[1:]), self.span(meta))
 
     def scope_before(self, meta: Meta, children: Children) -> ScopeClause:
         return ScopeClause(None, children[-1], True, self.span(meta))
@@ -218,10 +228,10 @@ class Builder(ExpressionBuilder):
         return SampledClause(children[1], self.span(meta))
 
     def goal(self, meta: Meta, children: Children) -> GoalClause:
-        return GoalClause(self.number(meta, children[1:]), self.span(meta))
+        return GoalClause(self.literal(meta, children[1:]), self.span(meta))
 
     def weight(self, meta: Meta, children: Children) -> WeightClause:
-        return WeightClause(self.number(meta, children[1:]), self.span(meta))
+        return WeightClause(self.literal(meta, children[1:]), self.span(meta))
 
     def unwanted(self, meta: Meta, children: Children) -> UnwantedClause:
         return UnwantedClause(BinKind(str(children[0])), children[1], self.span(meta))

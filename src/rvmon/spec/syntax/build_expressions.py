@@ -21,6 +21,7 @@ from rvmon.spec.rules import syntax as rules
 from rvmon.spec.rules.rule import Refusal
 from rvmon.spec.syntax.expressions import (
     Call,
+    Choice,
     Comparison,
     Edge,
     Expression,
@@ -82,7 +83,7 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         span = self.span(token)
         return Ident(token[:-1], Span(span.source, span.start, span.end - 1))
 
-    def number(self, meta: Meta, children: Children) -> Number:
+    def literal(self, meta: Meta, children: Children) -> Number:
         text = str(children[0])
         digits = text[: _NUMBER.match(text).end()]  # type: ignore[union-attr]  # terminal NUMBER
         decimal = Decimal(digits)
@@ -121,6 +122,21 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         compare = CompareOp("==" if op == "=" else str(op))
         return Comparison(compare, left, right, self.span(op), self.span(meta))
 
+    def among(self, meta: Meta, children: Children) -> Expression:
+        left, *values = (child for child in children if not isinstance(child, Token))
+        span = self.span(meta)
+        equal = [Comparison(CompareOp.EQ, left, one, one.span, span) for one in values]
+        either: Expression = equal[0]
+        for further in equal[1:]:
+            either = Infix(BinaryOp.OR, either, further, None, span, span)
+        either = Group(either, span)
+        denied = any(isinstance(child, Token) for child in children)
+        return Prefix(UnaryOp.NOT, either, None, span, span) if denied else either
+
+    def choice(self, meta: Meta, children: Children) -> Choice:
+        _, condition, _, chosen, _, otherwise = children
+        return Choice(condition, chosen, otherwise, self.span(meta))
+
     def prefix(self, meta: Meta, children: Children) -> Prefix | Immediately:
         token, *window, operand = children
         if token.type == "IMMEDIATELY":
@@ -131,13 +147,18 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
     def bounded(self, meta: Meta, children: Children) -> Prefix:
         token, bound, operand = children
         op = UnaryOp.EVENTUALLY if token.type == "WITHIN" else UnaryOp.ALWAYS
+        if isinstance(bound, Window):
+            return Prefix(op, operand, bound, self.span(token), self.span(meta))
         window = Window(None, bound, False, False, bound.span)
         return Prefix(op, operand, window, self.span(token), self.span(meta))
 
     def chain(self, meta: Meta, children: Children) -> Infix:
         operands, tokens = children[::2], children[1::2]
-        for operand in operands[:-1]:
-            self._check_reach(operand, operands[-1])
+        if not _are_alike(operands):
+            for operand in operands[:-1]:
+                self._check_reach(operand, operands[-1])
+        if tokens[0].type != "IFF":
+            self._check_sides(operands, tokens)
         infix: Infix = self._balanced(operands, tokens)
         return infix
 
@@ -159,6 +180,16 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         if token.type == "INFIX" and isinstance(right, Infix) and right.op is not op:
             self.findings.append(rules.mixed_chain(self.span(token), right.op_span))
         return Infix(op, left, right, first_of(window), self.span(token), self.span(meta))
+
+    def _check_sides(self, operands: Sequence[Any], tokens: Sequence[Token]) -> None:
+        """Between `until` or its kin and a connective a reader may see the other bracket first."""
+        for number, operand in enumerate(operands):
+            if isinstance(operand, Infix) and operand.op.entry.level == BinaryOp.UNTIL.entry.level:
+                token = tokens[min(number, len(tokens) - 1)]
+                near = operand.right if number < len(tokens) else operand.left
+                self.findings.append(
+                    rules.two_sides(operand.span, operand.op_span, self.span(token), near.span)
+                )
 
     def _check_reach(self, left: Expression, last: Expression) -> None:
         """A temporal prefix right before a connective has to say how far it reaches."""
@@ -195,7 +226,8 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         return LeadsTo(left, right, first_of(window), self.span(meta))
 
     def at_most(self, meta: Meta, children: Children) -> Window:
-        return Window(None, children[0], False, False, self.span(meta))
+        (bound,) = (child for child in children if not isinstance(child, Token))
+        return Window(None, bound, False, False, self.span(meta))
 
     def window(self, meta: Meta, children: Children) -> Window:
         opening, low, high, closing = children
@@ -203,6 +235,12 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         return Window(
             low, None if endless else high, opening == "(", closing == ")", self.span(meta)
         )
+
+
+def _are_alike(operands: Sequence[Any]) -> bool:
+    """Whether all begin with the same operator of time, which nobody takes for one in the other."""
+    firsts = {one.op if isinstance(one, Prefix) else None for one in operands}
+    return len(firsts) == 1 and not firsts & {None, UnaryOp.NOT}
 
 
 def first_of(found: Sequence[_T]) -> _T | None:

@@ -12,19 +12,31 @@ from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Source, Span
 from rvmon.spec.rules import names, syntax, types
 from rvmon.spec.rules.rule import short
-from rvmon.spec.syntax.fixes import NAMELESS, fix_of
+from rvmon.spec.syntax.fixes import NAMELESS, fix_of, if_fix
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, RESERVED
-from rvmon.units.table import unit_table
+from rvmon.units import unit_table
 
 _OPERAND = {"NUMBER", "NAME", "NOT", "TEMPORAL", "MINUS"}
 _OPERAND_ALL = _OPERAND | {
     "WITHIN", "FOR", "IMMEDIATELY", "CTL", "PATH", "QUANTIFIER", "TRUTH", "START", "END", "CALL",
-    "LPAR",
+    "LPAR", "IF",
 }  # fmt: skip
 _VALUE = {"NUMBER", "NAME", "CALL", "LPAR", "MINUS"}
 _DURATION = {"NUMBER", "NAME", "LPAR", "MINUS"}
 _ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
-_INFIX = {"AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS"}
+_INFIX = {
+    "AND",
+    "OR",
+    "XOR",
+    "IFF",
+    "IMPLIES",
+    "INFIX",
+    "LEADS_TO",
+    "COMPARE",
+    "MINUS",
+    "_IN",
+    "NOT",
+}
 _CLAUSES = {
     "TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE",
     "RUN_SHARE",
@@ -44,6 +56,7 @@ _WORDS = {
     "IGNORE_NAN": "`ignore NaN`",
     "MONITOR_AS_RESPONSE": "`monitor as response`",
     "MONITOR_AS_WRITTEN": "`monitor as written`",
+    "MONITOR_AS_COVER": "`monitor as cover`",
     "MAX_DELAY": "`max delay`",
     "COMPARE": "a comparison",
     "MINUS": "`-`",
@@ -92,6 +105,7 @@ def explain_unexpected(
     accepted, _ = accepted_terminals(parser, source.text[start:end], rule)
     found = place.text
     nameless = found in NAMELESS and _is_demanded(source.text[start : place.start], place)
+    nameless = nameless or bool(if_fix(source.text[start : place.start]))
     if found in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
         return names.reserved(place)
     if swallowed := _SWALLOWED.search(source.text, start, place.start):
@@ -146,7 +160,7 @@ def accepted_terminals(parser: lark.Lark, text: str, rule: str) -> tuple[set[str
 def _in_words(accepted: set[str], parser: lark.Lark) -> str:
     rest = set(accepted)
     words = []
-    if rest == _DURATION:
+    if rest == _DURATION | {"LSQB"}:
         return "a duration such as `3 s`"
     if rest >= _OPERAND:
         words.append("a formula or a number")

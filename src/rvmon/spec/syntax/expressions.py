@@ -125,6 +125,16 @@ class Comparison:
 
 
 @dataclass(frozen=True, slots=True)
+class Choice:
+    """`if φ then x else y`."""
+
+    condition: Expression
+    chosen: Expression
+    otherwise: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class Operation:
     """Arithmetic on one or two expressions."""
 
@@ -181,6 +191,7 @@ Expression = (
     | Immediately
     | Infix
     | Comparison
+    | Choice
     | Operation
     | Path
     | Quantified

@@ -9,7 +9,7 @@ import lark
 from rvmon.diagnostics.nearest import nearest
 from rvmon.diagnostics.span import Span
 from rvmon.spec.syntax.words import ITEM_WORDS, RESERVED
-from rvmon.units.table import unit_table
+from rvmon.units import SPOKEN, unit_table
 
 _FIX = {
     "≤": "write `<=`",
@@ -30,13 +30,14 @@ _FIX = {
     "%": "`%` is a unit and stands behind a number",
     ";": "items and clauses need no `;`",
 }
+_TRIGGER_WORDS = "for `{}` write `upon` (an instant) or `whenever` (as long as it holds)"
 NEVER = "for `never` write `always not (…)`"
 NAMELESS = RESERVED - frozenset(ITEM_WORDS)
 """Words that are no name and may start what a requirement demands."""
 _CLAUSE = re.compile(
     r'requirement\s+(?:[\w.]+|`[^`]+`)\s*(?:"[^"\n]*")?\s*'
     r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
-    r'(?:\s+\w+(?:\s+in)?|\s+"[^"]*")?'
+    r'(?:\s+\w+(?:\s+in(?:\s+\S+)?)?|\s+"[^"]*")?'
 )
 _TYPES = {
     "float": "real",
@@ -59,8 +60,11 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
         before: what of the item stands before it.
     """
     return (
-        _FIX.get(found, "")
+        if_fix(before.text)
+        or _FIX.get(found, "")
         or _sign_fix(found, accepted, before.text)
+        or _unit_fix(found, before.text)
+        or _held_fix(found, before)
         or _number_fix(found, before)
         or _never_fix(found, before.text)
         or _name_fix(found, before.text)
@@ -74,6 +78,12 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
     )
 
 
+def if_fix(before: str) -> str:
+    """What fixes an `if` that is no choice between numbers; empty if there is none."""
+    found = re.search(r"(?<![\w.])if(?![\w.])(?!.*(?<![\w.])else(?![\w.]))", before, re.DOTALL)
+    return _TRIGGER_WORDS.format("if") if found else ""
+
+
 def _sign_fix(found: str, accepted: set[str], before: str) -> str:
     """What fixes a label in quotes, or an arrow of another language."""
     label = re.fullmatch(r'"([^\W\d]\w*)"', found)
@@ -82,6 +92,29 @@ def _sign_fix(found: str, accepted: set[str], before: str) -> str:
     if found == "=>":
         return "write `->` for what follows, `>=` to compare"
     return ""
+
+
+def _unit_fix(found: str, before: str) -> str:
+    """What fixes `40 A` and `5 W`, whose letters are operators behind a number."""
+    written = re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])[ \t]*\Z", f"{before}{found}")
+    written = written or re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])\s*\Z", before)
+    if written is None:
+        return ""
+    return f"`{written[2]}` is an operator here: write `{written[1]} {SPOKEN[written[2]]}`"
+
+
+def _held_fix(found: str, before: Span) -> str:
+    """What fixes `φ for 1 s`, said of what has been."""
+    text = before.text
+    words = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->|\("
+    said = re.search(rf".*(?:{words})\s*([^()]*\S)\s*\Z", text, re.DOTALL)
+    length = re.compile(r"for[ \t]+(\d[\d.]*[ \t]*\w+)").match(before.source.text, before.end)
+    if found != "for" or said is None or length is None:
+        return ""
+    ahead = f"for {length[1]} ({said[1]})"
+    return (
+        f"write `held({said[1]}, {length[1]})` for what has held so long, `{ahead}` for what is to"
+    )
 
 
 def _never_fix(found: str, before: str) -> str:
@@ -113,7 +146,7 @@ def _let_fix(found: str, before: str) -> str:
     """What fixes a `let` before what is owed."""
     behind = found and re.search(r"(?<![\w.])let[ \t]+$", before)
     if found == "let" or behind:
-        return "`let` stands after the consequent: `upon … then … let x = …`"
+        return "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"
     return ""
 
 
@@ -168,8 +201,8 @@ def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) ->
     if found in ("within", "for"):
         return f"`{found}` stands before what it speaks of: `{found} 3 s (…)`"
     last = re.search(r"(\w+)\s*$", before)
-    if last and last[1].lower() in ("if", "when", "where", "once"):
-        return f"for `{last[1]}` write `upon` (an instant) or `whenever` (as long as it holds)"
+    if last and last[1].lower() in ("when", "where", "once"):
+        return _TRIGGER_WORDS.format(last[1])
     return f"an operator is missing before `{found}`, or a word too many"
 
 

@@ -152,6 +152,13 @@ class WrittenMonitor:
 
 
 @dataclass(frozen=True, slots=True)
+class CoverMonitor:
+    """`monitor as cover`."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
 class TextClause:
     """`source`, `rationale` or `severity` with its text."""
 
@@ -246,7 +253,7 @@ class RequirementItem:
 
     name: Ident
     text: str
-    body: Bare | Triggered | ResponseMonitor | WrittenMonitor
+    body: Bare | Triggered | ResponseMonitor | WrittenMonitor | CoverMonitor
     clauses: tuple[Clause, ...]
     span: Span
 

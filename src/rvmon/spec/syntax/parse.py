@@ -23,7 +23,7 @@ from rvmon.spec.syntax.grammar_cache import parser_of
 from rvmon.spec.syntax.items import Item, ParsedSpec
 from rvmon.spec.syntax.split import split_items
 from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS, OPERATOR_TERMINALS, RESERVED
-from rvmon.units.table import compound_pattern
+from rvmon.units import compound_pattern
 
 DEEPEST = 100
 """Expressions nested more deeply are refused."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from rvmon.spec.syntax.expressions import (
     Call,
+    Choice,
     Comparison,
     Expression,
     Group,
@@ -42,6 +43,8 @@ def operands(expression: Expression) -> tuple[Expression, ...]:
             return (left, *_bounds(window), right)
         case Comparison(left=left, right=right):
             return (left, right)
+        case Choice(condition=condition, chosen=chosen, otherwise=otherwise):
+            return (condition, chosen, otherwise)
         case Call(args=args) | Operation(args=args):
             return args
         case _:

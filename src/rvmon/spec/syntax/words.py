@@ -35,7 +35,7 @@ _TEMPORAL_WORDS = (
     *("A", "E", "AG", "AF", "AX", "EG", "EF", "EX"),
 )
 _OTHER_WORDS = (
-    *("upon", "whenever", "then", "not", "start", "end", "true", "false"),
+    *("upon", "whenever", "then", "if", "else", "not", "start", "end", "true", "false"),
     *(text for op in BinaryOp if op not in _INFIXES for text in op.spellings if text.isalpha()),
 )
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
-from rvmon.spec.checked.arithmetic import NumericOp
+from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
 from rvmon.spec.checked.formula import (
+    Amount,
     Arithmetic,
     Binary,
     BinaryOp,
@@ -20,6 +22,7 @@ from rvmon.spec.checked.formula import (
     Formula,
     Interval,
     Literal,
+    Measured,
     Numeric,
     Probe,
     ProbeAtom,
@@ -31,8 +34,7 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
 )
 from rvmon.spec.checked.operators import Tense, Window
-from rvmon.testing.generate.rng import Rng, chance, pick, weighted
-from rvmon.testing.generate.vocabulary import (
+from rvmon.testing.generate.choices import (
     BOOLS,
     CARRIER,
     EVENTS,
@@ -43,6 +45,10 @@ from rvmon.testing.generate.vocabulary import (
     NUMBERS,
     SIZE,
     WIDE,
+    Rng,
+    chance,
+    pick,
+    weighted,
 )
 
 
@@ -60,6 +66,7 @@ class Shape:
         captured: names of captured numbers that may be read.
         wide: whether whole numbers lie at the ends of 64 bits; nothing is computed with them then.
         longest: the greatest bound of an interval, ticks.
+        amounts: how often counts and durations come, beside about 120 of all others.
     """
 
     step: bool = False
@@ -71,8 +78,16 @@ class Shape:
     captured: tuple[str, ...] = ()
     wide: bool = False
     longest: int = 6
+    amounts: int = 0
 
 
+_RADIAN = Literal(1, "rad")
+_UNITS = {
+    **dict.fromkeys((UnitRule.TO_ANGLE, UnitRule.DIRECTION, UnitRule.TURN), _RADIAN),
+    UnitRule.PLACES: Literal(1, "m"),
+}
+"""Of the results that have one."""
+_CALCULATING = tuple(op for op in NumericOp if op is not NumericOp.BIT)
 _CHOOSING = (NumericOp.MIN, NumericOp.MAX)
 """What gives one of its operands, so that no whole number leaves its 64 bits."""
 
@@ -120,6 +135,9 @@ def comparison(rng: Rng, shape: Shape) -> Formula:
     if chance(rng, 12):
         op = pick(rng, (CompareOp.EQ, CompareOp.NE))
         return Compare(op, SignalValue(LABEL), Literal(pick(rng, LABELS)))
+    if chance(rng, 4) and not shape.wide:
+        bit = Arithmetic(NumericOp.BIT, (SignalValue(NUMBERS[1]), Literal(rng.randint(0, 2))))
+        return Compare(CompareOp.EQ, bit, Literal(True))
     op = pick(rng, tuple(CompareOp))
     left: Numeric = SignalValue(pick(rng, NUMBERS))
     if shape.events and chance(rng, 30):
@@ -139,12 +157,26 @@ def arithmetic(rng: Rng, shape: Shape) -> Numeric:
     if chance(rng, 40):
         functions = (UpdateFunction.PREV,) if shape.wide else tuple(UpdateFunction)
         return UpdateValue(pick(rng, functions), pick(rng, NUMBERS))
-    op = pick(rng, _CHOOSING if shape.wide else tuple(NumericOp))
-    first = _input(rng, shape)
-    if op.entry.most == 1:
-        return Arithmetic(op, (first,))
-    second = Literal(rng.randint(0, 2)) if chance(rng, 40) else _input(rng, shape)
-    return Arithmetic(op, (second, first) if chance(rng, 40) else (first, second))
+    op = pick(rng, _CHOOSING if shape.wide else _CALCULATING)
+    args = [_input(rng, shape)]
+    while len(args) < op.entry.least:
+        further = Literal(rng.randint(0, 2)) if chance(rng, 40) else _input(rng, shape)
+        args.insert(rng.randint(0, len(args)), further)
+    return _with_units(op, args)
+
+
+def _with_units(op: NumericOp, args: list[Numeric]) -> Numeric:
+    """An operation on plain numbers that yields one, with the units that it asks for between."""
+    rule = op.entry.unit
+    if rule is UnitRule.BITS:
+        args = [arg if isinstance(arg, Literal) else SignalValue(NUMBERS[1]) for arg in args]
+    if rule in (UnitRule.OF_ANGLE, UnitRule.TURN, UnitRule.PLACES):
+        args = [Arithmetic(NumericOp.MUL, (arg, _RADIAN)) for arg in args]
+    if rule is UnitRule.TURN:
+        args.append(Literal(math.tau, "rad"))
+    found = Arithmetic(op, tuple(args))
+    unit = _UNITS.get(rule)
+    return found if unit is None else Arithmetic(NumericOp.DIV, (found, unit))
 
 
 def field_value(rng: Rng) -> Numeric:
@@ -216,6 +248,7 @@ def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
             (17 if shape.past else 0, "past unary"),
             (6 if shape.past else 0, "since"),
             (4 if shape.past and shape.step else 0, "previous"),
+            (shape.amounts if shape.past else 0, "amount"),
         ),
     )
     below = shape if shape.mixed else replace(shape, future=False)
@@ -234,6 +267,10 @@ def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
             return Unary(UnaryOp.NEXT, formula(rng, shape, depth - 1))
         case "past unary":
             return past_unary(rng, below, depth)
+        case "amount":
+            measured = pick(rng, tuple(Measured))
+            counted = formula(rng, replace(shape, future=False), depth - 1)
+            return Amount(measured, counted, rng.randint(1, shape.longest), rng.randint(1, 4))
         case "since":
             return _binary(rng, below, depth, Tense.PAST)
         case _:

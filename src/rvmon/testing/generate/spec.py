@@ -30,6 +30,20 @@ from rvmon.spec.checked.specification import (
     Requirement,
     TimeModel,
 )
+from rvmon.testing.generate.choices import (
+    BOOLS,
+    CARRIER,
+    EVENTS,
+    FIELD,
+    LABEL,
+    NUMBERS,
+    Rng,
+    chance,
+    events,
+    pick,
+    signals,
+    weighted,
+)
 from rvmon.testing.generate.formula import (
     Shape,
     arithmetic,
@@ -38,18 +52,7 @@ from rvmon.testing.generate.formula import (
     formula,
     past_unary,
 )
-from rvmon.testing.generate.rng import Rng, chance, pick, weighted
-from rvmon.testing.generate.vocabulary import (
-    BOOLS,
-    CARRIER,
-    EVENTS,
-    FIELD,
-    LABEL,
-    NUMBERS,
-    events,
-    signals,
-)
-from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.attempts import is_pulse
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +69,7 @@ class Profile:
         wide: the per cent whose whole numbers reach to the ends of 64 bits; these are compared, not
             computed with.
         numbers: whether comparisons and probes may occur.
+        amounts: how often counts and durations come, beside about 120 of all other operators.
         past: whether past operators may occur.
         future: whether future operators may occur.
         events: whether events may be read.
@@ -83,6 +87,7 @@ class Profile:
     many: int = 0
     crowded: int = 0
     wide: int = 0
+    amounts: int = 0
     numbers: bool = True
     past: bool = True
     future: bool = True
@@ -149,6 +154,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         events=profile.events,
         captured=(*instance, *(capture.name for capture in captures)),
         wide=profile.wide > 0,
+        amounts=profile.amounts,
     )
     seen = Shape(
         step=shape.step,
@@ -158,6 +164,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         events=profile.events,
         captured=instance,
         wide=profile.wide > 0,
+        amounts=profile.amounts,
     )
     trigger = _trigger(rng, seen, for_each)
     at_end = isinstance(trigger, BoundAtom) and trigger.bound is Bound.END

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rvmon.spec.checked.formula import Interval, Literal
 from rvmon.spec.checked.specification import CheckedSpec, Type
 from rvmon.testing.case import Case
-from rvmon.testing.generate.rng import Rng, chance, pick
+from rvmon.testing.generate.choices import Rng, chance, pick
 from rvmon.testing.law.outage import Outage
 from rvmon.testing.law.walk import intervals, numerics
 from rvmon.trace.sample import Sample, Scalar, Value

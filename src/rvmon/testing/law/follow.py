@@ -12,15 +12,14 @@ from rvmon.testing.law.attempts import (
     Start,
     View,
     counts_in_favour,
+    is_pulse,
     is_upon_end,
     obligation,
     starts_upon,
     views,
 )
-from rvmon.testing.law.kleene import Truth
-from rvmon.testing.law.pulse import is_pulse
 from rvmon.testing.law.walk import looks_back_at_future, speaks_of_future
-from rvmon.testing.law.word import Word
+from rvmon.testing.law.word import Truth, Word
 
 
 @dataclass(slots=True, eq=False)

@@ -13,12 +13,11 @@ from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unar
 from rvmon.spec.checked.specification import Mode
 from rvmon.testing.law.attempts import Start, counts_in_favour, is_upon_end
 from rvmon.testing.law.follow import Followings
-from rvmon.testing.law.kleene import Truth, truth_of
 from rvmon.testing.law.past import is_within
 from rvmon.testing.law.ranges import ANY, BOTTOM, TOP, Past, Range, least, most, negated
 from rvmon.testing.law.truths import EVER
 from rvmon.testing.law.walk import is_proposition
-from rvmon.testing.law.word import Word
+from rvmon.testing.law.word import Truth, Word, truth_of
 from rvmon.trace.sample import Scalar
 
 Key = tuple[str, bool, int]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 from typing import assert_never
 
@@ -20,9 +20,8 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.testing.law.kleene import Truth, conjunction, disjunction, truth_of
 from rvmon.testing.law.walk import parts_of
-from rvmon.testing.law.word import Letter
+from rvmon.testing.law.word import Letter, Truth, conjunction, disjunction, truth_of
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -134,7 +133,22 @@ def _of_updates(function: UpdateFunction, name: str, letter: Letter) -> Scalar:
     return _calculate(NumericOp.DIV, [scaled, last.t - before.t])
 
 
-_OF_REALS = (NumericOp.DIV, NumericOp.SQRT, NumericOp.HYPOT)
+_OF_REALS = frozenset(
+    {
+        *(NumericOp.DIV, NumericOp.SQRT, NumericOp.HYPOT, NumericOp.POW, NumericOp.ATAN2),
+        *(NumericOp.SIN, NumericOp.COS, NumericOp.TAN, NumericOp.ASIN, NumericOp.ACOS),
+        *(NumericOp.EXP, NumericOp.LOG, NumericOp.LOG10),
+        *(NumericOp.ANGLE_BETWEEN, NumericOp.DISTANCE_ON_EARTH),
+    }
+)
+_OF_BITS: dict[NumericOp, Callable[[int, int], int | None]] = {
+    NumericOp.BIT_AND: int.__and__,
+    NumericOp.BIT_OR: int.__or__,
+    NumericOp.BIT_XOR: int.__xor__,
+    NumericOp.SHIFT_LEFT: lambda x, by: x * 2**by if 0 <= by < 64 else None,
+    NumericOp.SHIFT_RIGHT: lambda x, by: x // 2**by if 0 <= by < 64 else None,
+    NumericOp.BIT: lambda x, by: x // 2**by % 2 if 0 <= by < 64 else None,
+}
 
 
 def _calculate(op: NumericOp, args: list[Scalar]) -> Scalar:
@@ -153,9 +167,11 @@ def _calculate(op: NumericOp, args: list[Scalar]) -> Scalar:
         result = _result(op, known if whole else [float(arg) for arg in known])
     except (ArithmeticError, ValueError):
         return None
-    if isinstance(result, int):
+    if result is None:
+        return None
+    if whole and isinstance(result, int):
         return at_edge(result, Kind.INT)
-    return result if math.isfinite(result) else None
+    return float(result) if math.isfinite(result) else None
 
 
 _WHOLE = range(-(2**63), 2**63)
@@ -179,7 +195,12 @@ def at_edge(value: Scalar, kind: Kind) -> Scalar:
     return value
 
 
-def _result(op: NumericOp, args: list[int | float]) -> int | float:
+def _result(op: NumericOp, args: list[int | float]) -> int | float | None:
+    if op in _OF_BITS:
+        whole = [arg for arg in args if isinstance(arg, int)]
+        return _OF_BITS[op](whole[0], whole[1]) if len(whole) == len(args) else None
+    if op in _OF_REALS:
+        return _of_reals(op, *args)
     match op:
         case NumericOp.ADD:
             return args[0] + args[1]
@@ -197,12 +218,49 @@ def _result(op: NumericOp, args: list[int | float]) -> int | float:
             return min(args)
         case NumericOp.MAX:
             return max(args)
-        case NumericOp.SQRT:
-            return math.sqrt(args[0])
-        case NumericOp.HYPOT:
-            return math.hypot(*args)
+        case NumericOp.FLOOR:
+            return math.floor(args[0])
+        case NumericOp.CEIL:
+            return math.ceil(args[0])
+        case NumericOp.ROUND:
+            down = math.floor(abs(args[0]))
+            size = down + 1 if abs(args[0]) - down >= 0.5 else down
+            return -size if args[0] < 0 else size
+        case NumericOp.SIGN:
+            return (args[0] > 0) - (args[0] < 0)
+        case NumericOp.MOD:
+            return args[0] % args[1]
+        case NumericOp.CLAMP:
+            return min(max(args[0], args[1]), args[2])
         case _:
-            assert_never(op)
+            raise AssertionError(op)
+
+
+def _of_reals(op: NumericOp, x: float, y: float = 0.0, *more: float) -> float:
+    match op:
+        case NumericOp.DIV:
+            return x / y
+        case NumericOp.HYPOT:
+            return math.hypot(x, y)
+        case NumericOp.POW:
+            return math.pow(x, y)
+        case NumericOp.ATAN2:
+            return math.atan2(x + 0.0, y + 0.0)  # a 0 has no sign
+        case NumericOp.ANGLE_BETWEEN:
+            between = math.remainder(y - x, more[0])
+            return -between if between * 2 == -more[0] else between
+        case NumericOp.DISTANCE_ON_EARTH:
+            return _distance(x, y, *more)
+        case _:
+            found: float = getattr(math, op)(x)
+            return found
+
+
+def _distance(lat1: float, lon1: float, lat2: float, lon2: float) -> float:
+    """By haversines, on a sphere."""
+    north, east = math.sin((lat2 - lat1) / 2), math.sin((lon2 - lon1) / 2)
+    share = north * north + math.cos(lat1) * math.cos(lat2) * (east * east)
+    return 2 * 6371008.8 * math.asin(min(math.sqrt(share), 1.0))
 
 
 def _related(op: CompareOp, left: Scalar, right: Scalar) -> bool:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from rvmon.spec.checked.formula import Interval
-from rvmon.testing.law.kleene import (
+from rvmon.spec.checked.formula import Amount, Interval, Measured
+from rvmon.testing.law.word import (
+    Letter,
     Truth,
     born_or_false,
     born_or_true,
@@ -15,7 +16,6 @@ from rvmon.testing.law.kleene import (
     either,
     negation,
 )
-from rvmon.testing.law.word import Letter
 
 Operand = Callable[[int], Truth]
 """The truth of an operand at a position."""
@@ -86,6 +86,27 @@ def held(
         return disjunction(values)
     long_enough = _lasted(letters, i, interval.high or 0)
     return conjunction([long_enough, *(born_or_false(value) for value in values)])
+
+
+def amount(letters: Sequence[Letter], operand: Operand, i: int, formula: Amount) -> Truth:
+    """So many positions of the window, or ticks between them, had it.
+
+    A position lasts up to the next. What is not known may count, or not.
+    """
+    now = letters[i].instant
+    sure = possible = 0
+    for k in range(i + 1):
+        first = max(letters[k].instant, now - formula.window)
+        if formula.measured is Measured.COUNT:
+            size = int(letters[k].instant == first)
+        else:
+            size = max(0, letters[k + 1].instant - first) if k < i else 0
+        there = operand(k)
+        sure += size * (there is Truth.TRUE)
+        possible += size * (there in (Truth.TRUE, Truth.UNKNOWN))
+    if sure >= formula.least:
+        return Truth.TRUE
+    return Truth.UNKNOWN if possible >= formula.least else Truth.FALSE
 
 
 def _lasted(letters: Sequence[Letter], i: int, duration: int) -> Truth:

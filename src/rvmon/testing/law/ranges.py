@@ -17,11 +17,10 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.kleene import Truth, conjunction, negation
 from rvmon.testing.law.numbers import events_of, number
 from rvmon.testing.law.past import is_within
 from rvmon.testing.law.truths import EVER, Truths
-from rvmon.testing.law.word import Letter, Word
+from rvmon.testing.law.word import Letter, Truth, Word, conjunction, negation
 from rvmon.trace.sample import Payload, Scalar
 
 Range = tuple[float, float]

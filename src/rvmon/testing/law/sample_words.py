@@ -8,10 +8,19 @@ from itertools import dropwhile, pairwise
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.spec.checked.specification import CheckedSpec, Event, Signal, TimeModel
-from rvmon.testing.law.kleene import Truth, disjunction, truth_of
 from rvmon.testing.law.numbers import at_edge, known_scalar
 from rvmon.testing.law.outage import Outage
-from rvmon.testing.law.word import EventState, Letter, Occurrence, SignalState, Update, Word
+from rvmon.testing.law.word import (
+    EventState,
+    Letter,
+    Occurrence,
+    SignalState,
+    Truth,
+    Update,
+    Word,
+    disjunction,
+    truth_of,
+)
 from rvmon.trace.sample import Payload, Sample, Value
 
 MOST_TICKS = 1_000_000
@@ -261,7 +270,7 @@ def _at_edge(payload: Payload, event: Event) -> Payload:
 
 def _signal(told: _Told, signal: Signal) -> SignalState:
     if not told.has_source:
-        return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN)
+        return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True)
     if not told.entries:
         return SignalState()
     said = (_update(entry.t, entry.value) for entry in told.entries)

@@ -11,6 +11,7 @@ from enum import Enum, auto
 from typing import Protocol, assert_never
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Binary,
     BinaryOp,
     Bound,
@@ -26,8 +27,22 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.kleene import (
+from rvmon.testing.law.numbers import compare
+from rvmon.testing.law.past import (
+    Operand,
+    always_true,
+    amount,
+    held,
+    historically,
+    inverted,
+    is_within,
+    since,
+)
+from rvmon.testing.law.walk import constant_value, is_proposition, speaks_of_future
+from rvmon.testing.law.word import (
+    Letter,
     Truth,
+    Word,
     born_or_false,
     born_or_true,
     both,
@@ -37,18 +52,6 @@ from rvmon.testing.law.kleene import (
     negation,
     truth_of,
 )
-from rvmon.testing.law.numbers import compare
-from rvmon.testing.law.past import (
-    Operand,
-    always_true,
-    held,
-    historically,
-    inverted,
-    is_within,
-    since,
-)
-from rvmon.testing.law.walk import constant_value, is_proposition, speaks_of_future
-from rvmon.testing.law.word import Letter, Word
 from rvmon.trace.sample import Scalar
 
 EVER = Interval(0, None)
@@ -186,6 +189,8 @@ class Truths:
                 return self._is_first(i)
             case Unary() | Binary():
                 return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
+            case Amount(operand=operand):
+                return amount(self._letters, lambda k: self.state(operand, k), i, formula)
             case _:
                 assert_never(formula)
 

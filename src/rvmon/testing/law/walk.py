@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rvmon.spec.checked.formula import (
+    Amount,
     Arithmetic,
     Binary,
     BinaryOp,
@@ -16,14 +17,14 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.testing.law.kleene import Truth, conjunction, disjunction, negation, truth_of
+from rvmon.testing.law.word import Truth, conjunction, disjunction, negation, truth_of
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:
     """The formula and all below it, from the top."""
     yield formula
     match formula:
-        case Unary(operand=operand):
+        case Unary(operand=operand) | Amount(operand=operand):
             yield from subformulas(operand)
         case Binary(left=left, right=right):
             yield from subformulas(left)

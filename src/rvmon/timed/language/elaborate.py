@@ -9,6 +9,7 @@ from math import prod
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
+from rvmon.timed.language.assumed import assuming
 from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.declare import Findings, Parts, declare
 from rvmon.timed.language.functions import Functions
@@ -20,12 +21,25 @@ from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.syntax import SignalText
 from rvmon.timed.model.expressions import Expression
 from rvmon.timed.model.guards import is_discrete, refuse_changes
-from rvmon.timed.model.network import Automaton, LeadsToFormula, Network, Query, Signal
+from rvmon.timed.model.network import (
+    Automaton,
+    Chance,
+    LeadsToFormula,
+    Mean,
+    Network,
+    Query,
+    QueryFormula,
+    Signal,
+)
 from rvmon.timed.model.rules import finding, left_out, model_error
 from rvmon.timed.model.scope import AutomatonKey, AutomatonSymbol, Names, Scope
 
 MAX_EDGES = 100_000
 """The most edges that a network may have once templates and selections are unrolled."""
+
+
+MOST_RUNS = 10_000_000
+"""The most runs that a query may ask to simulate."""
 
 
 def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = None) -> Network:
@@ -163,9 +177,38 @@ def _signals(written: Iterable[SignalText], names: Names, findings: Findings) ->
     return tuple(signals)
 
 
-def _formula(
+def _formula(written: syntax.Expression, resolver: Resolver, top: Scope) -> QueryFormula:
+    match written:
+        case syntax.Chance(op, body, within, runs, sign, level):
+            holds = resolver.expression(body, top)
+            horizon = resolver.limit(within, top) or 0
+            return Chance(op, holds, horizon, _runs(runs, resolver, top), sign, level)
+        case syntax.Mean(largest, value, within, runs):
+            number, horizon = resolver.expression(value, top), resolver.limit(within, top) or 0
+            if not is_discrete(number):
+                fix = "use locations and variables only"
+                raise model_error("TA020", "the value of a clock or of runs", written.span, fix)
+            return Mean(largest, number, horizon, _runs(runs, resolver, top))
+        case _:
+            return _decided(written, resolver, top)
+
+
+def _runs(written: syntax.Expression | None, resolver: Resolver, top: Scope) -> int | None:
+    if written is None:
+        return None
+    runs = resolver.constant(written, top)
+    if not 1 < runs <= MOST_RUNS:
+        fix = f"simulate from 2 to {MOST_RUNS:,} runs"
+        raise model_error("TA007", f"{runs} runs", written.span, fix)
+    return runs
+
+
+def _decided(
     written: syntax.Expression, resolver: Resolver, top: Scope
 ) -> Expression | LeadsToFormula:
+    if isinstance(written, syntax.Assuming):
+        asked = _decided(written.query, resolver, top)
+        return assuming(asked, resolver.expression(written.premise, top), written.span)
     if not isinstance(written, syntax.LeadsTo):
         return _condition(written, resolver, top)
     left, right = _condition(written.left, resolver, top), _condition(written.right, resolver, top)

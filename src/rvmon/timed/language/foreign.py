@@ -15,10 +15,13 @@ _JUMPS: Reason = ("break, continue and switch are not supported", "write if and 
 _GAMES: Reason = ("games and strategies are not supported", "ask for a run with E<>")
 _EXTREMES: Reason = ("extreme values are not computed", "ask whether A[] x <= bound holds")
 _STATISTICS: Reason = (
-    "statistical queries are not decided",
-    "--simulate counts the runs that E<>, A<>, A[] or E[] speak of",
+    "this form of a statistical query is not supported",
+    "write Pr[<=T](<> p), with >= or <= a number for a test, or E[<=T; n](max: e)",
 )
-_UNTIL: Reason = ("until and next are not decided", "use E<>, A[], A<>, E[] or -->")
+_UNTIL: Reason = (
+    "until takes brackets",
+    "write A[p U q], E[p U q], or (p U q) in a formula of LTL",
+)
 _HOOKS: Reason = ("updates around every step are not supported", "write them on the edges")
 _OUTSIDE: Reason = ("functions from outside are not supported", "write their body out")
 _DYNAMIC: Reason = (
@@ -62,7 +65,7 @@ _ASKING: dict[str, Reason] = {
     **dict.fromkeys(("Pr", "simulate"), _STATISTICS),
     **dict.fromkeys(("sup", "inf", "bounds"), _EXTREMES),
     **dict.fromkeys(("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"), _GAMES),
-    **dict.fromkeys(("U", "W", "AX", "EX", "AU", "EU"), _UNTIL),
+    **dict.fromkeys(("U", "W", "AU", "EU"), _UNTIL),
 }
 _REAL = (
     "abs fabs fmod sqrt pow exp log ln floor ceil round sin cos tan random random_normal fint "

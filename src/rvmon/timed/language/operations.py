@@ -15,10 +15,11 @@ from rvmon.timed.model.expressions import (
     ClockOp,
     Constant,
     Expression,
+    PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
+from rvmon.timed.model.guards import is_discrete, is_linear
+from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import Symbol
 
@@ -31,6 +32,13 @@ MIRRORED = {
     BinaryOp.GT: BinaryOp.LT,
     BinaryOp.EQ: BinaryOp.EQ,
     BinaryOp.NE: BinaryOp.NE,
+}
+LINEAR = "AEGFX"
+_OF_CTL = {
+    ("A", PathOp.FINALLY): PathOp.EVENTUALLY,
+    ("A", PathOp.GLOBALLY): PathOp.INVARIANTLY,
+    ("E", PathOp.FINALLY): PathOp.POSSIBLY,
+    ("E", PathOp.GLOBALLY): PathOp.POTENTIALLY_ALWAYS,
 }
 _CONNECTIVES = {BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLY, BinaryOp.EQ, BinaryOp.NE}
 _PLACED = {BinaryOp.DIV, BinaryOp.MOD, BinaryOp.SHIFT_LEFT, BinaryOp.SHIFT_RIGHT}
@@ -139,3 +147,24 @@ def whole_compare(op: BinaryOp, left: Symbol, right: Symbol, span: Span) -> Expr
     parts = [binary(BinaryOp.EQ, one, other, span) for one, other in zip(*values, strict=True)]
     same = joined(BinaryOp.AND, parts, span)
     return same if op is BinaryOp.EQ else unary(UnaryOp.NOT, same, span)
+
+
+def linear(name: str, body: Expression, span: Span) -> Expression:
+    """What `G (…)`, `F (…)`, `A (…)`, `E (…)` say; in CTL, if the last two can be said there."""
+    match name, body:
+        case "G", _:
+            return PathFormula(PathOp.GLOBALLY, body)
+        case "F", _:
+            return PathFormula(PathOp.FINALLY, body)
+        case "X", _:
+            fix = "EX p, AX p speak of the next action"
+            raise model_error("TA020", "time is dense: runs have no next instant", span, fix)
+        case _, PathFormula(op, inner, None, left) if (name, op) in _OF_CTL and not any(
+            map(is_linear, (inner, left))
+        ):
+            return PathFormula(_OF_CTL[name, op], inner, None, left)
+        case _ if is_linear(body):
+            return PathFormula(PathOp(name), body)
+        case _:
+            fix = f"as in {name} (G F p), {name} (p U q)"
+            raise model_error("TA020", f"`{name}` speaks of runs", span, fix)

@@ -14,11 +14,13 @@ from rvmon.timed.language.foreign import REAL_FUNCTIONS, type_reason
 from rvmon.timed.language.layout import MAX_VALUES, Extents, Value, values_of
 from rvmon.timed.language.operations import (
     COMPARISONS,
+    LINEAR,
     MIRRORED,
     SAMENESS,
     binary,
     compare_clock,
     joined,
+    linear,
     refuse_clocks,
     unary,
     whole_compare,
@@ -26,6 +28,7 @@ from rvmon.timed.language.operations import (
 from rvmon.timed.language.symbols import clock_of, element_of, is_whole, value_of
 from rvmon.timed.model.expressions import (
     MAX_TIME,
+    TRUE,
     Choice,
     Constant,
     Deadlock,
@@ -114,6 +117,8 @@ class Resolver:
                 return Deadlock()
             case syntax.Call(name) if isinstance(function := scope.find(name), FunctionSymbol):
                 return self.functions.call(function, written, scope, self)
+            case syntax.Call(name, (body,), span) if name in LINEAR and self.automata:
+                return linear(name, self.expression(body, scope), span)
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
                 if (location := self._location(written, scope)) is not None:
                     return location
@@ -143,13 +148,19 @@ class Resolver:
                     for value in values
                 ]
                 return joined(op, parts, span)
-            case syntax.Path(op, body, bound, span):
+            case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
-                return PathFormula(op, self.expression(body, scope), self.limit(bound, scope))
+                until = TRUE if left is None else self.expression(left, scope)
+                holds = self.expression(body, scope)
+                return PathFormula(op, holds, self.limit(bound, scope), until)
             case syntax.LeadsTo(_, _, _, span):
                 fix = "write A[] (p imply A<> q)"
                 raise model_error("TA020", "`-->` can only stand outermost", span, fix)
+            case syntax.Chance() | syntax.Mean():
+                raise model_error("TA020", "statistics can only stand outermost", written.span)
+            case syntax.Assuming(_, _, span):
+                raise model_error("TA020", "`assuming` can only stand outermost", span)
             case _:
                 assert_never(written)
 

@@ -98,12 +98,13 @@ class Quantified:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """A path operator on a formula; `bound` is the T of `[<=T]`."""
+    """A path operator on a formula; `bound` is the T of `[<=T]`, `left` the p of `[p U q]`."""
 
     op: PathOp
     body: Expression
     bound: Expression | None
     span: Span
+    left: Expression | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +114,39 @@ class LeadsTo:
     left: Expression
     right: Expression
     bound: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Assuming:
+    """A query about the runs that a formula holds of."""
+
+    query: Expression
+    premise: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """`Pr[<=T; n](<> p)`, or with `[]`; compared with a `level` by `op` if it is a test."""
+
+    op: PathOp
+    body: Expression
+    within: Expression
+    runs: Expression | None
+    sign: BinaryOp | None
+    level: float
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """`E[<=T; n](max: e)`, or with `min`."""
+
+    largest: bool
+    value: Expression
+    within: Expression
+    runs: Expression | None
     span: Span
 
 
@@ -128,6 +162,9 @@ Expression = (
     | Quantified
     | Path
     | LeadsTo
+    | Assuming
+    | Chance
+    | Mean
 )
 
 

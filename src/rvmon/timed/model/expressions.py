@@ -26,6 +26,7 @@ class Constant:
 
 
 TRUE = Constant(1)
+FALSE = Constant(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,11 +130,17 @@ class Deadlock:
 
 @dataclass(frozen=True, slots=True)
 class PathFormula:
-    """A path operator; `bound` in units of time, `None` if unbounded."""
+    """A path operator.
+
+    Attributes:
+        bound: in units of time; `None` if there is none.
+        left: what holds until the body does, for `E<>`, `A<>` and `F`; their negations keep it.
+    """
 
     op: PathOp
     body: Expression
     bound: int | None = None
+    left: Expression = TRUE
 
 
 Expression = (

@@ -40,6 +40,12 @@ _NEGATED_PATH = {
     PathOp.INVARIANTLY: PathOp.POSSIBLY,
     PathOp.EVENTUALLY: PathOp.POTENTIALLY_ALWAYS,
     PathOp.POTENTIALLY_ALWAYS: PathOp.EVENTUALLY,
+    PathOp.SOME_NEXT: PathOp.EVERY_NEXT,
+    PathOp.EVERY_NEXT: PathOp.SOME_NEXT,
+    PathOp.FINALLY: PathOp.GLOBALLY,
+    PathOp.GLOBALLY: PathOp.FINALLY,
+    PathOp.EVERY_RUN: PathOp.SOME_RUN,
+    PathOp.SOME_RUN: PathOp.EVERY_RUN,
 }
 
 
@@ -56,8 +62,8 @@ def parts_of(expression: Expression) -> Iterator[Expression]:
                 waiting += (right, left)
             case Choice(condition, then, otherwise):
                 waiting += (otherwise, then, condition)
-            case PathFormula(_, body, _):
-                waiting.append(body)
+            case PathFormula(_, body, _, left):
+                waiting += (body, left)
             case VariableValue(slot) | Lookup(_, slot):
                 waiting += slot.indices
             case Invoke(_, arguments):
@@ -95,6 +101,13 @@ def refuse_changes(expression: Expression, span: Span) -> None:
             raise model_error("TA009", message, span, fix)
 
 
+def is_linear(expression: Expression) -> bool:
+    """Whether operators occur that speak of one run, not of all that begin in a state."""
+    linear = (PathOp.FINALLY, PathOp.GLOBALLY, PathOp.EVERY_RUN, PathOp.SOME_RUN)
+    parts = parts_of(expression)
+    return any(isinstance(part, PathFormula) and part.op in linear for part in parts)
+
+
 def normal_form(expression: Expression, positive: bool = True) -> Expression:
     """The expression, or its negation, with `and` and `or` over discrete parts and atoms."""
     if is_discrete(expression):
@@ -104,10 +117,9 @@ def normal_form(expression: Expression, positive: bool = True) -> Expression:
             return expression if positive else ClockCompare(clock, _NEGATED_CLOCK[op], bound)
         case Deadlock():
             return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
-        case PathFormula(op, body, bound):
-            if positive:
-                return PathFormula(op, normal_form(body), bound)
-            return PathFormula(_NEGATED_PATH[op], normal_form(body, positive), bound)
+        case PathFormula(op, body, bound, left):
+            op = op if positive else _NEGATED_PATH[op]
+            return PathFormula(op, normal_form(body, positive), bound, normal_form(left))
         case UnaryOperation(UnaryOp.NOT, operand):
             return normal_form(operand, not positive)
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):

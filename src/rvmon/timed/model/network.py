@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.timed.model.expressions import TRUE, ClockCompare, Expression, Slot, Statement, Variable
-from rvmon.timed.model.operators import LocationKind
+from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
 from rvmon.timed.model.scope import Names
 
 
@@ -102,13 +102,43 @@ class LeadsToFormula:
 
 
 @dataclass(frozen=True, slots=True)
+class Chance:
+    """The share of random runs that meet a condition, or keep it (`A[]`), within a horizon.
+
+    Attributes:
+        runs: how many are simulated; `None`: as many as the default, or a test takes.
+        sign, level: a test: whether the share is `>=` or `<=` that; `None`: an estimate.
+    """
+
+    op: PathOp
+    body: Expression
+    horizon: int
+    runs: int | None
+    sign: BinaryOp | None
+    level: float
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """The largest, or least, value that random runs have within a horizon, on average."""
+
+    largest: bool
+    value: Expression
+    horizon: int
+    runs: int | None
+
+
+QueryFormula = Expression | LeadsToFormula | Chance | Mean
+
+
+@dataclass(frozen=True, slots=True)
 class Query:
-    """A question to the model checker; `formula` has a path operator outermost."""
+    """A question to the model checker; `formula` speaks of runs."""
 
     id: str
     remark: str
     text: str
-    formula: Expression | LeadsToFormula
+    formula: QueryFormula
     span: Span | None = field(default=None, compare=False)
 
 

@@ -46,6 +46,14 @@ class PathOp(StrEnum):
     INVARIANTLY = "A[]"
     EVENTUALLY = "A<>"
     POTENTIALLY_ALWAYS = "E[]"
+    SOME_NEXT = "EX"
+    EVERY_NEXT = "AX"
+    FINALLY = "F"
+    """On one run: the body in the end, and `left` until then."""
+    GLOBALLY = "G"
+    """Its dual on one run: not `left` until the body is false."""
+    EVERY_RUN = "A"
+    SOME_RUN = "E"
 
 
 class BaseType(StrEnum):

@@ -50,10 +50,10 @@ typedef struct {
     int32_t low;
 } field;
 
-/* A move into a state: where from, the next one into it, its resets in a pool; its guard stands in a
- * federation at the same place. */
+/* A move between states: the next one into the same, its resets in a pool; its guard stands in a
+ * federation at the same place. The moves out of a state stand together. */
 typedef struct {
-    uint32_t from, next, resets;
+    uint32_t from, to, next, resets;
 } arrow;
 
 /* A frame of a search in depth: a node, the link by which it was entered, its next successor, the end
@@ -63,8 +63,18 @@ typedef struct {
 } frame;
 
 typedef struct {
-    uint32_t node, link;
+    uint32_t node, link, flags;
 } successor;
+
+/* A component that is not closed: the number of its first node, what is met in it, and by the edge
+ * into it. */
+typedef struct {
+    uint32_t number, flags, in;
+} root;
+
+typedef struct {
+    uint32_t node, parent, link, flags;
+} step;
 
 /* Where moves start and where the one at hand leads. */
 typedef struct walk {
@@ -135,14 +145,22 @@ typedef struct {
     uint32_t frame_count, frame_room;
     bool improper;
     uint32_t stem, resume, resume_end;
+    /* runs that an automaton accepts */
+    uint32_t *rank, rank_room, last_rank, *open, open_count, open_room;
+    root *roots;
+    uint32_t root_count, root_room;
+    step *trail;
+    uint32_t trail_count, trail_room;
+    bool clocked, rest_known;
+    uint8_t *allowed, *rest_allowed, *rest_good, *rest_on, *rest_back;
     /* nested formulas */
     arrow *arrows;
-    uint32_t arrow_count, arrow_room, *into, into_room;
+    uint32_t arrow_count, arrow_room, *into, into_room, *out_of, out_of_room;
     int32_t *pool;
     uint32_t pool_count, pool_room;
     federation guards;
-    federation **reaching;
-    uint32_t *reaching_room;
+    federation **tables; /* by row and state, and two more */
+    uint32_t *table_rooms;
     federation pending;
     uint32_t *whose, whose_count, whose_room;
 } engine;

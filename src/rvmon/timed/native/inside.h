@@ -167,8 +167,25 @@ static void succeed(engine *h, uint32_t state, const bound *z)
         h->exact_count++;
     }
     if (ROOM(h, h->successors, h->successor_room, (uint64_t)h->successor_count + 1)) {
-        h->successors[h->successor_count++] = (successor){n, h->link};
+        h->successors[h->successor_count++] = (successor){n, h->link, 0};
     }
+}
+
+/* The invariant, a piece and, if time may pass, all delays in it; false if nothing is left. */
+static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const int32_t *places,
+                            int32_t *values)
+{
+    if (piece_at(h, k)[ROW_ATOMS] == 0) {
+        return settle(h, z, places, values, delays);
+    }
+    if (!cut_piece(h, z, k, AS_IS, places, values) || !cut_invariant(h, z, places, values)) {
+        return false;
+    }
+    if (!delays) {
+        return true;
+    }
+    delay(z, h->dim); /* a piece is convex: who starts and ends a wait in it never left it */
+    return cut_invariant(h, z, places, values) && cut_piece(h, z, k, AS_IS, places, values);
 }
 
 /* A zone just reached, in each piece with the delays that stay in it. */
@@ -184,22 +201,8 @@ static void enter(engine *h, const bound *z, const int32_t *places, int32_t *val
             continue;
         }
         copy_zone(h, in, z);
-        if (piece_at(h, k)[ROW_ATOMS] == 0) {
-            if (!settle(h, in, places, values, delays)) {
-                continue;
-            }
-        } else {
-            if (!cut_piece(h, in, k, AS_IS, places, values)
-                || !cut_invariant(h, in, places, values)) {
-                continue;
-            }
-            if (delays) { /* a piece is convex: who starts and ends a wait in it never left it */
-                delay(in, h->dim);
-                if (!cut_invariant(h, in, places, values)
-                    || !cut_piece(h, in, k, AS_IS, places, values)) {
-                    continue;
-                }
-            }
+        if (!settle_in_piece(h, in, k, delays, places, values)) {
+            continue;
         }
         if (!counts) {
             find_limits(h, places);

@@ -1,8 +1,12 @@
 /* Formulas that speak of runs from a state: the valuations of each discrete state that satisfy them,
- * worked out backwards through delays and moves until nothing is new.
+ * worked out backwards through delays and moves until nothing changes. A row of the tree is worked out
+ * after those that it refers to; what has a bound counts the time in the timer, set to 0 and then
+ * free.
  *
  * Source: Henzinger, Nicollin, Sifakis, Yovine, Symbolic Model Checking for Real-Time Systems, 1994;
- * Bouyer et al., Model Checking Real-Time Systems, 2018, section 3 (backward analysis ends). */
+ * Bouyer et al., Model Checking Real-Time Systems, 2018, section 3 (backward analysis ends);
+ * Cassez, David, Fleury, Larsen, Lime, Efficient On-the-Fly Algorithms for the Analysis of Timed
+ * Games, 2005 (delays that avoid a zone). */
 #ifndef RVMON_ZONES_NESTED_H
 #define RVMON_ZONES_NESTED_H
 
@@ -44,7 +48,7 @@ static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
         || !push_zone(h, &h->guards, w->zone)) {
         return false;
     }
-    h->arrows[h->arrow_count] = (arrow){h->from_node, h->into[target], h->pool_count};
+    h->arrows[h->arrow_count] = (arrow){h->from_node, target, h->into[target], h->pool_count};
     h->into[target] = h->arrow_count++;
     h->pool[h->pool_count++] = w->reset_count;
     (void)memcpy(h->pool + h->pool_count, w->resets,
@@ -68,184 +72,459 @@ static void find_moves(engine *h)
         visit(h);
         unpack(h, s, w->places, w->values);
         h->from_node = s;
+        if (!ROOM(h, h->out_of, h->out_of_room, (uint64_t)s + 2)) {
+            break;
+        }
+        h->out_of[s] = h->arrow_count;
         if (!each_move(h, w, note_move)) {
             break;
         }
+        h->out_of[s + 1] = h->arrow_count;
     }
     h->from_node = NONE;
 }
 
-static federation *reaching(engine *h, int32_t row);
+/* --- sets of valuations --------------------------------------------------------------------------- */
 
-/* Add the valuations of a state that satisfy its invariant and a row of the tree. */
-static void satisfy(engine *h, int32_t row, uint32_t s, const int32_t *places,
-                    int32_t *values, federation *out)
+/* Add a zone to a union unless one there holds all of it; those that it holds go. False: not added. */
+static bool join(engine *h, federation *f, const bound *z)
 {
-    const int32_t *r = plan_rows(h->plan, AT_TREE) + (ptrdiff_t)3 * row;
-    federation *reach;
     uint32_t i;
-    uint32_t j;
-    if (!runs(h) || h->failed) {
-        return;
-    }
-    if (r[0] == TREE_OR) {
-        satisfy(h, r[1], s, places, values, out);
-        satisfy(h, r[2], s, places, values, out);
-    } else if (r[0] == TREE_AND) {
-        federation a = {0, 0, NULL};
-        federation b = {0, 0, NULL};
-        satisfy(h, r[1], s, places, values, &a);
-        satisfy(h, r[2], s, places, values, &b);
-        for (i = 0; i < a.count; i++) {
-            for (j = 0; (j < b.count) && runs(h); j++) {
-                labour(h);
-                if (!push_zone(h, out, nth(h, &a, i))) {
-                    break;
-                }
-                if (!cut_zone(h, nth(h, out, out->count - 1), nth(h, &b, j))) {
-                    out->count--;
-                } else if (!fits(h, nth(h, out, out->count - 1))) {
-                    break;
-                }
-            }
-        }
-        give_back(h, &a);
-        give_back(h, &b);
-    } else if (r[0] == TREE_PLAIN) {
-        const int32_t *piece = plan_rows(h->plan, AT_PIECES) + (ptrdiff_t)ROW_SIZE * r[1];
-        int32_t k;
-        for (k = 0; (k < r[2]) && runs(h) && !h->failed; k++, piece += ROW_SIZE) {
-            bound *z = push(h, out);
-            if (z != NULL) {
-                universe(z, h->dim);
-                if (!cut_invariant(h, z, places, values)
-                    || !cut_row(h, z, piece, places, values)) {
-                    out->count--;
-                }
-            }
-        }
-    } else {
-        reach = reaching(h, r[1]);
-        if ((reach == NULL) || !runs(h)) {
-            return;
-        }
-        if (r[0] == TREE_CAN) {
-            for (i = 0; (i < reach[s].count) && push_zone(h, out, nth(h, &reach[s], i)); i++) {
-            }
-            return;
-        }
-        universe(h->copy, h->dim);
-        h->dead.count = 0;
-        if (!cut_invariant(h, h->copy, places, values) || !push_zone(h, &h->dead, h->copy)) {
-            return;
-        }
-        for (i = 0; (i < reach[s].count) && subtract(h, nth(h, &reach[s], i)); i++) {
-        }
-        for (i = 0; (i < h->dead.count) && push_zone(h, out, nth(h, &h->dead, i)); i++) {
-        }
-    }
-}
-
-/* Keep what leads to where something can be reached, unless it is known. */
-static void note_reaching(engine *h, federation *known, uint32_t s, bound *z)
-{
-    uint32_t i = 0;
-    if (h->delays[s]) {
-        before(z, h->dim);
-    }
     labour(h);
-    for (i = 0; i < known->count; i++) {
-        if (is_within(z, nth(h, known, i), h->entries)) {
-            return;
+    for (i = 0; i < f->count; i++) {
+        if (is_within(z, nth(h, f, i), h->entries)) {
+            return false;
         }
     }
-    for (i = 0; i < known->count;) {
-        if (is_within(nth(h, known, i), z, h->entries)) {
-            known->count--;
-            if (i < known->count) {
-                copy_zone(h, nth(h, known, i), nth(h, known, known->count));
+    for (i = 0; i < f->count;) {
+        if (is_within(nth(h, f, i), z, h->entries)) {
+            f->count--;
+            if (i < f->count) {
+                copy_zone(h, nth(h, f, i), nth(h, f, f->count));
             }
         } else {
             i++;
         }
     }
-    if (!fits(h, z) || !push_zone(h, known, z) || !push_zone(h, &h->pending, z)
-        || !ROOM(h, h->whose, h->whose_room, (uint64_t)h->whose_count + 1)) {
+    return fits(h, z) && push_zone(h, f, z);
+}
+
+static void join_all(engine *h, federation *f, const federation *others)
+{
+    uint32_t i;
+    for (i = 0; (i < others->count) && runs(h); i++) {
+        (void)join(h, f, nth(h, others, i));
+    }
+}
+
+static void subtract_all(engine *h, federation *f, const federation *others)
+{
+    uint32_t i;
+    for (i = 0; (i < others->count) && (f->count > 0) && subtract(h, f, nth(h, others, i)); i++) {
+    }
+}
+
+/* Add what two unions have in common. */
+static void meet(engine *h, federation *out, const federation *a, const federation *b)
+{
+    uint32_t i;
+    uint32_t j;
+    for (i = 0; i < a->count; i++) {
+        for (j = 0; (j < b->count) && runs(h); j++) {
+            copy_zone(h, h->copy, nth(h, a, i));
+            if (cut_zone(h, h->copy, nth(h, b, j))) {
+                (void)join(h, out, h->copy);
+            }
+        }
+    }
+}
+
+/* The valuations that the invariant of a state allows, as a union of one zone or none. */
+static void everywhere(engine *h, uint32_t s, federation *out)
+{
+    walk *w = &h->look;
+    unpack(h, s, w->places, w->values);
+    universe(h->copy, h->dim);
+    if (cut_invariant(h, h->copy, w->places, w->values)) {
+        (void)push_zone(h, out, h->copy);
+    }
+}
+
+static void swap(federation *a, federation *b)
+{
+    const federation held = *a;
+    *a = *b;
+    *b = held;
+}
+
+/* Add the valuations from which a delay leads into a zone, with nothing bad on the way nor there. */
+static void add_earlier(engine *h, uint32_t s, const bound *z, const federation *bad,
+                        federation *out)
+{
+    federation all = {0, 0, NULL};
+    federation some = {0, 0, NULL};
+    federation both = {0, 0, NULL};
+    uint32_t i;
+    uint32_t k;
+    if (!push_zone(h, &all, z)) {
         return;
     }
-    h->whose[h->whose_count++] = s;
-    visit(h);
+    if (!h->delays[s]) {
+        subtract_all(h, &all, bad);
+    } else {
+        before(all.zones, h->dim);
+        for (k = 0; (k < bad->count) && (all.count > 0) && runs(h); k++) {
+            bound *past = h->inside;
+            copy_zone(h, h->copy, z);
+            before(h->copy, h->dim);
+            if (!cut_zone(h, h->copy, nth(h, bad, k))) {
+                continue; /* no way leads through it */
+            }
+            copy_zone(h, past, nth(h, bad, k));
+            before(past, h->dim);
+            some.count = 0;
+            copy_zone(h, h->copy, z);
+            if (cut_zone(h, h->copy, past) && push_zone(h, &some, h->copy)) {
+                (void)subtract(h, &some, nth(h, bad, k));
+            }
+            for (i = 0; i < some.count; i++) {
+                before(nth(h, &some, i), h->dim);
+            }
+            both.count = 0;
+            meet(h, &both, &all, &some);
+            if (subtract(h, &all, past)) {
+                join_all(h, &both, &all);
+            }
+            swap(&all, &both);
+        }
+    }
+    join_all(h, out, &all);
+    give_back(h, &all);
+    give_back(h, &some);
+    give_back(h, &both);
+}
+
+/* The valuations in which a clock may have any value that are in a zone once it is set to a number;
+ * false if there are none. */
+static bool undo(bound *z, int d, int c, bound n)
+{
+    int j;
+    if (!constrain(z, d, 0, c, 2 * n + 1) || !constrain(z, d, c, 0, -2 * n + 1)) {
+        return false;
+    }
+    (void)memcpy(z + (ptrdiff_t)c * d, z, (size_t)d * sizeof *z);
+    for (j = 0; j < d; j++) {
+        z[j * d + c] = UNBOUNDED;
+    }
+    z[c * d] = AT_ONCE;
+    z[c * d + c] = AT_ONCE;
+    return true;
 }
 
 /* The valuations from which a move leads into a zone of its target, in place; false if there are none. */
 static bool back(engine *h, uint32_t m, bound *z)
 {
     const int32_t *resets = h->pool + h->arrows[m].resets;
-    const int d = h->dim;
     int i;
-    int j;
     for (i = 0; i < resets[0]; i++) {
-        const int c = resets[1 + 2 * i];
-        const bound n = resets[2 + 2 * i];
-        if (!constrain(z, d, 0, c, 2 * n + 1) || !constrain(z, d, c, 0, -2 * n + 1)) {
+        if (!undo(z, h->dim, resets[1 + 2 * i], resets[2 + 2 * i])) {
             return false;
         }
-        (void)memcpy(z + c * d, z, (size_t)d * sizeof *z);
-        for (j = 0; j < d; j++) {
-            z[j * d + c] = UNBOUNDED;
-        }
-        z[c * d] = AT_ONCE;
-        z[c * d + c] = AT_ONCE;
     }
     return cut_zone(h, z, nth(h, &h->guards, m));
 }
 
-/* For each state the valuations from which a row of the tree can be reached; found once. */
-static federation *reaching(engine *h, int32_t row)
+/* --- rows ------------------------------------------------------------------------------------------ */
+
+static const int32_t *tree_row(const engine *h, int32_t row)
+{
+    return plan_rows(h->plan, AT_TREE) + (ptrdiff_t)TREE_SIZE * row;
+}
+
+/* A union for each state, all empty; those that were there are given back. */
+static federation *clear_table(engine *h, int32_t t)
+{
+    uint32_t s;
+    if (h->tables[t] == NULL) {
+        h->tables[t] = enlarge(h, NULL, &h->table_rooms[t], h->state_count, sizeof **h->tables);
+        if (h->tables[t] == NULL) {
+            return NULL;
+        }
+        (void)memset(h->tables[t], 0, h->table_rooms[t] * sizeof **h->tables);
+    }
+    for (s = 0; s < h->state_count; s++) {
+        give_back(h, &h->tables[t][s]);
+    }
+    return h->tables[t];
+}
+
+/* Add the valuations of a state that satisfy its invariant and a row of the tree. */
+static void satisfy(engine *h, int32_t row, uint32_t s, federation *out)
+{
+    const int32_t *r = tree_row(h, row);
+    federation a = {0, 0, NULL};
+    federation b = {0, 0, NULL};
+    walk *w = &h->look;
+    if (!runs(h) || h->failed) {
+        return;
+    }
+    if (r[TREE_KIND] == TREE_OR) {
+        satisfy(h, r[TREE_LEFT], s, out);
+        satisfy(h, r[TREE_RIGHT], s, out);
+    } else if (r[TREE_KIND] == TREE_AND) {
+        satisfy(h, r[TREE_LEFT], s, &a);
+        satisfy(h, r[TREE_RIGHT], s, &b);
+        meet(h, out, &a, &b);
+    } else if (r[TREE_KIND] == TREE_NOT) {
+        everywhere(h, s, &a);
+        satisfy(h, r[TREE_LEFT], s, &b);
+        subtract_all(h, &a, &b);
+        join_all(h, out, &a);
+    } else if (r[TREE_KIND] == TREE_PLAIN) {
+        const int32_t *piece = plan_rows(h->plan, AT_PIECES) + (ptrdiff_t)ROW_SIZE * r[TREE_LEFT];
+        int32_t k;
+        unpack(h, s, w->places, w->values);
+        for (k = 0; (k < r[TREE_RIGHT]) && runs(h) && !h->failed; k++, piece += ROW_SIZE) {
+            universe(h->copy, h->dim);
+            if (cut_invariant(h, h->copy, w->places, w->values)
+                && cut_row(h, h->copy, piece, w->places, w->values)) {
+                (void)join(h, out, h->copy);
+            }
+        }
+    } else {
+        join_all(h, out, &h->tables[row][s]);
+    }
+    give_back(h, &a);
+    give_back(h, &b);
+}
+
+/* Note from where a delay leads into a zone, as what reaches is to be gone back from. */
+static void note_reaching(engine *h, uint32_t s, const bound *z, const federation *bad,
+                          federation *found)
+{
+    federation more = {0, 0, NULL};
+    uint32_t i;
+    add_earlier(h, s, z, &bad[s], &more);
+    for (i = 0; (i < more.count) && runs(h); i++) {
+        if (join(h, found + s, nth(h, &more, i)) && push_zone(h, &h->pending, nth(h, &more, i))
+            && ROOM(h, h->whose, h->whose_room, (uint64_t)h->whose_count + 1)) {
+            h->whose[h->whose_count++] = s;
+            visit(h);
+        }
+    }
+    give_back(h, &more);
+}
+
+/* From where some run has `left` or `right` all the way to where it has `right`, within the bound. */
+static void solve_until(engine *h, const int32_t *r, federation *found, federation *bad)
 {
     bound *z = h->between; /* used by nothing else in this kind of search */
-    walk *w = &h->look;
-    uint32_t room = 0;
+    federation good = {0, 0, NULL};
+    federation left = {0, 0, NULL};
     uint32_t s;
-    uint32_t q;
-    federation *found = h->reaching[row];
-    if ((found != NULL) || !runs(h)) {
-        return found;
-    }
-    found = enlarge(h, NULL, &room, h->state_count, sizeof *found);
-    if (found == NULL) {
-        return NULL;
-    }
-    (void)memset(found, 0, room * sizeof *found);
-    h->reaching[row] = found;
-    h->reaching_room[row] = room;
+    uint32_t k;
+    uint32_t m;
+    h->pending.count = 0;
+    h->whose_count = 0;
     for (s = 0; (s < h->state_count) && runs(h) && !h->failed; s++) {
-        federation here = {0, 0, NULL};
-        unpack(h, s, w->places, w->values);
-        satisfy(h, row, s, w->places, w->values, &here);
-        if (s == 0) {
-            /* rows within this one are found by now, and left nothing pending */
-            h->pending.count = 0;
-            h->whose_count = 0;
+        good.count = 0;
+        satisfy(h, r[TREE_RIGHT], s, &good);
+        if (r[TREE_LEFT] >= 0) {
+            left.count = 0;
+            satisfy(h, r[TREE_LEFT], s, &left);
+            everywhere(h, s, &bad[s]);
+            subtract_all(h, &bad[s], &good);
+            subtract_all(h, &bad[s], &left);
         }
-        for (q = 0; (q < here.count) && runs(h); q++) {
-            copy_zone(h, z, nth(h, &here, q));
-            note_reaching(h, found + s, s, z);
-        }
-        give_back(h, &here);
-    }
-    for (q = 0; (q < h->whose_count) && runs(h); q++) {
-        const uint32_t to = h->whose[q];
-        uint32_t m = (to < h->into_room) ? h->into[to] : NONE;
-        for (; (m != NONE) && runs(h); m = h->arrows[m].next) {
-            copy_zone(h, z, nth(h, &h->pending, q));
-            labour(h);
-            if (back(h, m, z)) {
-                note_reaching(h, found + h->arrows[m].from, h->arrows[m].from, z);
+        for (k = 0; (k < good.count) && runs(h); k++) {
+            copy_zone(h, z, nth(h, &good, k));
+            if ((r[TREE_BOUND] < 0)
+                || constrain(z, h->dim, 0, h->timer, 2 * (bound)r[TREE_BOUND] + 1)) {
+                note_reaching(h, s, z, bad, found);
             }
         }
     }
-    return found;
+    give_back(h, &good);
+    give_back(h, &left);
+    for (k = 0; (k < h->whose_count) && runs(h); k++) {
+        const uint32_t to = h->whose[k];
+        for (m = (to < h->into_room) ? h->into[to] : NONE; (m != NONE) && runs(h);
+             m = h->arrows[m].next) {
+            copy_zone(h, z, nth(h, &h->pending, k));
+            if (back(h, m, z)) {
+                note_reaching(h, h->arrows[m].from, z, bad, found);
+            }
+        }
+    }
+}
+
+/* From where a move can be taken that leads to where a row holds, or to anywhere: now, or later. */
+static void solve_next(engine *h, int32_t row, uint32_t s, federation *out)
+{
+    federation there = {0, 0, NULL};
+    bound *z = h->between;
+    uint32_t m;
+    uint32_t k;
+    for (m = h->out_of[s]; (m < h->out_of[s + 1]) && runs(h); m++) {
+        there.count = 0;
+        if (row < 0) {
+            everywhere(h, h->arrows[m].to, &there);
+        } else {
+            satisfy(h, row, h->arrows[m].to, &there);
+        }
+        for (k = 0; (k < there.count) && runs(h); k++) {
+            copy_zone(h, z, nth(h, &there, k));
+            if (back(h, m, z)) {
+                if (h->delays[s]) {
+                    before(z, h->dim);
+                }
+                (void)join(h, out, z);
+            }
+        }
+    }
+    give_back(h, &there);
+}
+
+/* From where a run can stay without a further move: nothing stops time, or it stops by itself. */
+static void add_ends(engine *h, uint32_t s, const federation *outside, federation *out)
+{
+    walk *w = &h->look;
+    federation left = {0, 0, NULL};
+    federation alive = {0, 0, NULL};
+    uint32_t k;
+    bool open;
+    unpack(h, s, w->places, w->values);
+    open = h->delays[s] && (invariant_of(h, w->places, w->values) == 0);
+    everywhere(h, s, &left);
+    if (!open) {
+        solve_next(h, -1, s, &alive);
+        subtract_all(h, &left, &alive);
+    }
+    for (k = 0; (k < outside->count) && (left.count > 0) && runs(h); k++) {
+        copy_zone(h, h->between, nth(h, outside, k));
+        if (h->delays[s]) {
+            before(h->between, h->dim);
+        }
+        (void)subtract(h, &left, h->between);
+    }
+    join_all(h, out, &left);
+    give_back(h, &left);
+    give_back(h, &alive);
+}
+
+/* What of a state's valuations still stays: ends there, or goes on to where it stays; whether less. */
+static bool shrink(engine *h, uint32_t s, const federation *outside, const federation *ends,
+                   federation *stays)
+{
+    federation now = {0, 0, NULL};
+    bound *z = h->between;
+    uint32_t m;
+    uint32_t k;
+    bool less;
+    for (k = 0; (k < ends->count) && runs(h); k++) {
+        add_earlier(h, s, nth(h, ends, k), outside, &now);
+    }
+    for (m = h->out_of[s]; (m < h->out_of[s + 1]) && runs(h); m++) {
+        const federation *to = stays + h->arrows[m].to;
+        for (k = 0; (k < to->count) && runs(h); k++) {
+            copy_zone(h, z, nth(h, to, k));
+            if (back(h, m, z)) {
+                add_earlier(h, s, z, outside, &now);
+            }
+        }
+    }
+    swap(&now, stays + s);
+    subtract_all(h, &now, stays + s);
+    less = now.count > 0;
+    give_back(h, &now);
+    return less;
+}
+
+/* From where some run stays where a row holds for ever, or until the bound is over. */
+static void solve_stay(engine *h, const int32_t *r, federation *stays, federation *outside,
+                       federation *ends)
+{
+    bool changed = true;
+    uint32_t s;
+    uint32_t m;
+    for (s = 0; (s < h->state_count) && runs(h) && !h->failed; s++) {
+        satisfy(h, r[TREE_LEFT], s, &stays[s]);
+        everywhere(h, s, &outside[s]);
+        if ((r[TREE_BOUND] >= 0) && (outside[s].count > 0)) {
+            copy_zone(h, h->between, outside[s].zones);
+            if (constrain(h->between, h->dim, h->timer, 0, -2 * (bound)r[TREE_BOUND])) {
+                (void)join(h, &stays[s], h->between);
+            }
+        }
+        subtract_all(h, &outside[s], &stays[s]);
+        add_ends(h, s, &outside[s], &ends[s]);
+    }
+    if (!ROOM(h, h->whose, h->whose_room, h->state_count)) {
+        return;
+    }
+    (void)memset(h->whose, 1, h->state_count * sizeof *h->whose); /* which are to be looked at */
+    while (changed && runs(h) && !h->failed) {
+        changed = false;
+        for (s = h->state_count; (s-- > 0) && runs(h);) {
+            if (h->whose[s] == 0) {
+                continue;
+            }
+            h->whose[s] = 0;
+            visit(h);
+            if (shrink(h, s, &outside[s], &ends[s], stays)) {
+                for (m = (s < h->into_room) ? h->into[s] : NONE; m != NONE; m = h->arrows[m].next) {
+                    h->whose[h->arrows[m].from] = 1;
+                    changed = true;
+                }
+            }
+        }
+    }
+}
+
+/* What holds with the timer at 0, whatever the timer is. */
+static void forget_timer(engine *h, federation *f)
+{
+    uint32_t k;
+    for (k = 0; k < f->count;) {
+        if (undo(nth(h, f, k), h->dim, h->timer, 0)) {
+            k++;
+        } else if (--f->count > k) {
+            copy_zone(h, nth(h, f, k), nth(h, f, f->count));
+        }
+    }
+}
+
+/* Work out all rows that speak of runs, in turn. */
+static void solve(engine *h)
+{
+    const int32_t rows = plan_count(h->plan, AT_TREE);
+    int32_t row;
+    uint32_t s;
+    for (row = 0; (row < rows) && runs(h) && !h->failed; row++) {
+        const int32_t *r = tree_row(h, row);
+        federation *found;
+        federation *outside = clear_table(h, rows);
+        federation *ends = clear_table(h, rows + 1);
+        if ((r[TREE_KIND] < TREE_UNTIL) || (outside == NULL) || (ends == NULL)) {
+            continue;
+        }
+        found = clear_table(h, row);
+        if (found == NULL) {
+            return;
+        }
+        if (r[TREE_KIND] == TREE_UNTIL) {
+            solve_until(h, r, found, outside);
+        } else if (r[TREE_KIND] == TREE_STAY) {
+            solve_stay(h, r, found, outside, ends);
+        }
+        for (s = 0; (s < h->state_count) && runs(h) && !h->failed; s++) {
+            if (r[TREE_KIND] == TREE_NEXT) {
+                solve_next(h, r[TREE_LEFT], s, &found[s]);
+            } else if (r[TREE_BOUND] >= 0) {
+                forget_timer(h, &found[s]);
+            }
+        }
+    }
 }
 
 static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t *values)
@@ -258,7 +537,7 @@ static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t 
     if ((at == NULL) || (*at == NONE)) {
         return false;
     }
-    satisfy(h, plan_count(h->plan, AT_TREE) - 1, *at, places, values, &sought);
+    satisfy(h, plan_count(h->plan, AT_TREE) - 1, *at, &sought);
     for (i = 0; (i < sought.count) && runs(h); i++) {
         copy_zone(h, h->copy, z);
         if (cut_zone(h, h->copy, nth(h, &sought, i))) {

@@ -6,7 +6,8 @@
 
 const uint8_t plan_widths[SECTIONS] = {
     4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
-    LIMIT_SIZE, 3, ROW_SIZE,
+    LIMIT_SIZE, TREE_SIZE, ROW_SIZE,
+    WAY_SIZE, 1,
 };
 
 /* Operands of each op, and how it changes the depth of the stack where it goes on behind itself. */
@@ -292,11 +293,46 @@ static bool tree_fits(const checker *c)
 {
     const int32_t *row = plan_rows(c->plan, AT_TREE);
     int32_t i;
-    for (i = 0; i < rows(c, AT_TREE); i++, row += 3) {
-        const bool two = (row[0] == TREE_AND) || (row[0] == TREE_OR);
-        if ((row[0] < 0) || (row[0] >= TREE_KINDS)
-            || ((row[0] == TREE_PLAIN) ? !within(row[1], row[2], rows(c, AT_PIECES))
-                                       : !within(row[1], 1, i) || (two && !within(row[2], 1, i)))) {
+    for (i = 0; i < rows(c, AT_TREE); i++, row += TREE_SIZE) {
+        const int32_t kind = row[TREE_KIND];
+        const bool open = (kind == TREE_UNTIL) || (kind == TREE_NEXT);
+        const bool two = (kind == TREE_AND) || (kind == TREE_OR) || (kind == TREE_UNTIL);
+        if ((kind < 0) || (kind >= TREE_KINDS) || (row[TREE_BOUND] < -1)
+            || (row[TREE_BOUND] == INT32_MAX)
+            || ((row[TREE_BOUND] >= 0) && (c->plan[HEAD_TIMER] == 0))) {
+            return false;
+        }
+        if ((kind == TREE_PLAIN)
+                ? !within(row[TREE_LEFT], row[TREE_RIGHT], rows(c, AT_PIECES))
+                : (!(open && (row[TREE_LEFT] == -1)) && !within(row[TREE_LEFT], 1, i))
+                      || (two && !within(row[TREE_RIGHT], 1, i))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* An automaton whose states are what is inside. */
+static bool ways_fit(const checker *c)
+{
+    const int32_t *row = plan_rows(c->plan, AT_WAYS);
+    const int32_t pieces = rows(c, AT_INSIDE);
+    int32_t i;
+    if (c->plan[HEAD_KIND] != SEEK_RUN) {
+        return true;
+    }
+    if ((rows(c, AT_WAYS) != pieces) || (c->plan[HEAD_SETS] < 0)
+        || (c->plan[HEAD_SETS] > MOST_SETS)) {
+        return false;
+    }
+    for (i = 0; i < pieces; i++, row += WAY_SIZE) {
+        if ((row[WAY_SETS] < 0) || ((row[WAY_SETS] >> c->plan[HEAD_SETS]) != 0)
+            || !within(row[WAY_ARC], row[WAY_ARCS], rows(c, AT_ARCS))) {
+            return false;
+        }
+    }
+    for (i = 0; i < rows(c, AT_ARCS); i++) {
+        if (!within(plan_rows(c->plan, AT_ARCS)[i], 1, pieces)) {
             return false;
         }
     }
@@ -319,7 +355,7 @@ static bool head_fits(const int32_t *plan)
         || ((late || (plan[HEAD_POLICY] == POLICY_FASTEST)) && (plan[HEAD_TIMER] == 0))
         || (plan_count(plan, AT_TREE) > MOST_TREE_ROWS)
         || (plan_count(plan, AT_INSIDE) > MOST_PIECES)
-        || ((kind == SEEK_NESTED) && (plan_count(plan, AT_TREE) == 0))) {
+        || (((kind == SEEK_NESTED) || (kind == SEEK_START)) && (plan_count(plan, AT_TREE) == 0))) {
         return false;
     }
     for (i = 0; i < plan_count(plan, AT_VARIABLES); i++, variable += 4) {
@@ -334,7 +370,8 @@ static bool parts_fit(checker *c)
 {
     return programs_fit(c) && limits_fit(c, AT_LIMITS) && limits_fit(c, AT_EXTRA) && atoms_fit(c)
            && alternatives_fit(c, AT_GOAL) && alternatives_fit(c, AT_INSIDE)
-           && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c);
+           && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c)
+           && ways_fit(c);
 }
 
 plan_state plan_check(const int32_t *plan, size_t count)

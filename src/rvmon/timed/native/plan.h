@@ -20,16 +20,18 @@ enum {
     HEAD_CLOCKS,
     HEAD_TIMER,   /* whether one more clock, the last, belongs to the query */
     HEAD_LEVELLED, /* whether lower and upper bounds count alike */
-    HEAD_BOUND,   /* of a late response */
+    HEAD_BOUND,   /* of a late response; 1 where a run has to let time pass on */
+    HEAD_SETS,    /* of acceptance */
     HEAD_LOCALS,  /* how many of the variables, the last, belong to functions */
     HEAD_SECTIONS
 };
 
 /* What is sought: a run to a goal; to a goal that speaks of deadlock; one that stays inside for ever
  * from the start, or from a goal; one that stays inside longer than the bound, from the start or from
- * a goal; a run to a goal that speaks of runs. */
+ * a goal; a run to a goal that speaks of runs; whether that holds at the start; a run that an
+ * automaton accepts whose states are what is inside. */
 enum { SEEK_GOAL, SEEK_DEADLOCK, SEEK_STAY, SEEK_STAY_AFTER, SEEK_LATE, SEEK_LATE_AFTER, SEEK_NESTED,
-       SEEK_KINDS };
+       SEEK_START, SEEK_RUN,       SEEK_KINDS };
 enum { POLICY_SHORTEST, POLICY_FASTEST, POLICY_LIKELY, POLICIES };
 
 enum {
@@ -44,8 +46,10 @@ enum {
     AT_GOAL,      /* alternatives: condition or -1, first atom, number of atoms */
     AT_INSIDE,    /* the same for where runs stay, or for the goal where there is a deadlock */
     AT_EXTRA,     /* limits that hold in every location */
-    AT_TREE,      /* nested formula: a kind, two numbers; the last row is the whole */
+    AT_TREE,      /* nested formula, as below; the last row is the whole */
     AT_PIECES,    /* alternatives of plain rows of the tree */
+    AT_WAYS,      /* of each alternative inside: as below */
+    AT_ARCS,      /* where they lead */
     SECTIONS
 };
 
@@ -61,7 +65,13 @@ enum { FLAG_SENDS = 1, FLAG_BROADCAST = 2, FLAG_URGENT = 4 };
 enum { ROW_CONDITION, ROW_ATOM, ROW_ATOMS, ROW_SIZE };
 enum { ATOM_CLOCK, ATOM_OP, ATOM_CODE, ATOM_NUMBER, ATOM_SIZE };
 enum { LIMIT_CLOCK, LIMIT_LOWER, LIMIT_NUMBER, LIMIT_SIZE };
-enum { TREE_PLAIN, TREE_AND, TREE_OR, TREE_CAN, TREE_CANNOT, TREE_KINDS };
+/* Whether runs start there, the sets of acceptance that it belongs to, its arcs. */
+enum { WAY_STARTS, WAY_SETS, WAY_ARC, WAY_ARCS, WAY_SIZE };
+enum { TREE_KIND, TREE_LEFT, TREE_RIGHT, TREE_BOUND, TREE_SIZE };
+/* Alternatives; both rows; one of them; not the left one; some run has left until right (left -1:
+ * anything); some stays in left; some next move leads to left (-1: anywhere). The bound is -1 where
+ * there is none. */
+enum { TREE_PLAIN, TREE_AND, TREE_OR, TREE_NOT, TREE_UNTIL, TREE_STAY, TREE_NEXT, TREE_KINDS };
 
 enum {
     OP_END, OP_CONST, OP_VARIABLE,
@@ -91,6 +101,7 @@ enum {
 #define MOST_CLOCKS 1000
 #define MOST_TREE_ROWS 1000
 #define MOST_PIECES 4000
+#define MOST_SETS 28
 #define STACK 256
 #define MOST_NEST 60        /* calls in calls */
 #define MOST_ROUNDS 1000000 /* of the loops of one computation */

@@ -163,7 +163,7 @@ static bool find_dead(engine *h, const bound *z, const int32_t *places, int32_t 
         return false;
     }
     for (k = 0; (k < h->alive.count) && (h->dead.count > 0); k++) {
-        if (!subtract(h, nth(h, &h->alive, k))) {
+        if (!subtract(h, &h->dead, nth(h, &h->alive, k))) {
             return false;
         }
     }
@@ -238,7 +238,7 @@ static bool in_dead(engine *h, const bound *z, const int32_t *places, int32_t *v
             return false;
         }
         for (k = 0; k < h->alive.count; k++) {
-            if (!subtract(h, nth(h, &h->alive, k))) {
+            if (!subtract(h, &h->dead, nth(h, &h->alive, k))) {
                 return false;
             }
         }

@@ -17,6 +17,8 @@ static double cost_of(const engine *h, const bound *z, const int32_t *edges, int
     return cost;
 }
 
+static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t *values);
+
 /* A zone just reached in a state whose data the invariants allow. */
 static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
                    const int32_t *edges, int count)
@@ -26,6 +28,10 @@ static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
     uint32_t n;
     bool fresh;
     bool delays;
+    if (h->kind == SEEK_RUN) {
+        enter_way(h, z, places, values);
+        return;
+    }
     if (h->phase != 0) {
         enter(h, z, places, values);
         return;

@@ -5,7 +5,7 @@
 #include "programs.h"
 
 /* The bits of a discrete state; `mark` distinguishes what else a search distinguishes. */
-static void pack(const engine *h, const int32_t *places, int32_t *values, uint32_t mark,
+static void pack(const engine *h, const int32_t *places, const int32_t *values, uint32_t mark,
                  uint32_t *to)
 {
     const int n = h->automaton_count + h->variable_count;
@@ -200,15 +200,15 @@ static void give_back(engine *h, federation *f)
     *f = (federation){0, 0, NULL};
 }
 
-/* What is in `dead` without a zone, by way of `rest`. */
-static bool subtract(engine *h, const bound *other)
+/* What is in a union without a zone, by way of `rest`. */
+static bool subtract(engine *h, federation *from, const bound *other)
 {
     const int d = h->dim;
-    federation swapped = h->dead;
+    federation swapped;
     uint32_t k;
     h->rest.count = 0;
-    for (k = 0; k < h->dead.count; k++) {
-        bound *left = nth(h, &h->dead, k);
+    for (k = 0; k < from->count; k++) {
+        bound *left = nth(h, from, k);
         int e;
         labour(h);
         for (e = 0; e < h->entries; e++) {
@@ -234,8 +234,8 @@ static bool subtract(engine *h, const bound *other)
             return false;
         }
     }
-    swapped.count = h->dead.count;
-    h->dead = h->rest;
+    swapped = *from;
+    *from = h->rest;
     h->rest = swapped;
     return true;
 }

@@ -32,7 +32,7 @@ static bool find_stuck(engine *h, const bound *z, int k, bool delays)
         if (cut_invariant(h, h->copy, w->places, w->values)
             && constrain(h->copy, h->dim, y, x, negated(b))) {
             before(h->copy, h->dim);
-            if (!subtract(h, h->copy)) {
+            if (!subtract(h, &h->dead, h->copy)) {
                 return false;
             }
         }
@@ -104,22 +104,21 @@ static void tell_way(engine *h, uint32_t back)
     }
 }
 
-/* A loop back to a node on the way: found, if it counts. */
-static void close_loop(engine *h, successor to)
+/* Whether time passes without bound on the loop that was told, which starts at a node: 1 or 0; -1 if
+ * the search ended. */
+static int ask_counts(engine *h, uint32_t n)
 {
     int64_t *head;
     uint32_t room = 0;
     int counts;
     int e;
-    tell_way(h, to.node);
-    (void)tell_link(h, h->frames[h->frame_count - 1].node, to.node, to.link);
     head = enlarge(h, NULL, &room, (uint64_t)h->entries, sizeof *head);
     if ((head == NULL) || !runs(h)) {
         free(head);
-        return;
+        return -1;
     }
     for (e = 0; e < h->entries; e++) {
-        const bound b = zone_of(h, to.node)[e];
+        const bound b = zone_of(h, n)[e];
         head[e] = (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
     }
     counts = h->from->counts(h->from->context, &h->path, h->loop, head, (uint32_t)h->dim);
@@ -128,7 +127,21 @@ static void close_loop(engine *h, successor to)
     h->step_edge_count = 0;
     if (counts < 0) {
         h->state = SEARCH_STOPPED;
-    } else if ((counts == 0) && h->from->proper_only) {
+    }
+    return counts;
+}
+
+/* A loop back to a node on the way: found, if it counts. */
+static void close_loop(engine *h, successor to)
+{
+    int counts;
+    tell_way(h, to.node);
+    (void)tell_link(h, h->frames[h->frame_count - 1].node, to.node, to.link);
+    counts = ask_counts(h, to.node);
+    if (!runs(h)) {
+        return;
+    }
+    if ((counts == 0) && h->from->proper_only) {
         h->improper = true;
         h->loop = -1;
     } else {

@@ -3,7 +3,7 @@
 #define RVMON_ZONES_WHOLE_H
 
 #include "nested.h"
-#include "stay.h"
+#include "linear.h"
 
 /* The bits that locations and variables take in a packed state. */
 static bool lay_out(engine *h)
@@ -134,16 +134,21 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     h->copy = block(h, d * d, sizeof *h->copy);
     h->between = block(h, d * d * (size_t)h->inside_count + d * d, sizeof *h->between);
     h->been = block(h, (size_t)h->inside_count, sizeof *h->been);
+    h->allowed = block(h, (size_t)h->inside_count, 1);
+    h->rest_allowed = block(h, (size_t)h->inside_count, 1);
+    h->rest_good = block(h, (size_t)h->inside_count, 1);
+    h->rest_on = block(h, (size_t)h->inside_count, 1);
+    h->rest_back = block(h, (size_t)h->inside_count, 1);
     h->step_edges = block(h, (size_t)h->automaton_count, sizeof *h->step_edges);
     h->failed_edges = block(h, (size_t)h->automaton_count, sizeof *h->failed_edges);
-    h->reaching = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching);
-    h->reaching_room = block(h, (size_t)plan_count(plan, AT_TREE), sizeof *h->reaching_room);
+    h->tables = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->tables);
+    h->table_rooms = block(h, (size_t)plan_count(plan, AT_TREE) + 2, sizeof *h->table_rooms);
     return runs(h);
 }
 
 static void free_engine(engine *h)
 {
-    void *all[32];
+    void *all[40];
     size_t n = 0;
     size_t i;
     uint32_t s;
@@ -151,11 +156,12 @@ static void free_engine(engine *h)
     for (s = 0; s < h->chunk_count; s++) {
         free(h->chunks[s]);
     }
-    for (k = 0; (h->reaching != NULL) && (k < plan_count(h->plan, AT_TREE)); k++) {
-        for (s = 0; (h->reaching[k] != NULL) && (s < h->reaching_room[k]); s++) {
-            free(h->reaching[k][s].zones);
+    for (k = 0; (h->tables != NULL) && (h->table_rooms != NULL)
+                && (k < plan_count(h->plan, AT_TREE) + 2); k++) {
+        for (s = 0; (h->tables[k] != NULL) && (s < h->table_rooms[k]); s++) {
+            free(h->tables[k][s].zones);
         }
-        free(h->reaching[k]);
+        free(h->tables[k]);
     }
     free_walk(&h->out);
     free_walk(&h->look);
@@ -176,10 +182,11 @@ static void free_engine(engine *h)
     free(h->frames);
     free(h->arrows);
     free(h->into);
+    free(h->out_of);
     free(h->pool);
     free(h->whose);
-    free(h->reaching);
-    free(h->reaching_room);
+    free(h->tables);
+    free(h->table_rooms);
     all[n++] = h->lower;
     all[n++] = h->upper;
     all[n++] = h->lowers;
@@ -194,6 +201,15 @@ static void free_engine(engine *h)
     all[n++] = h->copy;
     all[n++] = h->between;
     all[n++] = h->been;
+    all[n++] = h->allowed;
+    all[n++] = h->rest_allowed;
+    all[n++] = h->rest_good;
+    all[n++] = h->rest_on;
+    all[n++] = h->rest_back;
+    all[n++] = h->rank;
+    all[n++] = h->open;
+    all[n++] = h->roots;
+    all[n++] = h->trail;
     all[n++] = h->step_edges;
     all[n++] = h->failed_edges;
     all[n++] = h->crossings.at;
@@ -244,6 +260,11 @@ static bool limits_fit(const engine *h)
             }
         }
     }
+    for (s = 0; s < plan_count(h->plan, AT_TREE); s++) {
+        if (tree_row(h, s)[TREE_BOUND] > h->most_time) {
+            return false;
+        }
+    }
     return h->plan[HEAD_BOUND] <= h->most_time;
 }
 
@@ -258,12 +279,23 @@ static void run(engine *h)
     if (!runs(h) || !invariant_data_holds(h, w->target, w->changed)) {
         return;
     }
-    if (h->kind == SEEK_NESTED) {
+    if ((h->kind == SEEK_NESTED) || (h->kind == SEEK_START)) {
         find_moves(h);
+        solve(h);
         if (!runs(h) || h->failed) {
             return;
         }
         begin(h);
+    }
+    if (h->kind == SEEK_START) {
+        if (in_nested(h, w->zone, w->target, w->changed)) {
+            h->state = SEARCH_FOUND;
+        }
+        return;
+    }
+    if (h->kind == SEEK_RUN) {
+        look_for_run(h);
+        return;
     }
     if (h->kind == SEEK_STAY) {
         stay_from(h, NONE, 0);
@@ -302,7 +334,8 @@ static void tell_end(engine *h)
 {
     const search_state ended = h->failed ? SEARCH_FAILED : h->state;
     const int32_t failed = h->step_edge_count;
-    const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER);
+    const bool on_the_way = (h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER)
+                            || (h->kind == SEEK_RUN);
     if (h->failed) {
         (void)memcpy(h->failed_edges, h->step_edges, (size_t)failed * sizeof *h->step_edges);
     }

@@ -13,9 +13,10 @@ from rvmon.formula.alphabet import alphabet_of
 from rvmon.formula.factory import Factory
 from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import lower
+from rvmon.formula.obligation import Obligation
 from rvmon.formula.state import StateOp
 from rvmon.spec.checked.formula import BoundAtom
-from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.timed.conformance.recordings import labels_of
 from rvmon.timed.language.elaborate import signal_on
 from rvmon.timed.model.evaluate import Evaluator, evaluator
@@ -24,6 +25,7 @@ from rvmon.timed.model.network import Network
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import VariableSymbol
+from rvmon.timed.observation.lasting import Lasting, open_means
 from rvmon.timed.observation.observer import (
     Observed,
     ObservedLink,
@@ -35,7 +37,7 @@ from rvmon.timed.observation.observer import (
 from rvmon.timed.observation.outcome import Observation
 from rvmon.timed.observation.propositions import Labelling, NotExpressibleError
 from rvmon.timed.runs.paths import PathStep, invariant_of
-from rvmon.timed.runs.run import Run
+from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.runs.timing import TimedStep
 from rvmon.timed.search.explore import explore
 from rvmon.timed.search.meter import Meter
@@ -46,6 +48,8 @@ from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.zone_unions import Constraint
 from rvmon.trace.time import TICKS_PER_UNIT
 
+MET_IN_THE_END = "none stays open for ever while time passes on"
+OPEN_FOR_EVER = "an attempt stays open for ever"
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
 """What is reported of a requirement without deadline that no finite run fails."""
 
@@ -91,9 +95,10 @@ def observe(
             )  # fmt: skip
 
 
-def _observe(
-    network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
-) -> Observation:
+def _problem(
+    network: Network, spec: CheckedSpec, requirement: Requirement, *, ticks: bool = False
+) -> tuple[Network, Observed, Obligation]:
+    """The product of a network, in finer units if need be, with a requirement's monitor."""
     if spec.time is not TimeModel.HELD:
         raise NotExpressibleError("only requirements in held time are checked on models")
     if requirement.captures or requirement.for_each is not None:
@@ -114,10 +119,41 @@ def _observe(
     except DoesNotCloseError as error:
         raise NotExpressibleError(f"it has no finite monitor: {error}") from None
     unit = network.unit or 1
-    ticks = [cut for place in automaton.locations for cuts in place.cuts for cut in cuts]
-    if any(tick % unit > 1 for tick in ticks) and unit % TICKS_PER_UNIT["ms"] == 0:
+    cuts = [cut for place in automaton.locations for cuts in place.cuts for cut in cuts]
+    if any(cut % unit > 1 for cut in cuts) and unit % TICKS_PER_UNIT["ms"] == 0:
         network = finer(network, unit // TICKS_PER_UNIT["ms"])
-    problem = Observed(network, obligation, requirement.pulse, automaton, labelling)
+    product = Observed(network, obligation, requirement.pulse, automaton, labelling, ticks)
+    return network, product, obligation
+
+
+def _in_the_end(
+    network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
+) -> tuple[bool | None, Run | None, str]:
+    """Whether what has no deadline is met, where no finite run fails it; else a run."""
+    network, problem, obligation = _problem(network, spec, requirement, ticks=True)
+    met = open_means(obligation.owed)
+    if met is None and requirement.mode is Mode.WHENEVER and not problem.reads_events:
+        # Within a stretch without actions what one attempt meets the others do.
+        attempts = replace(requirement, mode=Mode.UPON, pulse=True)
+        network, problem, obligation = _problem(network, spec, attempts, ticks=True)
+        met = open_means(obligation.owed)
+    if met is not False:
+        return True, None, "" if met else UNDECIDED_IN_THE_END
+    found = Lasting(problem, meter).find()
+    if meter.stopped:
+        return None, None, f"not decided: {meter.stopped}"
+    if found is None:
+        return True, None, MET_IN_THE_END
+    node, loop = found
+    ending = Ending.IDLE if loop is None else Ending.LOOP
+    return False, observed_run(network, problem, node, ending, loop), OPEN_FOR_EVER
+
+
+def _observe(
+    network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
+) -> Observation:
+    original = network
+    network, problem, obligation = _problem(network, spec, requirement)
     first: dict[str, _Node] = {}
 
     def visit(node: _Node) -> None:
@@ -137,7 +173,8 @@ def _observe(
     elif holds and "triggered" not in first:
         remark = "vacuous: no run triggers it"
     elif holds and horizon(obligation.owed) is None:
-        remark = UNDECIDED_IN_THE_END
+        holds, run, remark = _in_the_end(original, spec, requirement, meter)
+        runs.update({} if run is None else {"failing": run})
     return Observation(
         requirement.id,
         requirement.text,
@@ -163,7 +200,11 @@ def signals_of(network: Network) -> dict[str, Evaluator]:
 
 
 def observed_run(
-    network: Network, problem: Observed, node: Node[ObservedSite, ObservedLink]
+    network: Network,
+    problem: Observed,
+    node: Node[ObservedSite, ObservedLink],
+    ending: Ending = Ending.REACHED,
+    loop: int | None = None,
 ) -> Run:
     """The run that leads to a node of the product."""
     nodes = node.path()
@@ -173,7 +214,7 @@ def observed_run(
         assert after.link is not None  # noqa: S101 - only the first node has no link
         own = problem.dim + number
         steps.append(_step(problem, before.site, after.link, after.site, clock_of, own))
-    return make_run(network, nodes[0].site.state, steps)
+    return make_run(network, nodes[0].site.state, steps, ending, loop)
 
 
 def _step(

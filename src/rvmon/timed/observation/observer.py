@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import product
-from math import ceil
+from math import ceil, inf
 
 from rvmon.automaton.automaton import Automaton, row_of
 from rvmon.automaton.location import FAILED, NOW, PASSED
@@ -22,7 +22,7 @@ from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.timed.conformance.conform import names_of
 from rvmon.timed.model.expressions import TRUE
 from rvmon.timed.model.network import Network
-from rvmon.timed.observation.propositions import Labelling, NotExpressibleError
+from rvmon.timed.observation.propositions import Labelling, NotExpressibleError, speaks_of_events
 from rvmon.timed.zones.dbm import STRICT, Zone, cut, delay, normalise, reset, zero
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.symbolic import Steps, fire, settle_in
@@ -95,11 +95,13 @@ class Observed:
         pulse: whether the trigger starts an attempt wherever it holds.
         automaton: of what is owed.
         labelling: values of the propositions.
+        ticks: whether there is one more clock.
 
     Attributes:
         steps: of the network.
         base: the monitor's first clock.
-        since: the last clock, the time since the last action.
+        since: the time since the last action.
+        tick: the last clock; with `ticks` nothing here reads it.
 
     Raises:
         NotExpressibleError: a window does not end at a whole number of units.
@@ -112,6 +114,7 @@ class Observed:
         pulse: bool,
         automaton: Automaton,
         labelling: Labelling,
+        ticks: bool = False,
     ) -> None:
         self._network = network
         self._automaton = automaton
@@ -119,15 +122,22 @@ class Observed:
         self._trigger = obligation.trigger
         self._pulse = pulse
         clocks = max(1, automaton.clocks)
-        self.steps = Steps(network, TRUE, observers=clocks + 1)
+        self.steps = Steps(network, TRUE, observers=clocks + 1 + ticks)
         self.dim = self.steps.dim
         self.base = 1 + len(network.clocks)
-        self.since = self.dim - 1
+        self.since = self.base + clocks
+        self.tick = self.dim - 1
         unit = network.unit or 1
         self._cuts = [
             tuple(tuple(_cut(ticks, unit) for ticks in cuts) for cuts in location.cuts)
             for location in automaton.locations
         ]
+
+    @property
+    def reads_events(self) -> bool:
+        """Whether what is owed speaks of events, which actions alone have."""
+        propositions = self._automaton.alphabet.propositions
+        return any(map(speaks_of_events, propositions))
 
     # The search.
 
@@ -155,6 +165,29 @@ class Observed:
 
     def goal(self, _site: ObservedSite, _zone: Zone) -> None:
         """Nothing: all sites are wanted."""
+
+    def rests(self, site: ObservedSite) -> bool:
+        """Whether time can pass for ever in a site and its attempt stays open."""
+        places = zip(self._cuts[site.location], site.region, strict=False)
+        return (
+            site.phase is Phase.HELD
+            and site.location > PASSED
+            and site.state.delays
+            and not site.state.invariant
+            and all(place == len(cuts) for cuts, place in places)
+        )
+
+    def most(self, site: ObservedSite) -> list[float]:
+        """For each clock the largest number that matters behind a site; −inf if there is none."""
+        most = [-inf] * self.dim
+        for clock, number in (*((c, -u) for c, u in site.state.uppers), *site.state.lowers):
+            most[clock] = max(most[clock], number)
+        for location in self._cuts:
+            for clock, cuts in enumerate(location, start=self.base):
+                most[clock] = max(most[clock], *(float(one.number) for one in cuts), -inf)
+        most[self.since] = 0.0
+        most[self.tick] = 1.0
+        return most
 
     # Actions.
 

@@ -25,6 +25,11 @@ class NotExpressibleError(Exception):
     """A requirement speaks of what the network does not have; the message says of what."""
 
 
+def speaks_of_events(proposition: Proposition) -> bool:
+    """Whether an event occurs in a proposition."""
+    return isinstance(proposition.leaf, EventAtom) or any(map(speaks_of_events, proposition.args))
+
+
 class Labelling:
     """Values of propositions.
 
@@ -46,7 +51,7 @@ class Labelling:
         for argument in proposition.args:
             self.require(argument)
         match proposition.op, proposition.leaf:
-            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT, _:
+            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT, _:
                 raise NotExpressibleError("it speaks of the past")
             case StateOp.LEAF, SignalAtom(name=name):
                 self._require_signal(name)
@@ -87,7 +92,7 @@ class Labelling:
                 return self._leaf(proposition, state, labels)
             case StateOp.SURE:  # nothing is unknown
                 return self.truth(proposition.args[0], state, labels)
-            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.DOUBT:
+            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT:
                 raise AssertionError("refused before")
             case _:
                 assert_never(proposition.op)

@@ -12,6 +12,7 @@ Systems, CAV 2011 (races between components; weights among the moves of one).
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import ceil, exp, fsum, inf, lgamma, log, log1p, prod
 from random import Random
@@ -93,15 +94,20 @@ def estimate(
     """
     check_start(network)
     sought, meets, horizon = _goal(query, until)
-    space = Space(network, formula_bounds(sought, network))
-    constraints = constraint_maker(sought)
-    random = Random(seed)  # noqa: S311 - repeatable, not secret
-    found = sum(
-        _reaches(space, constraints, horizon * GRID, random, mean_wait * GRID) for _ in range(runs)
-    )
+    trial = trial_of(network, sought, horizon, Random(seed), mean_wait)  # noqa: S311 - repeatable
+    found = sum(trial() for _ in range(runs))
     successes = found if meets else runs - found
     low, high = exact_bounds(successes, runs, confidence)
     return Estimate(runs, successes, low, high, confidence)
+
+
+def trial_of(
+    network: Network, sought: Expression, horizon: int, random: Random, mean_wait: float
+) -> Callable[[], bool]:
+    """What simulates one run and says whether it meets a normalised formula within a horizon."""
+    space = Space(network, formula_bounds(sought, network))
+    constraints = constraint_maker(sought)
+    return lambda: _reaches(space, constraints, horizon * GRID, random, mean_wait * GRID)
 
 
 def _goal(query: Query, until: int | None) -> tuple[Expression, bool, int]:
@@ -124,6 +130,17 @@ def _reaches(
     space: Space, constraints: ConstraintMaker, horizon: int, random: Random, mean_wait: float
 ) -> bool:
     """Whether one random run meets a formula within some grid steps."""
+    for state, clocks, stay in stretches(space, horizon, random, mean_wait):
+        here = constraints(state.vector.locations, state.values)
+        if any(_window(constraint, clocks, 0, stay) is not None for constraint in here):
+            return True
+    return False
+
+
+def stretches(
+    space: Space, horizon: int, random: Random, mean_wait: float
+) -> Iterator[tuple[State, list[int], int]]:
+    """One random run: each state, the clocks as it begins and how long it lasts, in grid steps."""
     state = space.initial()
     assert state is not None  # noqa: S101 - the network can start
     clocks, now = [0] * space.dim, 0
@@ -131,15 +148,13 @@ def _reaches(
         drawn = _draw(space, state, clocks, random, mean_wait)
         # If nothing is left to do, time passes as long as it may.
         most = _longest(state, clocks) if drawn is None else drawn[1]
-        wait = int(min(most, horizon - now))
-        here = constraints(state.vector.locations, state.values)
-        if any(_window(constraint, clocks, 0, wait) is not None for constraint in here):
-            return True
-        now += wait
-        if drawn is None or now >= horizon:
-            return False
+        stay = int(min(most, horizon - now))
+        yield state, clocks, stay
+        if drawn is None or most > stay:
+            return
+        now += stay
         move = drawn[0]
-        clocks = [0, *(clock + wait for clock in clocks[1:])]
+        clocks = [0, *(clock + stay for clock in clocks[1:])]
         for clock, value in move.resets:
             clocks[clock] = int(value) * GRID
         state = move.target

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf, log, prod
@@ -14,16 +14,25 @@ from rvmon.timed.model.expressions import (
     ClockCompare,
     ClockOp,
     Constant,
+    Deadlock,
     Expression,
+    InLocation,
     PathFormula,
+    UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete, normal_form
+from rvmon.timed.model.guards import is_discrete, resets_in
 from rvmon.timed.model.network import Edge, Network
-from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
+from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
+from rvmon.timed.search.linear import Ways, WayState
+from rvmon.timed.search.nested import together
 from rvmon.timed.search.programs import Programs
-from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
-from rvmon.timed.zones.zone_unions import formula_bounds, has_paths
+from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds, location_bounds
+from rvmon.timed.zones.zone_unions import (
+    has_bounds,
+    has_paths,
+    speaks_of_deadlock,
+)
 
 MAGIC = 0x5A4E3031
 MOST_CLOCKS = 1000
@@ -32,7 +41,7 @@ MOST_TREE_ROWS = 1000
 LARGEST = (1 << 31) - 2
 _OPS = {ClockOp.LT: 0, ClockOp.LE: 1, ClockOp.GE: 2, ClockOp.GT: 3}
 _KINDS = {LocationKind.NORMAL: 0, LocationKind.URGENT: 1, LocationKind.COMMITTED: 2}
-_AND, _OR, _CAN, _CANNOT = 1, 2, 3, 4
+_PLAIN, _AND, _OR, _NOT, _UNTIL, _STAY, _NEXT = range(7)
 
 
 class Seek(IntEnum):
@@ -45,6 +54,8 @@ class Seek(IntEnum):
     LATE = 4
     LATE_AFTER = 5
     NESTED = 6
+    START = 7
+    RUN = 8
 
 
 class Choose(IntEnum):
@@ -72,7 +83,9 @@ class Sought:
         goal: normalised; where runs lead, or from where they are watched, or what holds where
             there is no deadlock.
         inside: normalised; where runs stay, or what holds where there is a deadlock.
-        nested: normalised; where runs lead, if that speaks of runs.
+        ways: the automaton of a formula of LTL, that accepts the run.
+        progress: whether time has to pass on for ever on the run, beside what `ways` says.
+        nested: normalised; where runs lead, or what holds at the start, if that speaks of runs.
         choose: among several runs.
         bound: units of time, if there is one.
     """
@@ -81,18 +94,32 @@ class Sought:
     goal: Expression | None = None
     inside: Expression | None = None
     nested: Expression | None = None
+    ways: Ways | None = None
+    progress: bool = False
     choose: Choose = Choose.SHORTEST
     bound: int | None = None
 
     @property
     def has_timer(self) -> bool:
         """Whether one more clock belongs to the query."""
-        return self.bound is not None or self.choose is Choose.FASTEST
+        return (
+            self.bound is not None
+            or self.progress
+            or self.choose is Choose.FASTEST
+            or (self.nested is not None and has_bounds(self.nested))
+        )
 
     @property
     def is_levelled(self) -> bool:
         """Whether only states that can do the same stand for each other, not those that do more."""
-        return self.kind in (Seek.DEADLOCK, Seek.STAY, Seek.STAY_AFTER, Seek.NESTED)
+        return self.kind in (
+            Seek.DEADLOCK,
+            Seek.STAY,
+            Seek.STAY_AFTER,
+            Seek.NESTED,
+            Seek.START,
+            Seek.RUN,
+        )
 
 
 class Plan:
@@ -119,13 +146,21 @@ class Plan:
         due: tuple[ClockCompare, ...] = ()
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             due = (ClockCompare(timer, ClockOp.LE, Constant(sought.bound)),)
-        automata, locations, edges = self._automata()
+        self._sets = [
+            {reset.clock for edge in a.edges for reset in resets_in(edge.updates)}
+            for a in network.automata
+        ]
+        # What a query compares clocks with, by automaton and location, or with None everywhere.
+        self._asked: dict[int | None, dict[int, list[ClockCompare]]] = {}
         self.goal = alternatives_of(sought.goal, due)
         self.inside = alternatives_of(sought.inside, due)
+        states = () if sought.ways is None else sought.ways.states
+        self.inside += [one for state in states for one in alternatives_of(together(state.label))]
         goal = self._alternatives(self.goal)
         inside = self._alternatives(self.inside)
         if sought.nested is not None:
             self._grow(sought.nested)
+        automata, locations, edges = self._automata()
         self._refuse_too_large(len(self.inside))
         variables = (*network.variables, *network.locals)
         sections = [
@@ -140,13 +175,15 @@ class Plan:
             (3, goal),
             (3, inside),
             (3, self._extra(sought, timer + 1)),
-            (3, self._tree),
+            (4, self._tree),
             (3, self._pieces),
+            (4, _way_rows(states)),
+            (1, [arc for state in states for arc in state.arcs]),
         ]
-        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else 0
-        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer]
-        head += [sought.is_levelled, late or 0, len(network.locals)]
-        self.numbers = _packed(head, sections)
+        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
+        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer, sought.is_levelled]
+        sets = 0 if sought.ways is None else sought.ways.sets
+        self.numbers = _packed([*head, int(late or 0), sets, len(network.locals)], sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
 
@@ -154,7 +191,7 @@ class Plan:
         if (
             len(self._network.clocks) >= MOST_CLOCKS
             or pieces > MOST_PIECES
-            or len(self._tree) > 3 * MOST_TREE_ROWS
+            or len(self._tree) > 4 * MOST_TREE_ROWS
         ):
             raise model_error("TA019", "the query has too many alternatives, or clocks", None)
 
@@ -165,7 +202,7 @@ class Plan:
         edges: list[int] = []
         for index, automaton in enumerate(self._network.automata):
             automata += [len(locations) // 8, len(automaton.locations), automaton.initial]
-            bounds = location_bounds(self._network, automaton)
+            bounds = location_bounds(self._network, automaton, self._asked.get(index))
             for number, place in enumerate(automaton.locations):
                 first, limit = len(self.edges), len(self._limits) // 3
                 for k, edge in enumerate(automaton.edges):
@@ -208,6 +245,15 @@ class Plan:
         return first, len(self._atoms) // 4 - first
 
     def _alternatives(self, alternatives: Sequence[Alternative]) -> list[int]:
+        for one in alternatives:
+            places = list(_places_of(one.condition))
+            for compare in one.compares:
+                if compare.clock == len(self._network.clocks):
+                    continue  # the timer
+                # Best the place of an automaton that sets the clock: its edges forget the number.
+                chosen = [p for p in places if compare.clock in self._sets[p[0]]] or places
+                automaton, place = chosen[0] if chosen else (None, 0)
+                self._asked.setdefault(automaton, {}).setdefault(place, []).append(compare)
         return [
             number
             for one in alternatives
@@ -215,34 +261,61 @@ class Plan:
         ]
 
     def _extra(self, sought: Sought, timer: int) -> list[int]:
-        """What the query compares clocks with, in every location."""
-        bounds = no_bounds(len(self._network.clocks))
-        for formula in (sought.goal, sought.inside, sought.nested):
-            if formula is not None:
-                bounds = bounds.joined([formula_bounds(formula, self._network)])
-        rows = _limit_rows(bounds)
+        """What the query compares clocks with, wherever the automata are."""
+        everywhere = self._asked.get(None, {}).get(0, [])
+        rows = _limit_rows(compared_bounds(self._network, everywhere))
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             rows += [timer, 0, sought.bound]
         return rows
 
     def _grow(self, formula: Expression) -> int:
-        """Add a row of the tree for a normalised formula; its number."""
+        """Add rows of the tree for a normalised formula; the number of the last."""
         match formula:
+            case Deadlock():
+                return self._row(_NOT, self._row(_NEXT, -1))
+            case UnaryOperation(UnaryOp.NOT, Deadlock()):
+                return self._row(_NEXT, -1)
             case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right) if has_paths(
                 formula
-            ):
+            ) or speaks_of_deadlock(formula):
                 kind = _AND if op is BinaryOp.AND else _OR
-                row = [kind, self._grow(left), self._grow(right)]
-            case PathFormula(PathOp.POSSIBLY, body, None):
-                row = [_CAN, self._grow(body), 0]
-            case PathFormula(PathOp.INVARIANTLY, body, None):
-                row = [_CANNOT, self._grow(normal_form(body, positive=False)), 0]
+                return self._row(kind, self._grow(left), self._grow(right))
+            case PathFormula(op, body, bound, left):
+                return self._path(op, self._grow(body), left, -1 if bound is None else bound)
             case _:
                 first = len(self._pieces) // 3
                 self._pieces += self._alternatives(alternatives_of(formula))
-                row = [0, first, len(self._pieces) // 3 - first]
-        self._tree += row
-        return len(self._tree) // 3 - 1
+                return self._row(_PLAIN, first, len(self._pieces) // 3 - first)
+
+    def _path(self, op: PathOp, body: int, until: Expression, bound: int) -> int:
+        left = -1 if until == TRUE else self._grow(until)
+        match op:
+            case PathOp.POSSIBLY:
+                return self._row(_UNTIL, left, body, bound)
+            case PathOp.INVARIANTLY:
+                return self._row(_NOT, self._row(_UNTIL, left, self._row(_NOT, body), bound))
+            case PathOp.POTENTIALLY_ALWAYS:
+                return self._stay(body, left, bound)
+            case PathOp.EVENTUALLY:
+                return self._row(_NOT, self._stay(self._row(_NOT, body), left, bound))
+            case PathOp.SOME_NEXT:
+                return self._row(_NEXT, body)
+            case PathOp.EVERY_NEXT:
+                return self._row(_NOT, self._row(_NEXT, self._row(_NOT, body)))
+            case _:
+                raise AssertionError(f"{op} speaks of one run")
+
+    def _stay(self, body: int, left: int, bound: int) -> int:
+        """A run on which the body holds for ever, or until both it and `left` end at once."""
+        stay = self._row(_STAY, body, 0, bound)
+        if left < 0:
+            return stay
+        ends = self._row(_AND, self._row(_NOT, left), body)
+        return self._row(_OR, stay, self._row(_UNTIL, body, ends, bound))
+
+    def _row(self, kind: int, left: int, right: int = 0, bound: int = -1) -> int:
+        self._tree += (kind, left, right, bound)
+        return len(self._tree) // 4 - 1
 
 
 def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) -> bytes:
@@ -254,6 +327,24 @@ def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) 
     for _, section in sections:
         numbers += section
     return array("i", numbers).tobytes()
+
+
+def _places_of(condition: Expression) -> Iterator[tuple[int, int]]:
+    """Automata and the locations in which they are wherever a condition holds."""
+    match condition:
+        case InLocation(automaton, location):
+            yield automaton, location
+        case BinaryOperation(BinaryOp.AND, left, right):
+            yield from _places_of(left)
+            yield from _places_of(right)
+
+
+def _way_rows(states: Iterable[WayState]) -> list[int]:
+    rows, arcs = list[int](), 0
+    for state in states:
+        rows += (state.starts, state.sets, arcs, len(state.arcs))
+        arcs += len(state.arcs)
+    return rows
 
 
 def _limit_rows(bounds: ClockBounds) -> list[int]:

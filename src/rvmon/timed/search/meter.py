@@ -75,6 +75,10 @@ class Meter:
         self._look(self.visited + visited, waiting)
         return not self.stopped
 
+    def goes_on(self, runs: int) -> bool:
+        """Whether one more run may be simulated, after so many."""
+        return self.look(runs, 0)
+
     def add(self, visited: int, stored: int) -> None:
         """Count what a search did that counts for itself."""
         self.visited += visited

@@ -17,6 +17,7 @@ from rvmon.timed.runs.timing import timing_of
 from rvmon.timed.search.loops import time_passes
 from rvmon.timed.search.lowered import Alternative, Plan, Seek, Sought
 from rvmon.timed.search.meter import Meter
+from rvmon.timed.search.nested import together
 from rvmon.timed.search.witness import make_run
 from rvmon.timed.zones.compile import atoms_of
 from rvmon.timed.zones.dbm import STRICT, Zone
@@ -162,7 +163,8 @@ class _Paths:
         raise AssertionError("the native search failed where the rules do not")
 
     def _ask(self, state: State, sought: Sought) -> None:
-        for formula in (sought.goal, sought.inside):
+        labels = [] if sought.ways is None else [s.label for s in sought.ways.states]
+        for formula in (sought.goal, sought.inside, *map(together, labels)):
             if formula is not None:
                 constraint_maker(formula)(state.vector.locations, state.values)
 

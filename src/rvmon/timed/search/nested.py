@@ -1,4 +1,4 @@
-"""How a formula that speaks of runs itself is split, and which ones are decided."""
+"""How a formula that speaks of runs itself is split, to be sought piece by piece."""
 
 from __future__ import annotations
 
@@ -6,20 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rvmon.timed.model.expressions import TRUE, BinaryOperation, Expression, PathFormula
 from rvmon.timed.model.operators import BinaryOp, PathOp
-from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
-
-
-def is_decidable(formula: Expression) -> bool:
-    """Whether a normalised formula is decided by going backwards, state by state."""
-    match formula:
-        case BinaryOperation(_, left, right):
-            return is_decidable(left) and is_decidable(right)
-        case PathFormula(PathOp.POSSIBLY | PathOp.INVARIANTLY, body, None):
-            return is_decidable(body)
-        case PathFormula():
-            return False
-        case _:
-            return not speaks_of_deadlock(formula)
+from rvmon.timed.zones.zone_unions import has_paths, is_plain
 
 
 def alternatives(formula: Expression) -> list[list[Expression]]:
@@ -46,7 +33,9 @@ def together(parts: Iterable[Expression]) -> Expression:
 def lasting_part(parts: Sequence[Expression]) -> PathFormula | None:
     """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
     match [part for part in parts if has_paths(part)]:
-        case [PathFormula(PathOp.POTENTIALLY_ALWAYS, body, _) as lasting] if not has_paths(body):
+        case [PathFormula(PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
+            left == TRUE and is_plain(body)
+        ):
             return lasting
         case _:
             return None

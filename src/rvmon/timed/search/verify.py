@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import assert_never
+from dataclasses import dataclass, replace
 
 from rvmon.timed.language.elaborate import query_on
-from rvmon.timed.model.expressions import Expression, PathFormula
-from rvmon.timed.model.guards import normal_form, with_deadlock
-from rvmon.timed.model.network import LeadsToFormula, Network, Query
-from rvmon.timed.model.operators import PathOp
+from rvmon.timed.model.expressions import (
+    FALSE,
+    TRUE,
+    BinaryOperation,
+    Expression,
+    PathFormula,
+)
+from rvmon.timed.model.guards import is_linear, normal_form, with_deadlock
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
+from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
+from rvmon.timed.search.linear import check_linear, ways_of
 from rvmon.timed.search.lowered import Choose, Seek, Sought
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.nested import alternatives, is_decidable, lasting_part, together
+from rvmon.timed.search.nested import alternatives, lasting_part, together
 from rvmon.timed.search.outcome import Outcome, Policy
 from rvmon.timed.search.problem import UNLIMITED, Budget, Watch
 from rvmon.timed.zones.deadlock import check_start
-from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
+from rvmon.timed.zones.zone_unions import has_paths, is_plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +45,7 @@ def verify(
     watch: Watch | None = None,
     policy: Policy = Policy.SHORTEST,
 ) -> Outcome:
-    """Decide a query, with a run that shows why.
+    """Decide a query, with a run that shows why where one run can.
 
     Args:
         network: what the query asks about.
@@ -55,13 +61,15 @@ def verify(
     asked = query_on(network, query) if isinstance(query, str) else query
     check_start(network)
     question = _Question(network, Meter(budget, watch), policy)
-    shows, run, chosen = _search(question, asked)
-    meter = question.meter
-    holds = None if run is None and meter.stopped else (run is not None) == shows
+    found = _search(question, asked)
+    meter, run = question.meter, found.run
+    holds = found.holds
+    if holds is None:
+        holds = None if run is None and meter.stopped else (run is not None) == found.shows
     remark = f"not decided: {meter.stopped}" if holds is None else _remark(run)
-    if run is not None and chosen not in (None, policy):
+    if run is not None and found.chosen not in (None, policy):
         remark = f"no {policy} run was found: {meter.stopped}"
-    return Outcome(asked, holds, run, chosen, meter.statistics(), remark)
+    return Outcome(asked, holds, run, found.chosen, meter.statistics(), remark)
 
 
 def _remark(run: Run | None) -> str:
@@ -74,52 +82,89 @@ def _remark(run: Run | None) -> str:
             return ""
 
 
-def _search(question: _Question, query: Query) -> tuple[bool, Run | None, Policy | None]:
-    """Look for a run that decides a query.
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What a search says of a query.
 
-    Returns:
-        Whether a run shows that the query holds (else that it does not); the run, `None` if there
-        is none; the policy that chose it, if there was a choice.
+    Attributes:
+        shows: whether a run shows that it holds, else that it does not.
+        run: that run; `None` if there is none.
+        chosen: the policy that chose it, if there was a choice.
+        holds: whether it holds, where no single run shows it.
     """
+
+    shows: bool
+    run: Run | None
+    chosen: Policy | None = None
+    holds: bool | None = None
+
+
+_OUTERMOST = (
+    PathOp.POSSIBLY,
+    PathOp.INVARIANTLY,
+    PathOp.EVENTUALLY,
+    PathOp.POTENTIALLY_ALWAYS,
+)
+
+
+def _search(question: _Question, query: Query) -> _Found:
+    match query.formula:
+        case LeadsToFormula(left, right) if is_linear(left) or is_linear(right):
+            check_linear(PathFormula(PathOp.EVENTUALLY, left), query.span)
+        case LeadsToFormula():
+            pass
+        case Chance() | Mean():
+            fix = "simulate it: `rvmon verify` does, as does `sample`"
+            raise model_error("TA020", "statistics are no decision", query.span, fix)
+        case formula if is_linear(formula):
+            return _on_runs(question, query, formula)
     match query.formula:
         case LeadsToFormula(left, right, bound):
-            _refuse_nests(query, left, right)
-            _refuse_deadlock(query, left, right)
-            return False, _unanswered(question, left, right, bound), None
-        case PathFormula(op, body, bound):
+            if is_plain(left) and is_plain(right):
+                return _Found(False, _unanswered(question, left, right, bound))
+            answered = PathFormula(PathOp.EVENTUALLY, right, bound)
+            implied = BinaryOperation(BinaryOp.IMPLY, left, answered)
+            return _at_start(question, PathFormula(PathOp.INVARIANTLY, implied))
+        case PathFormula(op, body, None, until) if (
+            until != TRUE and op in _OUTERMOST and is_plain(body) and is_plain(until)
+        ):
+            shows = op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS)
+            ends = op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
+            linear = PathFormula(PathOp.FINALLY if ends else PathOp.GLOBALLY, body, None, until)
+            return _Found(shows, _accepted(question, normal_form(linear, positive=shows)))
+        case PathFormula(op, body, bound, until) if until == TRUE and op in _OUTERMOST:
             if op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = normal_form(body), True
             else:
                 sought, shows = normal_form(body, positive=False), False
             match op:
-                case PathOp.POSSIBLY | PathOp.INVARIANTLY if has_paths(sought):
-                    return shows, _reach_nested(question, query, sought, bound), None
-                case PathOp.POSSIBLY | PathOp.INVARIANTLY if speaks_of_deadlock(sought):
-                    return shows, _reach_deadlock(question, sought, bound), None
-                case PathOp.POSSIBLY | PathOp.INVARIANTLY:
-                    return shows, *_reach(question, sought, bound)
-                case PathOp.EVENTUALLY | PathOp.POTENTIALLY_ALWAYS:
-                    _refuse_nests(query, sought)
-                    _refuse_deadlock(query, sought)
-                    return shows, _avoidance(question, sought, bound), None
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if has_paths(sought) and bound is None:
+                    return _reach_nested(question, sought, shows)
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if is_plain(sought):
+                    return _Found(shows, *_reach(question, sought, bound))
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if not has_paths(sought):
+                    return _Found(shows, _reach_deadlock(question, sought, bound))
+                case PathOp.EVENTUALLY | PathOp.POTENTIALLY_ALWAYS if is_plain(sought):
+                    return _Found(shows, _avoidance(question, sought, bound))
                 case _:
-                    assert_never(op)
+                    return _at_start(question, query.formula)
+        case formula if has_paths(formula):
+            return _at_start(question, formula)
         case _:
             fix = "begin it with E<>, A[], A<> or E[], or write p --> q"
             raise model_error("TA020", "a query speaks of runs", query.span, fix)
 
 
-def _refuse_nests(query: Query, *parts: Expression) -> None:
-    if any(has_paths(part) for part in parts):
-        message = "path operators inside this one are not decided"
-        fix = "inside E<> and A[] are decided: E<> and A[], and A[] (p imply A<> q)"
-        raise model_error("TA020", message, query.span, fix)
-
-
-def _refuse_deadlock(query: Query, *parts: Expression) -> None:
-    if any(speaks_of_deadlock(part) for part in parts):
-        fix = "ask for it with E<> or A[]"
-        raise model_error("TA020", "`deadlock` can only be reached", query.span, fix)
+def _at_start(question: _Question, formula: Expression) -> _Found:
+    """Whether a formula that speaks of runs holds at the start: no single run shows it."""
+    # Going backwards meets no run that leaves a variable's range: going forwards does.
+    seek(question.network, Sought(Seek.GOAL, FALSE), question.meter)
+    if not question.meter.stopped:
+        sought = Sought(Seek.START, nested=normal_form(formula))
+        found = seek(question.network, sought, question.meter).run is not None
+        if found or not question.meter.stopped:
+            return _Found(True, None, holds=found)
+    return _Found(True, None)
 
 
 # Reaching.
@@ -153,28 +198,21 @@ def _reach_deadlock(question: _Question, formula: Expression, within: int | None
     return seek(question.network, sought, question.meter).run
 
 
-def _reach_nested(
-    question: _Question, query: Query, formula: Expression, bound: int | None
-) -> Run | None:
+def _reach_nested(question: _Question, formula: Expression, shows: bool) -> _Found:
     """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
-    if bound is not None or speaks_of_deadlock(formula):
-        _refuse_nests(query, formula)
-    chosen = alternatives(formula)
-    for parts in chosen:
-        if not (is_decidable(together(parts)) or lasting_part(parts)):
-            _refuse_nests(query, formula)
-    for parts in chosen:
+    run = None
+    for parts in alternatives(formula):
         lasting = lasting_part(parts)
-        if lasting is None:
+        first = [part for part in parts if part is not lasting]
+        if lasting is None or not all(map(is_plain, first)):
             sought = Sought(Seek.NESTED, nested=together(parts))
             run = seek(question.network, sought, question.meter).run
         else:
-            first = together(part for part in parts if part is not lasting)
             away = normal_form(lasting.body, positive=False)
-            run = _unanswered(question, first, away, lasting.bound)
+            run = _unanswered(question, together(first), away, lasting.bound)
         if run is not None or question.meter.stopped:
-            return run
-    return None
+            break
+    return _Found(shows, run)
 
 
 # Staying away.
@@ -208,3 +246,26 @@ def _staying(
     if answer.run is None and not meter.stopped and answer.improper:
         answer = seek(network, sought, meter)
     return answer.run
+
+
+# Accepting.
+
+
+def _on_runs(question: _Question, query: Query, formula: Expression) -> _Found:
+    """Whether all runs satisfy a formula of LTL, or some run does."""
+    body, shows = formula, False
+    if isinstance(formula, PathFormula) and formula.op in (PathOp.EVERY_RUN, PathOp.SOME_RUN):
+        body, shows = formula.body, formula.op is PathOp.SOME_RUN
+    check_linear(body, query.span)
+    return _Found(shows, _accepted(question, normal_form(body, positive=shows)))
+
+
+def _accepted(question: _Question, formula: Expression) -> Run | None:
+    """A run that satisfies a normalised formula of LTL, if there is one on which time passes."""
+    network, meter = question.network, question.meter
+    sought = Sought(Seek.RUN, ways=ways_of(formula))
+    run = seek(network, sought, meter).run
+    if run is not None and run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
+        better = seek(network, replace(sought, progress=True), meter).run
+        return run if better is None else better
+    return run

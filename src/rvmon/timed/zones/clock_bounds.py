@@ -7,7 +7,7 @@ Abstractions of Timed Automata, 2006.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, prod
 
@@ -51,13 +51,24 @@ def no_bounds(clocks: int) -> ClockBounds:
     return ClockBounds((-inf,) * clocks, (-inf,) * clocks)
 
 
-def location_bounds(network: Network, automaton: Automaton) -> list[ClockBounds]:
-    """The bounds of each location of an automaton, from its guards and invariants."""
+def location_bounds(
+    network: Network,
+    automaton: Automaton,
+    asked: Mapping[int, Sequence[ClockCompare]] | None = None,
+) -> list[ClockBounds]:
+    """The bounds of each location of an automaton, from its guards and invariants.
+
+    Args:
+        network: of the automaton.
+        automaton: whose bounds.
+        asked: by location, what a query compares clocks with only while the automaton is there.
+    """
     clocks = len(network.clocks)
     lower = [[-inf] * clocks for _ in automaton.locations]
     upper = [[-inf] * clocks for _ in automaton.locations]
     for index, location in enumerate(automaton.locations):
-        _note(location.invariant.clocks, lower[index], upper[index], network)
+        here = (*location.invariant.clocks, *(asked or {}).get(index, ()))
+        _note(here, lower[index], upper[index], network)
     kept: list[tuple[int, int, list[int]]] = []
     for edge in automaton.edges:
         _note(edge.guard.clocks, lower[edge.source], upper[edge.source], network)

@@ -130,6 +130,37 @@ def normalise(zone: Zone) -> Zone:
     return list(map(_TIDY.__getitem__, zone))
 
 
+def blurred(zone: Zone, dim: int, most: Sequence[float]) -> Zone:
+    """A zone with what lies above the largest numbers blurred, up to bisimulation (Extra_M).
+
+    Args:
+        zone: normalised.
+        dim: of it.
+        most: for each clock its number; −inf frees it.
+
+    Source: Behrmann, Bouyer, Larsen, Pelánek, Lower and Upper Bounds in Zone-Based Abstractions of
+    Timed Automata, 2006, section 3.
+    """
+    wide = zone[:]
+    for x in range(dim):
+        for y in range(dim):
+            bound, least = zone[x * dim + y], most[x]
+            if x == y:
+                continue
+            if bound > most[y]:
+                wide[x * dim + y] = inf
+            elif x and bound < -least - STRICT:
+                wide[x * dim + y] = inf if y and least == -inf else min(0.0, -least - STRICT)
+    if wide == zone:
+        return wide
+    for k in range(dim):
+        for x in range(dim):
+            for y in range(dim):
+                through = wide[x * dim + k] + wide[k * dim + y]
+                wide[x * dim + y] = min(wide[x * dim + y], through)
+    return normalise(wide)
+
+
 class _Tidy(dict[float, float]):
     """Bounds with one `STRICT` at most; each is worked out once, for a search meets few."""
 

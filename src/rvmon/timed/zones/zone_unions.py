@@ -85,6 +85,17 @@ def has_paths(formula: Expression) -> bool:
     return any(isinstance(part, PathFormula) for part in parts_of(formula))
 
 
+def is_plain(formula: Expression) -> bool:
+    """Whether a formula speaks of the state alone: of no runs and no deadlock."""
+    return not (has_paths(formula) or speaks_of_deadlock(formula))
+
+
+def has_bounds(formula: Expression) -> bool:
+    """Whether a path operator with a bound occurs in a formula."""
+    parts = parts_of(formula)
+    return any(isinstance(part, PathFormula) and part.bound is not None for part in parts)
+
+
 def formula_bounds(formula: Expression, network: Network) -> ClockBounds:
     """What a formula compares clocks with."""
     return compared_bounds(network, compares_of(formula))

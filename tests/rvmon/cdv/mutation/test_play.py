@@ -16,7 +16,7 @@ from rvmon.cdv.mutation.suite import record_suite
 from rvmon.cdv.mutation.tried import How, failing_runs, scored
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
-from rvmon.loading import load
+from rvmon.session import load
 
 pytestmark = [
     pytest.mark.process,

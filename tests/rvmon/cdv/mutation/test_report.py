@@ -14,7 +14,7 @@ from rvmon.cdv.mutation.report import MutationReport, SuiteTried
 from rvmon.cdv.mutation.text import report_text
 from rvmon.cdv.mutation.tried import Finding, How, Tried
 from rvmon.errors import RvmonError
-from rvmon.loading import loads
+from rvmon.session import loads
 
 SPEC = loads("event go, stop\nrequirement R1\n  upon go\n  then within 3 s stop\n").checked
 

@@ -73,12 +73,12 @@ def test_updates_of_a_missing_name_are_not_known():
 def test_a_name_that_is_read_has_a_column(spec, tmp_path):
     """All doors refuse a recording without it, unless it may lack it: what reads it is I."""
     for trace in doors(tmp_path, without("speed")):
-        with pytest.raises(rvmon.MissingNameError, match="`speed`, read by R1"):
+        with pytest.raises(rvmon.errors.MissingNameError, match="`speed`, read by R1"):
             spec.evaluate(trace)
         for allowed in (True, ["speed"], {"speed": 1}):
             report = spec.evaluate(trace, allow_missing=allowed)
             assert (report.verdicts["R1"], report.verdicts["R2"]) == ("I", "P")
-        with pytest.raises(rvmon.MissingNameError):
+        with pytest.raises(rvmon.errors.MissingNameError):
             spec.evaluate(trace, allow_missing=["gap"])
 
 
@@ -130,7 +130,7 @@ def test_the_column_that_was_meant_is_told(spec, column):
     """Whatever people change about a name: the message says the column, and how to map it."""
     table = {column if name == "speed" else name: cells for name, cells in COLUMNS.items()}
     table["other"] = [1, 2]
-    with pytest.raises(rvmon.MissingNameError) as error:
+    with pytest.raises(rvmon.errors.MissingNameError) as error:
         spec.evaluate(table)
     assert f"did you mean `{column}`?" in str(error.value)
     mapped = spec.evaluate(table, columns={"speed": column})
@@ -169,7 +169,7 @@ def test_a_column_is_mapped_through_every_door(spec, tmp_path):
 
 def test_a_mapped_column_that_is_not_there_is_told(spec):
     """With the name that was given for it."""
-    with pytest.raises(rvmon.MissingNameError, match=r"`speed` \(as `v_mean`\), read by R1"):
+    with pytest.raises(rvmon.errors.MissingNameError, match=r"`speed` \(as `v_mean`\), read by R1"):
         spec.evaluate(COLUMNS, columns={"speed": "v_mean"})
 
 

@@ -204,7 +204,7 @@ def test_an_instant_that_is_none_is_refused(value):
         monitor.step(t, values)
     head, _, body = monitor.snapshot().partition(b"\n")
     document = json.loads(body)
-    document["state"]["torn"] = value
+    document["state"]["interrupted"] = value
     sealed = json.dumps(document, separators=(",", ":")).encode()
     seal = hashlib.sha256(sealed).hexdigest().encode()
     with pytest.raises(RvmonError, match="damaged"):

@@ -189,7 +189,7 @@ def test_a_call_that_fails_leaves_the_monitor_open() -> None:
             monitor.step_ns(2, wrong)  # type: ignore[arg-type]
     with pytest.raises(LookupError, match="mine"):
         monitor.step_ns(2, {"x": 4.0})
-    with pytest.raises(rvmon.TimeOrderError):
+    with pytest.raises(rvmon.errors.TimeOrderError):
         monitor.step_ns(2, {"x": 4.0})
     stop()
     monitor.step_ns(3, {"x": 1.0})

@@ -27,6 +27,10 @@ FORMATS = {
     "sqlite3": lambda path, sent: write_ros2(path, sent, "sqlite3"),
     "mcap": lambda path, sent: write_ros2(path, sent, "mcap"),
     "b.mcap": write_json_mcap,
+    "d.mcap": lambda path, sent: write_json_mcap(path, sent, encoding="msgpack"),
+    "e.mcap": lambda path, sent: write_json_mcap(path, sent, encoding="cbor", schemas=False),
+    "bz2.bag": lambda path, sent: write_ros1(path, sent, compression="bz2"),
+    "lz4.bag": lambda path, sent: write_ros1(path, sent, compression="lz4"),
     "c.mcap": write_protobuf_mcap,
 }
 """By the name of a recording."""

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from rvmon.spec.checked.formula import Literal, SignalAtom
-from rvmon.units.table import UnknownUnitError, parse_unit
+from rvmon.units import UnknownUnitError, parse_unit
 
 
 @pytest.mark.parametrize(

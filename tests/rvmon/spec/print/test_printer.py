@@ -10,7 +10,7 @@ from rvmon.spec.checked.tense import subformulas
 from rvmon.spec.compile import compile_text
 from rvmon.spec.print.printer import format_duration, format_formula, format_numeric
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.units.table import unit_table
+from rvmon.units import unit_table
 
 
 @pytest.mark.law

@@ -7,9 +7,12 @@ import lark
 import pytest
 from lark import logger
 
+import rvmon
 from rvmon.errors import SpecError
 from rvmon.spec.checked.reads import names_of_spec
 from rvmon.spec.compile import compile_text
+from rvmon.spec.print.formatter import format_text
+from rvmon.spec.print.printer import format_formula
 from rvmon.spec.syntax.parse import GRAMMAR_OPTIONS, grammar_text
 from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
 
@@ -68,7 +71,7 @@ def test_grammar_has_no_conflicts():
         ("a S b", "a since b"),
         ("a U b U c", "a until b until c"),
         ("(a U b) U c", "(a until b) until c"),
-        ("a and b U c", "a and b until c"),
+        ("a -> b U c", "a -> b until c"),
         ("O a", "once a"),
         ("H[0, 1 s] a", "historically[0, 1 s] a"),
         ("rise(a) and fall(b and c)", "rise(a) and fall(b and c)"),
@@ -101,6 +104,98 @@ def test_grammar_has_no_conflicts():
 def test_operators(owed, text, printed):
     """Words and symbols mean the same, precedence is as stated, printing uses few brackets."""
     assert owed(text) == printed
+
+
+@pytest.mark.parametrize(
+    ("text", "help_"),
+    [
+        ("a unless b and c", "write `… unless (b and …)` or `(a unless b) and …`"),
+        ("a or b until c", "write `(… or b) until …` or `… or (b until c)`"),
+        ("a and b xor b S c", "write `(… xor b) S …` or `… xor (b S c)`"),
+    ],
+)
+def test_a_connective_beside_until_needs_brackets(text, help_):
+    """`a unless b and c` is read by people as `a unless (b and c)`, and was not."""
+    with pytest.raises(rvmon.SpecError) as caught:
+        rvmon.loads(f"spec s\nsignal a, b, c : bool\nrequirement R upon start then {text}\n")
+    (found,) = [one for one in caught.value.diagnostics if one.code == "RV002"]
+    assert found.help == help_
+
+
+@pytest.mark.parametrize(
+    ("text", "printed"),
+    [
+        ("(a unless b) and c", "(a unless b) and c"),
+        ("a -> b until c", "a -> b until c"),
+        ("within 1 s a or within 2 s b", "(within 1 s a) or within 2 s b"),
+        ("always a and always b", "(always a) and always b"),
+        ("within [1 s, 2 s] a", "eventually[1 s, 2 s] a"),
+        ("for (1 s, 2 s] a", "always[1000000001 ns, 2 s] a"),
+        ("a until[<= 2 s] b", "a until[0, 2 s] b"),
+    ],
+)
+def test_what_is_read_as_people_mean_it(owed, text, printed):
+    """Windows behind `within`, the same operator on both sides, bounds as in models."""
+    assert owed(text) == printed
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ("mode in {red, blue}", "mode == red or mode == blue"),
+        ("mode not in {red, blue}", "not (mode == red or mode == blue)"),
+        ("x in {1, 2}", "x == 1 or x == 2"),
+        ("x <= (if a then 1 else 2)", "a and x <= 1 or not a and x <= 2 or x <= 1 and x <= 2"),
+        ("if a then b else c", "a and b or not a and c or b and c"),
+        (
+            "2 * (if a then x else 1) <= 3",
+            "a and 2 * x <= 3 or not a and 2 * 1 <= 3 or 2 * x <= 3 and 2 * 1 <= 3",
+        ),
+        ("define_d(x) <= 1", "a and x <= 1 or not a and 2 <= 1 or x <= 1 and 2 <= 1"),
+    ],
+)
+def test_sets_and_choices(text, same):
+    """They stand for what can be written out."""
+    head = (
+        "spec s\nsignal a, b, c : bool\nsignal x : real\nsignal mode : {red, blue, green}\n"
+        "define define_d(y) = if a then y else 2\n"
+    )
+    owed = [
+        rvmon.loads(f"{head}requirement R upon start then {one}\n").checked.requirements["R"]
+        for one in (text, same)
+    ]
+    assert len({format_formula(one.consequent) for one in owed}) == 1
+
+
+def test_clauses_between_trigger_and_consequent():
+    """`let` and `for each` stand before `then` as well as behind what is owed."""
+    head = "spec s\nsignal x : real\nevent e(k: int), f\n"
+    texts = (
+        "upon e for each n in e.k let v = x then within 1 s x > v + n",
+        "upon e then within 1 s x > v + n for each n in e.k let v = x",
+    )
+    made = [
+        rvmon.loads(f"{head}requirement R {text}\n").checked.requirements["R"] for text in texts
+    ]
+    assert made[0].captures == made[1].captures
+    assert made[0].for_each == made[1].for_each
+    assert format_text(f"{head}requirement R {texts[0]}\n").splitlines()[-4:] == [
+        "  upon e",
+        "  for each n in e.k",
+        "  let v = x",
+        "  then within 1 s x > v + n",
+    ]
+
+
+def test_a_choice_is_laid_out_on_one_line():
+    """Its `then` is not that of a trigger."""
+    text = "requirement R\n  upon x > if a then 1 else 2\n  then if a then b else c\n"
+    assert format_text(text) == text
+
+
+def test_a_choice_is_no_captured_value(codes):
+    """A value at the trigger is one number."""
+    assert "RV020" in codes("requirement R upon a then b let v = if a then 1 else 2")
 
 
 @pytest.mark.parametrize("text", ["a U b W c", "a until b since c", "a R b U c"])

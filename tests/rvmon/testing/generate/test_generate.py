@@ -22,7 +22,7 @@ from rvmon.testing.case import Case
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-from rvmon.testing.law.pulse import is_pulse
+from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.law.walk import intervals, subformulas
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample

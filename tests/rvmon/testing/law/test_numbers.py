@@ -9,9 +9,9 @@ from tests.tools.build import compared, spec_of, timeline, x, y
 
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import Arithmetic, Literal, Numeric, UpdateFunction, UpdateValue
-from rvmon.testing.law.kleene import Truth
 from rvmon.testing.law.numbers import compare, number
 from rvmon.testing.law.sample_words import word_of
+from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Sample
 
 MOST, LEAST = 2**63 - 1, -(2**63)

@@ -10,9 +10,9 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.attempts import Readings, obligation
 from rvmon.testing.law.follow import follow
-from rvmon.testing.law.kleene import Truth
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Rest
+from rvmon.testing.law.word import Truth
 
 
 @pytest.mark.parametrize("time", TimeModel)

@@ -53,12 +53,12 @@ def test_what_is_not_supported_is_called_by_its_name(parts, message):
 @pytest.mark.parametrize(
     ("formula", "message"),
     [
-        ("Pr[<=10](<> T.A)", "statistical queries"),
-        ("simulate [<=10] { T.A }", "statistical queries"),
+        ("Pr[<=10](<> T.A) >= Pr[<=9](<> T.A)", "statistical query"),
+        ("simulate [<=10] { T.A }", "statistical query"),
         ("sup: T.A", "extreme values"),
         ("control: A<> T.A", "games"),
         ("E<> T.A under s", "games"),
-        ("A[ T.A U T.A ]", "until"),
+        ("A<> T.A U T.A", "takes brackets"),
     ],
 )
 def test_foreign_queries_are_called_by_their_name(formula, message):

@@ -170,10 +170,10 @@ def test_the_first_line_of_a_comment_may_be_an_id(comment, told):
 
 
 def test_a_query_that_cannot_be_read_is_a_warning():
-    """Statistical and other foreign queries are left out, the model is still checked."""
+    """Foreign queries are left out, the model is still checked."""
     queries = "".join(
         f"<query><formula>{formula}</formula><comment/></query>"
-        for formula in ("Pr[&lt;=10](&lt;&gt; T.a)", "E&lt;&gt; T.a", "")
+        for formula in ("sup: T.a", "E&lt;&gt; T.a", "")
     )
     network = loads_network(wrap(ONE, queries=queries))
     assert [query.text for query in network.queries] == ["E<> T.a"]

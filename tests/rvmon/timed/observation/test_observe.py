@@ -1,13 +1,18 @@
 """Requirements on all runs of a network: claims, witnesses and counterexamples, judged twice."""
 
 from fractions import Fraction
+from random import Random
 
 import pytest
+from tests.tools.timed_generate import random_model
 
 import rvmon
+from rvmon.errors import ModelError
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.observation.observe import observe
+from rvmon.timed.runs.run import Ending
 from rvmon.timed.search.problem import Budget
+from rvmon.timed.search.verify import verify
 from rvmon.trace.time import TICKS_PER_SECOND
 
 LAMP = """
@@ -107,11 +112,41 @@ def test_a_requirement_that_no_run_triggers_is_vacuous():
     assert "vacuous" in one.remark
 
 
-def test_liveness_is_not_claimed():
-    """That something comes at last is not refuted by a finite run, which is said."""
-    ((one,), _) = observed("requirement R\n  upon pressed then eventually raised")
+@pytest.mark.parametrize(
+    ("requirement", "holds", "remark"),
+    [
+        ("upon pressed then eventually dark", True, "while time passes"),
+        ("upon pressed then eventually raised", False, "for ever"),
+        ("upon dark then eventually pressed", False, "for ever"),
+        ("upon pressed then (lit until dark)", True, "while time passes"),
+        ("upon pressed then eventually level == 0", True, "while time passes"),
+        ("upon start then eventually pressed", False, "for ever"),
+        ("upon pressed then always level <= 2", True, ""),
+        ("upon pressed then always eventually dark", True, "in the end"),
+    ],
+)
+def test_what_has_no_deadline(requirement, holds, remark):
+    """A promise is refuted by a run that goes on for ever, and proved if there is none."""
+    ((one,), _) = observed(f"requirement R\n  {requirement}")
+    assert one.holds is holds
+    assert remark in one.remark if remark else not one.remark
+    assert (one.failing is None) is holds
+    if one.failing is not None:
+        assert one.failing.ending in (Ending.IDLE, Ending.LOOP)
+
+
+def test_the_loop_on_which_a_promise_waits():
+    """It is shown with where it begins; a loop on which time stops refutes nothing."""
+    going = "edge on -> on when x >= 1 and level == 1 do x = 0 as kept"
+    model = LAMP.replace("  edge on -> off", f"  {going}\n  edge on -> off")
+    ((one,), _) = observed("requirement R\n  upon pressed then eventually dark", model)
+    assert (one.holds, one.failing.ending) == (False, Ending.LOOP)
+    assert one.failing.loop is not None
+    hasty = LAMP.replace(
+        "  edge on -> off", "  edge on -> on when level == 1 as kept\n  edge on -> off"
+    )
+    ((one,), _) = observed("requirement R\n  upon pressed then eventually dark", hasty)
     assert one.holds is True
-    assert "in the end" in one.remark
 
 
 def test_an_attempt_may_begin_with_the_run():
@@ -200,3 +235,32 @@ def test_all_labels_of_a_synchronised_move_are_events(requirement, holds):
     assert found.holds is holds
     if not holds:
         assert "F" in judged(spec, found, found.failing)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("first", range(0, 20, 5))
+def test_promises_agree_with_formulas_of_ltl(first):
+    """On random networks, by the Büchi product, which knows no monitor."""
+    compared = 0
+    for seed in range(first, first + 5):
+        random = Random(seed)
+        p, q, r = random.choices(["P0.l0", "P0.l1", "b", "v > 0", "not P0.l1", "not b"], k=3)
+        model = random_model(seed).replace("network random", "network random\nunit 1 s")
+        model += f"signal p = {p}\nsignal q = {q}\nsignal r = {r}\n"
+        network = loads_network(model)
+        for requirement, formula in (
+            ("whenever p then eventually q", f"G (({p}) imply F ({q}))"),
+            ("whenever p then (r until q)", f"G (({p}) imply (({r}) U ({q})))"),
+            ("upon start then eventually (p and eventually q)", f"F (({p}) and F ({q}))"),
+        ):
+            text = f"spec s\ntime held\nsignal p, q, r : bool\nrequirement R\n  {requirement}\n"
+            try:
+                expected = verify(network, formula)
+            except ModelError:
+                continue  # it cannot start
+            if expected.run and expected.run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
+                continue  # time stops: no recording is like that
+            (one,) = observe(network, rvmon.loads(text).checked)
+            assert one.holds == expected.holds, (seed, requirement)
+            compared += 1
+    assert compared > 9

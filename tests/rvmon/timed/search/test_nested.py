@@ -1,4 +1,4 @@
-"""Path operators inside path operators are decided where that is sound, and refused elsewhere."""
+"""Formulas of CTL are decided, with path operators inside others."""
 
 import pytest
 
@@ -53,23 +53,54 @@ def test_the_run_leads_to_where_the_inner_formula_holds():
 
 
 @pytest.mark.parametrize(
-    "query",
+    ("query", "expected"),
     [
-        "A<> (E<> A.trap)",
-        "E[] (E<> A.trap)",
-        "A[] (A.open imply (A<>[<=3] (E<> A.trap)))",
-        "E<>[<=3] (A[] A.trap)",
-        "A.open --> (E<> A.trap)",
-        "E<> (A.open and (E[] A.open) and (E[] A.trap))",
-        "A<> deadlock",
-        "deadlock --> A.trap",
-        "A.open",
+        ("A<> (E<> A.trap)", True),
+        ("AF AG A.trap", False),
+        ("AG AF A.start", False),
+        ("EG EF A.trap", True),
+        ("E<>[<=3] (A[] A.trap)", False),
+        ("A[] (A.open imply (A<>[<=3] (E<> A.trap)))", True),
+        ("A.open --> (E<> A.trap)", True),
+        ("A.start --> (E[] A.start)", True),
+        ("A<> deadlock", False),
+        ("deadlock --> A.trap", True),
+        ("A[not A.open U A.start]", True),
+        ("A[A.start U A.open]", False),
+        ("A[A.start W A.open]", True),
+        ("E[not A.open U A.trap]", False),
+        ("E[not A.trap U A.open]", True),
+        ("E[A.start U[<=0] A.open]", False),
+        ("E[A.start U[<=1] A.open]", True),
+        ("E[A.open W A.trap]", False),
+        ("EX A.open", True),
+        ("AX (A.open and EX A.trap)", True),
+        ("AX AX A.trap", False),
+        ("(E<> A.trap) and not (A<> A.trap)", True),
+        ("(E<> A.trap) imply (A<> A.trap)", False),
+        ("E<> (E<>[<=4] A.trap)", True),
+        ("EF[<=5] A.trap or EF[<=6] A.trap", True),
     ],
 )
-def test_what_is_not_decided_is_refused(query):
-    """Other nests, and `deadlock` where runs must go on, are findings and no wrong answers."""
+def test_all_of_ctl_is_decided(query, expected):
+    """Until, next, bounds and `deadlock` inside others, and conditions on whole formulas."""
+    assert verify(loads_network(TRAP), query).holds is expected
+
+
+def test_a_formula_decided_backwards_meets_what_breaks_a_range():
+    """A variable that leaves its range is an error, whatever the query begins with."""
+    network = loads_network(
+        "int[0,1] v\nautomaton A { location a start a edge a -> a do v = v + 1 }"
+    )
     with pytest.raises(ModelError) as caught:
-        verify(loads_network(TRAP), query)
+        verify(network, "EG EF A.a")
+    assert caught.value.diagnostics[0].code == "TA007"
+
+
+def test_what_speaks_of_no_run_is_refused():
+    """A state formula alone is no query."""
+    with pytest.raises(ModelError) as caught:
+        verify(loads_network(TRAP), "A.open")
     assert caught.value.diagnostics[0].code == "TA020"
 
 

@@ -1,0 +1,128 @@
+"""A suite that is chosen by the faults that it sees, too, and what each choice of tests costs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.close.outcome import Choice, Closed, Trade
+from rvmon.cdv.code import Code
+from rvmon.cdv.mutation.equivalent import equivalents
+from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
+from rvmon.cdv.mutation.play import play_mutants
+from rvmon.cdv.mutation.suite import Suite, mutated_code, record_suite
+from rvmon.coverage.ranking import smallest
+
+Killers = Mapping[str, frozenset[str]]
+"""By identity of a mutant that is killed, tests that kill it; none is known of a lost process."""
+
+
+def with_mutants(
+    campaign: Campaign,
+    robot: str,
+    closed: Closed,
+    mutants: int,
+    *,
+    jobs: int,
+    progress: Callable[[float], None] = lambda _: None,
+) -> Closed:
+    """Add to a suite the fewest tests that kill the mutants which it lets live.
+
+    A third of the mutants is held out: these choose nothing, so that what each choice of tests
+    sees of them says what it would see of faults that nobody has planted.
+
+    Args:
+        campaign: that was closed, with its code.
+        robot: of its robots the one that was tested.
+        closed: what came of it.
+        mutants: of its code; so many are drawn from all that are not known to be equivalent.
+        jobs: processes.
+        progress: called with the share of this that is done.
+
+    Raises:
+        RvmonError: the campaign measures no code, or none of the tests has a result.
+    """
+    played = [one.played.job.test for one in closed.tests]
+    suite = record_suite(campaign, robot, played, jobs=jobs)
+    drawn = _drawn(mutated_code(campaign), mutants)
+    steps = len(closed.choices) + 3
+
+    def killers(names: Sequence[str], some: Sequence[Mutant], step: int) -> Killers:
+        found = _killers(_only(suite, names), some, jobs)
+        progress(step / steps)
+        return found
+
+    choices = []
+    kills: Killers = {}
+    for step, (times, names) in enumerate(closed.choices.items(), start=1):
+        kills = killers(names, drawn, step)
+        choices.append(_choice(times, len(names), kills, drawn))
+    kept = closed.choices[max(closed.choices)]
+    missed = [one for one in drawn if one.identity not in kills]
+    others = [name for name in suite.tests if name not in kept]
+    by_others = killers(others, missed, steps - 2)
+    added = _fewest(
+        killers(
+            list(dict.fromkeys(name for names in by_others.values() for name in names)),
+            [one for one in missed if one.identity in by_others and one.third != HELD_OUT],
+            steps - 1,
+        )
+    )
+    by_added = killers(added, missed, steps)
+    choices.append(_choice(None, len(kept) + len(added), {**kills, **by_added}, drawn))
+    everything = {**kills, **by_others}
+    choices.append(_choice(0, len(suite.tests), everything, drawn))
+    suite_names = {*added, *(one.job.test.name for one in closed.suite)}
+    return replace(
+        closed,
+        suite=[one.played for one in closed.tests if one.played.job.test.name in suite_names],
+        trade=Trade(
+            sum(one.third != HELD_OUT for one in drawn),
+            sum(one.third == HELD_OUT for one in drawn),
+            tuple(choices),
+        ),
+    )
+
+
+def _drawn(code: Code, count: int) -> list[Mutant]:
+    """So many mutants, evenly over the code."""
+    found = code_mutants(code)
+    known = {} if code.equivalent is None else equivalents(code.equivalent, found)
+    left = [one for one in found if one.identity not in known]
+    count = min(count, len(left))
+    return [left[place * len(left) // count] for place in range(count)]
+
+
+def _only(suite: Suite, names: Sequence[str]) -> Suite:
+    tests = {name: suite.tests[name] for name in names if name in suite.tests}
+    return replace(suite, tests=tests, recorded={name: suite.recorded[name] for name in tests})
+
+
+def _killers(suite: Suite, mutants: Sequence[Mutant], jobs: int) -> Killers:
+    if not suite.tests or not mutants:
+        return {}
+    tried = play_mutants(suite, mutants, jobs=jobs)
+    return {
+        one.mutant.identity: frozenset(found.test for found in one.findings if found.test)
+        for one in tried
+        if one.killed
+    }
+
+
+def _fewest(killers: Killers) -> list[str]:
+    """The fewest tests that kill all of these mutants."""
+    mutants = [identity for identity, names in killers.items() if names]
+    tests = sorted({name for names in killers.values() for name in names})
+    rows = [
+        {place: 1 for place, identity in enumerate(mutants) if test in killers[identity]}
+        for test in tests
+    ]
+    found = smallest(rows, dict.fromkeys(range(len(mutants)), 1))
+    return [tests[place] for place in found.places]
+
+
+def _choice(times: int | None, tests: int, kills: Killers, drawn: Sequence[Mutant]) -> Choice:
+    held_out = sum(one.identity in kills for one in drawn if one.third == HELD_OUT)
+    return Choice(times, tests, len(kills) - held_out, held_out)

@@ -1,0 +1,67 @@
+"""`rvmon look`: what a recording holds, before a requirement is written."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.output import busy, say
+from rvmon.cli.reading import add_reading, reading_spec
+
+if TYPE_CHECKING:
+    from rvmon.session import Spec
+    from rvmon.starter.column import Profile
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "look",
+        description="Show every signal and event of a recording over time: kind, unit, rate, "
+        "longest gap, range, and what was lost. With a specification, what feeds its requirements "
+        "comes first.",
+        epilog="examples: rvmon look examples/base.csv; "
+        "rvmon look examples/base.csv examples/base.rv -o look.html",
+    )
+    parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
+    parser.add_argument("spec", metavar="SPEC", nargs="?", help="a .rv file")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write a page instead")
+    add_const(parser)
+    add_reading(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Look, show or write, and return the exit code."""
+    from rvmon.session import load
+
+    spec = None
+    if arguments.spec is not None:
+        loaded = load(arguments.spec, const=constants_of(arguments.const))
+        spec = reading_spec(loaded, arguments)
+    with busy(f"reading {arguments.data}"):
+        profile = _looked(arguments, spec)
+    requirements = () if spec is None else tuple(spec.requirements.values())
+    if arguments.output is not None:
+        from rvmon.report.folder import write_file
+        from rvmon.report.look_page import look_page
+
+        write_file(arguments.output, look_page(profile, requirements))
+        say(f"wrote {arguments.output}: {len(profile.columns):,} names")
+        return 0
+    from rvmon.report.look_text import look_tables
+    from rvmon.report.terminal import Terminal
+
+    terminal = Terminal()
+    for shown in look_tables(profile, requirements):
+        terminal.print(shown)
+    return 0
+
+
+def _looked(arguments: argparse.Namespace, spec: Spec | None) -> Profile:
+    """The recording, looked over; what a specification reads as it reads it."""
+    from rvmon.starter.profile import bound_profile, profile_of
+
+    if spec is None:
+        return profile_of(arguments.data, arguments.time)
+    return bound_profile(arguments.data, spec.schema)

@@ -1,0 +1,37 @@
+"""`rvmon lsp`: the language server that editors start."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+
+from rvmon.errors import not_installed
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "lsp",
+        description="Serve an editor over standard input and output by the Language Server "
+        "Protocol: findings, explanations, definitions, names and units, layout. It ends when the "
+        "editor does.",
+        epilog="example: rvmon lsp --stdio",
+    )
+    parser.add_argument("--stdio", action="store_true", help="as without: some editors say it")
+
+
+def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way to serve
+    """Serve until the editor ends it, and return the exit code."""
+    try:
+        from rvmon.cli.lsp.server import Server
+    except ImportError:
+        raise not_installed("the language server", "pygls") from None
+    for ending in (signal.SIGINT, signal.SIGTERM):  # at once: a thread waits for the editor
+        signal.signal(ending, lambda *_: os._exit(130))
+    # Standard output is the protocol's alone: what anything else prints there goes to the log.
+    with os.fdopen(os.dup(1), "wb") as answers:
+        os.dup2(2, 1)
+        Server().start_io(sys.stdin.buffer, answers)
+    return 0

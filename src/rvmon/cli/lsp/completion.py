@@ -1,0 +1,156 @@
+"""What may stand at a place: by the grammar, and by the names of the file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import product
+
+from rvmon.cli.lsp.names import Names, about_word
+from rvmon.diagnostics.span import Span
+from rvmon.explain.words import requirement_in_words
+from rvmon.spec.checked.functions import FUNCTIONS
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
+from rvmon.spec.syntax.expected import accepted_terminals
+from rvmon.spec.syntax.expressions import Ident
+from rvmon.spec.syntax.fixes import word_pattern
+from rvmon.spec.syntax.items import ConstItem, CoverpointItem, DefineItem, RequirementItem
+from rvmon.spec.syntax.parse import grammar
+from rvmon.spec.syntax.split import split_items
+from rvmon.spec.syntax.words import ITEM_WORDS, NOT_UNITS
+from rvmon.units import unit_table
+
+_NO_CODE = re.compile(r'`[^`\n]*`|"(?:[^"\\\n]|\\.)*"')
+_BEGUN = re.compile(r"(?:`[^`\n]*|[^\W\d][\w.]*|%)\Z")
+_NUMBER = re.compile(
+    r"(?<![\w.])(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)[ \t]*(?:[\w%^-]+[*/])*\Z"
+)
+_BRACKET = re.compile(r"(?<![\w.])real[ \t]*\[[^\]\n]*\Z")
+_COMPARED = re.compile(r"`?([^\W\d][\w.]*)`?[ \t]*(?:==|!=|=)[ \t]*\Z")
+_OWN = re.compile(r"(?<![\w.])(?:let|each)\s+([^\W\d][\w.]*)|\Adefine\s+\w[\w.]*\(([^)]*)\)")
+_LOOK_AHEAD = re.compile(r"\(\?[!=](?:[^()]|\([^()]*\))*\)")
+
+
+def proposals(names: Names, place: Span) -> tuple[Span, dict[str, str]]:
+    """What may stand at a place.
+
+    Args:
+        names: of the file as it was when it could last be read.
+        place: in the file as it is.
+
+    Returns:
+        The word that is begun there, and what it may become, each with what that is.
+    """
+    text = place.source.text[: place.start]
+    line = _NO_CODE.sub("", text[text.rfind("\n") + 1 :])
+    word = _BEGUN.search(text)
+    if "#" in line or '"' in line:
+        return place, {}
+    start = word.start() if word else place.start
+    before = text[:start]
+    items = split_items(before)
+    item = before[items[-1][0] :] if items else ""
+    alone = not before[before.rfind("\n") + 1 :].strip()
+    found = dict(_found(names, item, alone=alone))
+    return Span(place.source, start, place.start), found
+
+
+def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]:
+    accepted, read = accepted_terminals(grammar(), item, "item")
+    compared = _COMPARED.search(item)
+    if compared and (type_ := names.types.get(compared[1])) and type_.labels:
+        yield from ((label.span.text, "label") for label in type_.labels)
+        return
+    yield from _units(item)
+    if not read:
+        accepted = {terminal.name for terminal in grammar().terminals}
+    if {"NAME", "NUMBER"} <= accepted:
+        yield from _operands(names, item, formulas="TRUTH" in accepted)
+    elif "NAME" in accepted:
+        yield from _named(names, item)
+    for terminal in sorted(accepted - {"$END"}):
+        yield from ((word, "keyword") for word in _words(terminal))
+    if alone and "$END" in accepted:
+        yield from ((word, "keyword") for word in (*ITEM_WORDS, "max delay"))
+
+
+def _units(item: str) -> Iterator[tuple[str, str]]:
+    """Units behind a number, of time only where a duration is expected; or in a type."""
+    if _BRACKET.search(item):
+        yield from ((unit, "unit") for unit in unit_table())
+    elif number := _NUMBER.search(item):
+        accepted, read = accepted_terminals(grammar(), item[: number.start()], "item")
+        duration = read and "TRUTH" not in accepted
+        for name, unit in unit_table().items():
+            if name not in NOT_UNITS and not (duration and unit.dimension != (("s", 1),)):
+                yield name, "unit"
+
+
+def _operands(names: Names, item: str, *, formulas: bool) -> Iterator[tuple[str, str]]:
+    """Names that a formula, or else a duration, may have in it."""
+    for name, parameters in _OWN.findall(item):
+        yield from ((own.strip(), "name") for own in (name or parameters).split(","))
+    if item.startswith("cross"):
+        yield from _coverpoints(names)
+        return
+    for name, ident in names.declared.items():
+        declaring = names.owners[id(ident)]
+        called = isinstance(declaring, DefineItem) and declaring.parameters is not None
+        if formulas or isinstance(declaring, ConstItem):
+            written = name if ident.text != name else ident.span.text
+            yield f"{written}(" if called else written, "function" if called else "name"
+    if formulas:
+        yield from ((f"{name}(", "function") for name in FUNCTIONS)
+
+
+def _named(names: Names, item: str) -> Iterator[tuple[str, str]]:
+    """Names where only some may stand; none where a new one is expected."""
+    if re.search(r"(?<![\w.])at\s+end\s*:?\s*\Z", item):
+        yield from ((policy.value, "keyword") for policy in EndPolicy)
+    elif item.startswith("cross") and "=" in item:
+        yield from _coverpoints(names)
+
+
+def _coverpoints(names: Names) -> Iterator[tuple[str, str]]:
+    for ident in names.goals.values():
+        if isinstance(names.owners[id(ident)], CoverpointItem):
+            yield ident.span.text, "name"
+
+
+def _words(terminal: str) -> Iterator[str]:
+    """The words that a terminal of the grammar stands for; signs and single letters are left out.
+
+    >>> list(_words("RUN_SHARE")), list(_words("CTL"))[:2]
+    (['in at least', 'in at most'], ['AG', 'AF'])
+    """
+    plain = _LOOK_AHEAD.sub("", word_pattern(terminal, grammar())).replace(r"\s+", " ")
+    if letters := re.fullmatch(r"\[([A-Z]+)\]\[([A-Z]+)\]", plain):
+        yield from map("".join, product(*letters.groups()))
+        return
+    group = re.fullmatch(r"([a-z ]*)\(([a-z|]+)\)", plain)
+    words = [group[1] + one for one in group[2].split("|")] if group else plain.split("|")
+    yield from (word for word in words if re.fullmatch(r"[A-Za-z][A-Za-z ]+", word))
+
+
+def hover(names: Names, checked: CheckedSpec | None, place: Span) -> tuple[Span, str] | None:
+    """The word at a place and what it means; `None` if that is nothing."""
+    if found := names.at(place):
+        return found[0], _about(names, checked, found[1])
+    word = about_word(place)
+    return word if word and word[1] else None
+
+
+def _about(names: Names, checked: CheckedSpec | None, name: Ident) -> str:
+    """A requirement in words; of all else how it is declared: type, unit, role, staleness."""
+    item = names.item_at(name.span)
+    own = checked.requirements.get(name.text) if checked else None
+    if own is not None and isinstance(item, RequirementItem) and name is item.name:
+        kept = {"source": own.source, "rationale": own.rationale, "severity": own.severity}
+        clauses = [f"*{word}*: {text}" for word, text in kept.items() if text]
+        words = "  \n".join(requirement_in_words(own))
+        return "\n\n".join([f"**{own.id}** {own.text}", words, *clauses])
+    clauses_ = item.clauses if isinstance(item, RequirementItem) else ()
+    spans = (clause.span for clause in clauses_)
+    whole = item.span if item else name.span
+    declaring = next((s for s in spans if s.start <= name.span.start < s.end), whole)
+    return f"```rv\n{declaring.text}\n```"

@@ -1,0 +1,304 @@
+"""A document compiled as far as it goes, its places, and what editors ask about it."""
+
+from __future__ import annotations
+
+import os
+import re
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache, cached_property
+from importlib import resources
+from itertools import islice
+from pathlib import Path
+
+from lsprotocol import types as lsp
+from lsprotocol.types import (
+    Position,
+    PositionEncodingKind,
+    Range,
+    TextDocumentContentChangeEvent,
+    TextDocumentContentChangePartial,
+)
+from pygls.uris import from_fs_path, to_fs_path
+
+from rvmon.cache import cache_folder
+from rvmon.cli.lsp.names import Names
+from rvmon.diagnostics.diagnostic import Diagnostic, Severity
+from rvmon.diagnostics.nearest import proposed
+from rvmon.diagnostics.shown import shown
+from rvmon.diagnostics.span import Source, Span
+from rvmon.explain.codes import page_of
+from rvmon.spec.compile import Compilation, compilation
+from rvmon.spec.syntax.expressions import Ident
+from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem
+from rvmon.spec.syntax.split import split_items
+from rvmon.writing import write_whole
+
+_WIDTHS = {
+    PositionEncodingKind.Utf8: (0x80, 0x800, 0x10000),
+    PositionEncodingKind.Utf16: (0x10000,),
+    PositionEncodingKind.Utf32: (),
+}
+"""The characters from which on one takes a unit more."""
+
+
+class Text:
+    """A text with its lines; pygls would end them at a form feed or U+2028, which no editor does.
+
+    Args:
+        raw: as the editor has it.
+        encoding: in whose units columns are counted.
+
+    Source: Language Server Protocol 3.17, Text Documents and Position.
+    """
+
+    def __init__(self, raw: str, encoding: str = PositionEncodingKind.Utf16) -> None:
+        self.raw = raw
+        self.encoding = encoding
+        self._widths = _WIDTHS[PositionEncodingKind(encoding)]
+        self._starts = [0, *(end.end() for end in re.finditer(r"\r\n|\r|\n", raw))]
+
+    @property
+    def code(self) -> str:
+        """What is compiled: every line ends as the language has it, all offsets stay."""
+        return self.raw.replace("\r\n", " \n").replace("\r", "\n")
+
+    def position(self, offset: int) -> Position:
+        r"""Where a character is.
+
+        >>> Text("# 😋\nspec a").position(3).character
+        4
+        """
+        line = bisect_right(self._starts, offset) - 1
+        column = sum(map(self._width, self.raw[self._starts[line] : offset]))
+        return Position(line, column)
+
+    def range(self, start: int, end: int) -> Range:
+        """Where some characters are."""
+        return Range(self.position(start), self.position(end))
+
+    def offset(self, position: Position) -> int:
+        """The character at a position, at the end of its line at most."""
+        if position.line >= len(self._starts):
+            return len(self.raw)
+        place = self._starts[position.line]
+        units = 0
+        for char in self.raw[place : place + position.character]:
+            units += self._width(char)
+            if units > position.character or char in "\r\n":
+                break
+            place += 1
+        return place
+
+    def changed(self, change: TextDocumentContentChangeEvent) -> Text:
+        """The text after an edit."""
+        if not isinstance(change, TextDocumentContentChangePartial):
+            return Text(change.text, self.encoding)
+        start, end = self.offset(change.range.start), self.offset(change.range.end)
+        return Text(self.raw[:start] + change.text + self.raw[end:], self.encoding)
+
+    def _width(self, char: str) -> int:
+        return 1 + bisect_right(self._widths, ord(char))
+
+
+MOST_FIXES = 5
+"""Of so many findings at a place it is tried whether what they propose helps."""
+
+_SEVERITIES = {
+    Severity.ERROR: lsp.DiagnosticSeverity.Error,
+    Severity.WARNING: lsp.DiagnosticSeverity.Warning,
+}
+_UNNEEDED = ("never-read", "unused-name")
+_KINDS = {
+    "signal": lsp.SymbolKind.Variable,
+    "event": lsp.SymbolKind.Event,
+    "define": lsp.SymbolKind.Function,
+    "const": lsp.SymbolKind.Constant,
+    "requirement": lsp.SymbolKind.Class,
+    "property": lsp.SymbolKind.Property,
+    "cover": lsp.SymbolKind.Key,
+    "coverpoint": lsp.SymbolKind.Enum,
+    "cross": lsp.SymbolKind.Array,
+}
+_HEAD = re.compile(r"(\w+)\s+(`[^`\n]+`|[^\W\d][\w.]*)")
+
+Key = tuple[str, int]
+"""A declaration, the same in all documents: its file, and where in that it is."""
+
+
+class Document:
+    """A text that is being written.
+
+    Args:
+        uri: what the editor calls it.
+        text: as it is now.
+        read: gives the text of a file that it imports.
+    """
+
+    def __init__(self, uri: str, text: Text, read: Callable[[Path], str]) -> None:
+        self.uri = uri
+        self.text = text
+        self._read = read
+        path = to_fs_path(uri)
+        self._folder = Path(path).parent if path else None
+        self.source = Source(path or uri, text.code)
+        self.compiled = self._compiled(self.source)
+        self.names = Names(self.compiled.files)
+
+    def _compiled(self, source: Source) -> Compilation:
+        return compilation(source, self._folder, {}, self._read)
+
+    def place(self, position: lsp.Position) -> Span:
+        """A position in the text."""
+        offset = self.text.offset(position)
+        return Span(self.source, offset, offset)
+
+    @cached_property
+    def _texts(self) -> dict[int, Text]:
+        return {id(self.source): self.text}
+
+    def location(self, span: Span) -> lsp.Location:
+        """A place in this text or in one that it imports."""
+        source = span.source
+        if id(source) not in self._texts:
+            self._texts[id(source)] = Text(source.text, self.text.encoding)
+        where = self._texts[id(source)].range(span.start, span.end)
+        return lsp.Location(self.uri if source is self.source else _address(source), where)
+
+    @cached_property
+    def diagnostics(self) -> dict[str, list[lsp.Diagnostic]]:
+        """What is wrong, by the address of the file that it is in."""
+        found: dict[str, list[lsp.Diagnostic]] = {self.uri: []}
+        for finding in self.compiled.findings:
+            spans = finding.spans
+            place = self.location(spans[0].span if spans else Span(self.source, 0, 0))
+            found.setdefault(place.uri, []).append(self._diagnostic(finding, place.range))
+        return found
+
+    def _diagnostic(self, finding: Diagnostic, where: lsp.Range) -> lsp.Diagnostic:
+        help_ = f"\nhelp: {finding.help}" if finding.help else ""
+        return lsp.Diagnostic(
+            where,
+            shown(finding.message + help_),
+            _SEVERITIES[finding.severity],
+            finding.code,
+            _page(finding.code),
+            "rvmon",
+            [lsp.DiagnosticTag.Unnecessary] if finding.name in _UNNEEDED else None,
+            [
+                lsp.DiagnosticRelatedInformation(
+                    self.location(label.span), shown(label.text) or "with this"
+                )
+                for label in finding.spans[1:]
+            ],
+        )
+
+    def fixes(self, where: lsp.Range) -> Iterator[lsp.CodeAction]:
+        """What findings in a range propose to write instead, if the compiler agrees."""
+        start, end = self.text.offset(where.start), self.text.offset(where.end)
+        proposals = (
+            (finding, finding.spans[0].span, proposed(finding.help))
+            for finding in self.compiled.findings
+            if finding.spans and finding.spans[0].span.source is self.source
+        )
+        inside = (p for p in proposals if p[2] and p[1].start <= end and start <= p[1].end)
+        for finding, span, instead in islice(inside, MOST_FIXES):
+            text = self.source.text[: span.start] + instead + self.source.text[span.end :]
+            if _badness(self._compiled(Source(self.source.name, text))) < _badness(self.compiled):
+                place = self.text.range(span.start, span.end)
+                yield lsp.CodeAction(
+                    f"Write `{instead}`",
+                    lsp.CodeActionKind.QuickFix,
+                    [self._diagnostic(finding, place)],
+                    True,
+                    edit=lsp.WorkspaceEdit({self.uri: [lsp.TextEdit(place, instead)]}),
+                )
+
+    def symbols(self) -> Iterator[lsp.DocumentSymbol]:
+        """What the text declares and demands; of an item that cannot be read its name."""
+        read = {item.span.start: item for item in self.compiled.files[0].items}
+        for start, end in split_items(self.source.text):
+            head = _HEAD.match(self.source.text, start, end)
+            if head is None or head[1] not in _KINDS:
+                continue
+            item = read.get(start)
+            whole = item.span if item else Span(self.source, start, head.end())
+            names = [name.span for name in _declared(item)] if item else []
+            for name in names or [Span(self.source, *head.span(2))]:
+                yield lsp.DocumentSymbol(
+                    name.text,
+                    _KINDS[head[1]],
+                    self.location(whole if len(names) < 2 else name).range,
+                    self.location(name).range,
+                    _detail(item) if item else "cannot be read",
+                )
+
+    def definitions(self, position: lsp.Position) -> list[lsp.Location]:
+        """Where the name at a position is declared, or the files that are imported there."""
+        place = self.place(position)
+        item = self.names.item_at(place)
+        if isinstance(item, ImportItem):
+            file = str((self._folder or Path()) / item.target)
+            sources = (file.source for file in self.compiled.files[1:])
+            meant = (
+                s for s in sources if s.name == file or str(Path(s.name).parent) == item.target
+            )
+            return [self.location(Span(source, 0, 0)) for source in meant]
+        found = self.names.at(place)
+        return [self.location(found[1].span)] if found else []
+
+    def key(self, position: lsp.Position) -> Key | None:
+        """The declaration that the name at a position stands for."""
+        found = self.names.at(self.place(position))
+        return _key(found[1]) if found else None
+
+    def uses(self, key: Key) -> Iterator[Span]:
+        """All places of the names that stand for a declaration."""
+        return (span for span, target in self.names.all() if _key(target) == key)
+
+
+def _badness(compiled: Compilation) -> tuple[int, int]:
+    found = compiled.findings
+    return sum(one.severity is Severity.ERROR for one in found), len(found)
+
+
+@cache
+def _page(code: str) -> lsp.CodeDescription | None:
+    """The page of a code as a file that editors open; `None` if it cannot be kept."""
+    folder = cache_folder()
+    if folder is None:
+        return None
+    path = folder / "codes" / f"{code}.md"
+    with suppress(OSError):
+        path.parent.mkdir(mode=0o700, exist_ok=True)
+        write_whole(str(path), page_of(code))
+        return lsp.CodeDescription(path.as_uri())
+    return None
+
+
+def _address(source: Source) -> str:
+    """The address of an imported file; those of libraries have no path as name."""
+    if os.path.isabs(source.name):
+        return str(from_fs_path(os.path.normpath(source.name)))
+    return str(from_fs_path(str(resources.files("rvmon.spec") / source.name)))
+
+
+def _declared(item: Item) -> list[Ident]:
+    match item:
+        case SignalItem(names=names):
+            return list(names)
+        case EventItem(events=events):
+            return [event.name for event in events]
+        case _:
+            return [item.name] if hasattr(item, "name") else []
+
+
+def _detail(item: Item) -> str:
+    if isinstance(item, SignalItem):
+        return item.type.span.text
+    return getattr(item, "text", "")
+
+
+def _key(name: Ident) -> Key:
+    return os.path.normpath(name.span.source.name), name.span.start

@@ -1,0 +1,241 @@
+"""The server: requests of an editor, answered from its documents as they are."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcInvalidParams
+from pygls.lsp.server import LanguageServer
+from pygls.uris import to_fs_path
+
+from rvmon import __version__
+from rvmon.cli.lsp.completion import hover, proposals
+from rvmon.cli.lsp.document import Document, Text
+from rvmon.cli.lsp.names import meanings
+from rvmon.cli.lsp.protocol import UNREADABLE, Protocol
+from rvmon.diagnostics.span import Source, Span
+from rvmon.diagnostics.text_file import text_of_file
+from rvmon.errors import SpecError
+from rvmon.spec.print.formatter import format_text
+from rvmon.spec.syntax.expressions import Name
+from rvmon.spec.syntax.parse import parse_expression
+from rvmon.starter.skeletons import name_text
+
+QUIET = 0.2
+"""Seconds without an edit after which findings are looked for."""
+
+_KINDS = {
+    "name": lsp.CompletionItemKind.Variable,
+    "label": lsp.CompletionItemKind.EnumMember,
+    "function": lsp.CompletionItemKind.Function,
+    "unit": lsp.CompletionItemKind.Unit,
+    "keyword": lsp.CompletionItemKind.Keyword,
+}
+
+
+class Server(LanguageServer):
+    """The state of a session: texts that are open, and what was made of them."""
+
+    def __init__(self) -> None:
+        super().__init__("rvmon", __version__, protocol_cls=Protocol)
+        for name, (answer, options) in _FEATURES.items():
+            self.feature(name, options)(answer)
+        self.texts: dict[str, Text] = {}
+        self._documents: dict[str, Document] = {}
+        self._sent: dict[str, Document] = {}
+
+    def report_server_error(self, error: Exception, source: type[Any]) -> None:
+        """Answer what is no JSON as the protocol says; anything else as ever."""
+        if isinstance(error, UNREADABLE) and isinstance(self.protocol, Protocol):
+            self.protocol.refuse(None, lsp.ErrorCodes.ParseError, f"it is no JSON: {error}")
+        else:
+            super().report_server_error(error, source)
+
+    def document(self, uri: str) -> Document:
+        """A document as it is now."""
+        known = self._documents.get(uri)
+        if known is None or known.text is not self.texts[uri]:
+            known = self._documents[uri] = Document(uri, self.texts[uri], self._read)
+        return known
+
+    def latest(self, uri: str) -> Document:
+        """A document as it was when it was last looked at: that takes no time."""
+        return self._documents.get(uri) or self.document(uri)
+
+    def _read(self, path: Path) -> str:
+        """The text of a file that is imported, as it is in the editor if it is open there."""
+        wanted = os.path.abspath(path)
+        open_ = (text for uri, text in self.texts.items() if to_fs_path(uri) == wanted)
+        text = next(open_, None)
+        return text_of_file(path) if text is None else text.code
+
+    def take(self, uri: str, text: Text | None) -> None:
+        """Take a document as it is now, or closed; what may import it is to be read anew."""
+        if text is None:
+            self.texts.pop(uri, None)
+        else:
+            self.texts[uri] = text
+        for other, document in [*self._documents.items()]:
+            if other not in self.texts or (other != uri and "import" in document.source.text):
+                del self._documents[other]
+        delay = 0 if uri not in self._sent or text is None else QUIET
+        asyncio.get_running_loop().call_later(delay, self._publish_unless_changed, uri, text)
+
+    def _publish_unless_changed(self, uri: str, text: Text | None) -> None:
+        if self.texts.get(uri) is text:
+            self.publish()
+
+    def publish(self) -> None:
+        """Send what is found now; of files that are not open, too, if an open one imports them."""
+        documents = [self.document(uri) for uri in self.texts]
+        opened = {to_fs_path(uri) for uri in self.texts}
+        found = {
+            document.uri: (document, document.diagnostics[document.uri]) for document in documents
+        }
+        for document in documents:
+            for uri, elsewhere in document.diagnostics.items():
+                if to_fs_path(uri) not in opened:
+                    found.setdefault(uri, (document, elsewhere))
+        for uri in self._sent.keys() - found.keys():
+            del self._sent[uri]
+            self._send(uri, [])
+        for uri, (document, diagnostics) in found.items():
+            if self._sent.get(uri) is not document:
+                self._sent[uri] = document
+                self._send(uri, diagnostics)
+
+    def _send(self, uri: str, found: list[lsp.Diagnostic]) -> None:
+        self.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, found))
+
+
+def _opened(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
+    encoding = server.workspace.position_encoding or lsp.PositionEncodingKind.Utf16
+    document = params.text_document
+    server.take(document.uri, Text(document.text, encoding))
+
+
+def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
+    uri = params.text_document.uri
+    text = server.texts[uri]
+    for change in params.content_changes:
+        text = text.changed(change)
+    server.take(uri, text)
+
+
+def _saved(server: Server, params: lsp.DidSaveTextDocumentParams) -> None:
+    text = server.texts[params.text_document.uri]
+    server.take(params.text_document.uri, Text(text.raw, text.encoding))  # and what it imports
+
+
+def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
+    server.take(params.text_document.uri, None)
+
+
+def _hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
+    document = server.document(params.text_document.uri)
+    found = hover(document.names, document.compiled.checked, document.place(params.position))
+    if found is None:
+        return None
+    content = lsp.MarkupContent(lsp.MarkupKind.Markdown, found[1])
+    return lsp.Hover(content, document.location(found[0]).range)
+
+
+def _definition(server: Server, params: lsp.DefinitionParams) -> list[lsp.Location]:
+    return server.document(params.text_document.uri).definitions(params.position)
+
+
+def _places(server: Server, params: lsp.ReferenceParams | lsp.RenameParams) -> list[lsp.Location]:
+    """Where the name at a position stands, in documents that are open and what these import."""
+    key = server.document(params.text_document.uri).key(params.position)
+    if key is None:
+        return []
+    documents = [server.document(uri) for uri in server.texts]
+    places = {  # several documents may import the same file
+        (span.source.name, span.start): document.location(span)
+        for document in documents
+        for span in document.uses(key)
+    }
+    return list(places.values())
+
+
+def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    """The edits that give a name another one, wherever it stands.
+
+    Raises:
+        JsonRpcInvalidParams: it cannot have that name.
+    """
+    document = server.document(params.text_document.uri)
+    touched = document.names.at(document.place(params.position))
+    if touched is None:
+        return None
+    name = params.new_name.strip("`")
+    written = name_text(name)
+    read, _ = parse_expression(Source(params.new_name, written))
+    if not isinstance(read, Name) or read.text != name:
+        raise JsonRpcInvalidParams(f"`{params.new_name}` cannot be written as a name")
+    if name in document.names.declared or name in document.names.goals:
+        raise JsonRpcInvalidParams(f"there is a `{name}` already")
+    if not os.path.isabs(touched[1].span.source.name):
+        raise JsonRpcInvalidParams(f"`{touched[1].text}` is a name of a library")
+    edits: dict[str, list[lsp.TextEdit]] = {}
+    for place in _places(server, params):
+        edits.setdefault(place.uri, []).append(lsp.TextEdit(place.range, written))
+    return lsp.WorkspaceEdit(edits)
+
+
+def _symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
+    return list(server.document(params.text_document.uri).symbols())
+
+
+def _fixes(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
+    return list(server.document(params.text_document.uri).fixes(params.range))
+
+
+def _completion(server: Server, params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
+    uri = params.text_document.uri
+    text = server.texts[uri]
+    offset = text.offset(params.position)
+    place = Span(Source(uri, text.code), offset, offset)
+    word, found = proposals(server.latest(uri).names, place)
+    where = text.range(word.start, word.end)
+    return [
+        lsp.CompletionItem(
+            proposal,
+            kind=_KINDS[kind],
+            documentation=meanings().get(proposal.removesuffix("(")) if kind != "name" else None,
+            text_edit=lsp.TextEdit(where, proposal),
+        )
+        for proposal, kind in found.items()
+    ]
+
+
+def _format(server: Server, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
+    text = server.texts[params.text_document.uri]
+    try:
+        laid_out = format_text(text.code)
+    except SpecError:
+        return []  # what is wrong is shown already
+    if "\r\n" in text.raw:
+        laid_out = laid_out.replace("\n", "\r\n")
+    return [lsp.TextEdit(text.range(0, len(text.raw)), laid_out)] if laid_out != text.raw else []
+
+
+_FEATURES: dict[str, tuple[Callable[..., Any], Any]] = {
+    lsp.TEXT_DOCUMENT_DID_OPEN: (_opened, None),
+    lsp.TEXT_DOCUMENT_DID_CHANGE: (_changed, None),
+    lsp.TEXT_DOCUMENT_DID_SAVE: (_saved, None),
+    lsp.TEXT_DOCUMENT_DID_CLOSE: (_closed, None),
+    lsp.TEXT_DOCUMENT_HOVER: (_hover, None),
+    lsp.TEXT_DOCUMENT_DEFINITION: (_definition, None),
+    lsp.TEXT_DOCUMENT_REFERENCES: (_places, None),
+    lsp.TEXT_DOCUMENT_RENAME: (_rename, None),
+    lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: (_symbols, None),
+    lsp.TEXT_DOCUMENT_CODE_ACTION: (_fixes, lsp.CodeActionOptions([lsp.CodeActionKind.QuickFix])),
+    lsp.TEXT_DOCUMENT_COMPLETION: (_completion, lsp.CompletionOptions(["."])),
+    lsp.TEXT_DOCUMENT_FORMATTING: (_format, None),
+}

@@ -1,0 +1,139 @@
+"""What commands print: text that no encoding or terminal stumbles over, and progress."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import sys
+from collections.abc import Sequence
+from shutil import get_terminal_size
+from typing import TYPE_CHECKING
+
+from rvmon.diagnostics.shown import shown, shown_json
+
+if TYPE_CHECKING:
+    from rvmon.diagnostics.diagnostic import Diagnostic
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from itertools import islice
+from typing import TYPE_CHECKING, TypeVar
+
+from rvmon.trace.sample import Sample
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+    from rvmon.readers.recording import FileRecording
+
+
+_SPELLED = str.maketrans(
+    dict(zip("✓✗–−─·→▶▼●○◆◇■█▇▁░│├└╱╲×", "+x---.>>v*o*o###_.||`/\\x", strict=True))
+    | {"…": "...", "≤": "<=", "≥": ">=", "≠": "!=", "∞": "inf"}
+)
+
+
+def say(text: str = "", *, end: str = "\n", flush: bool = False) -> None:
+    """Print a text for people."""
+    print(shown(text), end=end, flush=flush)
+
+
+def say_json(text: str) -> None:
+    """Print JSON text."""
+    print(shown_json(text))
+
+
+def spell() -> None:
+    """Let signs that the encoding of the output lacks be spelled with those that it has."""
+
+    def spelled(error: UnicodeError) -> tuple[str, int]:
+        assert isinstance(error, UnicodeEncodeError)  # noqa: S101 - what is written is text
+        signs = error.object[error.start : error.end].translate(_SPELLED)
+        return signs.encode("ascii", "replace").decode(), error.end
+
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        codecs.register_error("rvmon", spelled)
+        sys.stdout.reconfigure(errors="rvmon")
+
+
+def rendered(findings: Sequence[Diagnostic]) -> str:
+    """Findings in full, as wide as the terminal is."""
+    from rvmon.diagnostics.render import WIDEST, render_full
+
+    return render_full(findings, get_terminal_size((WIDEST, 0)).columns)
+
+
+def warn(text: str) -> None:
+    """Print to standard error what a person should know."""
+    print(shown(text), file=sys.stderr)
+
+
+T = TypeVar("T")
+
+PATIENCE_S = 1.0
+"""Work shorter than this shows no bar."""
+
+SAMPLES_PER_LOOK = 4096
+"""Samples between two looks at the clock."""
+
+
+@contextmanager
+def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
+    """Show how far work is, once it has taken a second; only a terminal sees it.
+
+    Args:
+        what: is being done.
+        total: of the units in which it is counted.
+
+    Yields:
+        What is to be called with the units done so far.
+    """
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    started = time.monotonic()
+    progress: Progress | None = None
+
+    def show(done: float) -> None:
+        nonlocal progress
+        if progress is None and time.monotonic() - started >= PATIENCE_S:
+            from rich.progress import Progress
+
+            from rvmon.report.terminal import Terminal
+
+            progress = Progress(console=Terminal(stderr=True), transient=True)
+            progress.add_task(what, total=total)
+            progress.start()
+        if progress is not None:
+            progress.update(progress.task_ids[0], completed=done)
+
+    try:
+        yield show
+    finally:
+        if progress is not None:
+            progress.stop()
+
+
+def busy(what: str) -> AbstractContextManager[object]:
+    """Tell a person at a terminal what is being done, where nobody knows how far it is."""
+    if not sys.stderr.isatty():
+        return nullcontext()
+    from rvmon.report.terminal import Terminal
+
+    return Terminal(stderr=True).status(what)
+
+
+def shown_while_reading(recording: FileRecording, found: Iterator[T]) -> Iterator[T]:
+    """What is read of a recording, and how far that is.
+
+    Args:
+        recording: says how far.
+        found: its samples, or pieces of it with many rows each.
+    """
+    with bar(recording.path, 1.0) as show:
+        for one in found:
+            yield one
+            if isinstance(one, Sample):
+                yield from islice(found, SAMPLES_PER_LOOK)
+            show(recording.fraction_read)

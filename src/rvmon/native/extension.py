@@ -1,0 +1,34 @@
+"""The extensions beside the core, each built with the package from C sources of its own."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import ModuleType
+
+from rvmon.errors import CoreError
+from rvmon.native.sources import source_hash
+
+_MEND = "run `pip install -e .` (or `make core`) in the clone of rvmon"
+
+
+def extension(name: str, folder: str, called: str) -> ModuleType:
+    """Import an extension.
+
+    Args:
+        name: of its module in `rvmon.native`.
+        folder: of its sources.
+        called: what a message calls it.
+
+    Raises:
+        CoreError: it is not built, or was built from other sources than those that lie there.
+    """
+    module = f"rvmon.native.{name}"
+    try:
+        found = import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name != module:
+            raise
+        raise CoreError(f"{called} is not built ({folder}): {_MEND}") from None
+    if found.source_hash != (source_hash(folder) or found.source_hash):
+        raise CoreError(f"{called} is older than its sources in {folder}: {_MEND}")
+    return found

@@ -1,0 +1,318 @@
+"""CSV as other tools write it: found out by its first lines, and read as if it were plain."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from rvmon.errors import TraceError
+from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
+from rvmon.readers.places import opened
+from rvmon.readers.values import shorten
+from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.stamps import UNITS, stamps_of
+from rvmon.units import UnknownUnitError, parse_unit
+
+_LOOKED_AT = 1 << 13
+"""Bytes that say how a text is written."""
+
+_MOST_ABOVE = 30
+"""Lines above a header, at most."""
+
+_SOME = 10
+"""Rows that have to agree."""
+
+_SEPARATORS: tuple[str, ...] = (",", ";", "\t", "|", "")
+"""The empty one stands for blanks, as many as there are."""
+
+_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf)", re.I | re.ASCII)
+_COMMA = re.compile(r"([+-]?\d*),(\d+([eE][+-]?\d+)?)", re.ASCII)
+_POINT = re.compile(r"[+-]?\d*\.\d+([eE][+-]?\d+)?", re.ASCII)
+_COMMENT = re.compile(r"\s*(#|//|%(?!time\b))\s*")
+_SEPARATOR_SAID = re.compile(r'"?sep=(.)"?\s*', re.IGNORECASE)
+_UNIT_IN_NAME = re.compile(r"(?P<name>.*?\S)\s*(\[(?P<unit>[^\[\]]*)\]|\((?P<same>[^()]*)\))")
+
+_PARTS = {"ns": 1, "nsec": 1, "nsecs": 1, "nanosec": 1, "nanosecs": 1, "nanoseconds": 1}
+_PARTS |= {"us": 1_000, "usec": 1_000, "microseconds": 1_000, "ms": 1_000_000, "msec": 1_000_000}
+"""Nanoseconds by what the second of two columns of a stamp is called."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """How a text is written.
+
+    Attributes:
+        separator: of cells; empty: blanks.
+        above: lines above the header.
+        is_commented: whether the header is the last of those that are comments.
+        has_commas: whether numbers have a comma where plain ones have a point.
+        encoding: of the text.
+    """
+
+    separator: str = ","
+    above: int = 0
+    is_commented: bool = False
+    has_commas: bool = False
+    encoding: str = "utf-8-sig"
+
+
+PLAIN = Dialect()
+
+
+@contextmanager
+def opened_as_csv(path: str | Path, stamps: Stamps | None) -> Iterator[tuple[BinaryIO, BinaryIO]]:
+    """The text of a file as plain CSV, and the file as it lies there; see `opened`.
+
+    Lines keep their numbers. A stamp that two columns give, `sec+nanosec`, becomes a column.
+    """
+    with opened(path) as (plain, raw):
+        head = plain.peek(_LOOKED_AT)[:_LOOKED_AT]  # type: ignore[attr-defined]
+        dialect = dialect_of(head)
+        is_made = stamps is not None and ("+" in stamps.column or bool(stamps.pattern))
+        if dialect == PLAIN and not is_made:
+            yield plain, raw
+            return
+        with (
+            io.TextIOWrapper(plain, encoding=dialect.encoding, newline="") as text,
+            io.BufferedReader(_Converted(_plain_lines(text, dialect, stamps))) as converted,
+        ):
+            yield converted, raw
+
+
+class _Converted(io.RawIOBase):
+    """Lines as bytes."""
+
+    def __init__(self, lines: Iterator[str]) -> None:
+        self._lines = lines
+        self._rest = b""
+
+    def readable(self) -> bool:
+        """It is."""
+        return True
+
+    def readinto(self, buffer: Any, /) -> int:
+        """Fill the buffer with what comes next; 0 at the end."""
+        while len(self._rest) < len(buffer) and (line := next(self._lines, None)) is not None:
+            self._rest += line.encode()
+        count = min(len(buffer), len(self._rest))
+        buffer[:count], self._rest = self._rest[:count], self._rest[count:]
+        return count
+
+
+def dialect_of(head: bytes) -> Dialect:
+    r"""How a text is written that begins so; what is like nothing is plain.
+
+    >>> dialect_of(b"# by a tool\nt;v\n0;1,5\n")
+    Dialect(separator=';', above=1, is_commented=False, has_commas=True, encoding='utf-8-sig')
+    """
+    is_wide = head.startswith((b"\xff\xfe", b"\xfe\xff"))
+    encoding = "utf-16" if is_wide else PLAIN.encoding
+    lines = head.decode(encoding, "replace").splitlines()
+    if len(head) == _LOOKED_AT:
+        lines = lines[:-1]
+    above, separators = 0, _SEPARATORS
+    if lines and (said := _SEPARATOR_SAID.fullmatch(lines[0])):
+        above, separators = 1, (said[1],)
+    for first in range(above, min(len(lines), _MOST_ABOVE)):
+        if not lines[first].strip() or _COMMENT.match(lines[first]):
+            continue
+        for separator in separators:
+            found = _dialect_at(lines, first, separator)
+            if found is not None:
+                return replace(found, encoding=encoding)
+    return replace(PLAIN, encoding=encoding) if is_wide else PLAIN
+
+
+def _dialect_at(lines: Sequence[str], first: int, separator: str) -> Dialect | None:
+    """The dialect of a table whose header, or first row, is that line; `None`: there is none."""
+    header = _cells(lines[first], separator)
+    behind = [line for line in lines[first + 1 :] if line.strip() and not _COMMENT.match(line)]
+    rows = [_cells(line, separator) for line in behind[:_SOME]]
+    # Rows that are ragged are told where they are read.
+    alike = sum(len(row) == len(header) for row in rows)
+    if len(header) < 2 or 2 * alike < len(rows):
+        return None
+    numbers = sum(bool(_NUMBER.fullmatch(cell.strip())) for cell in header)
+    if numbers == len(header):
+        above = lines[first - 1] if first else ""
+        told = _cells(_COMMENT.sub("", above, count=1), separator)
+        if not _COMMENT.match(above) or len(told) != len(header):
+            return None
+        return Dialect(separator, first - 1, True, _has_commas([header, *rows], separator))
+    if first and (numbers or not rows):
+        return None
+    return Dialect(separator, first, False, _has_commas(rows, separator))
+
+
+def _has_commas(rows: Sequence[Sequence[str]], separator: str) -> bool:
+    cells = [cell.strip() for row in rows for cell in row]
+    return separator != "," and (
+        any(_COMMA.fullmatch(cell) for cell in cells)
+        and not any(_POINT.fullmatch(cell) for cell in cells)
+    )
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    if not separator:
+        return line.split()
+    try:
+        return next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:
+        return []
+
+
+def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None) -> Iterator[str]:
+    """The lines of a text as plain CSV has them; comments, and what is above, are empty."""
+    made: Callable[[list[str]], list[str]] | None = None
+    above = 0
+    for number, row in _rows(text, dialect):
+        if row is None:
+            if made is None:  # the header comes first, and the others keep their numbers
+                above += 1
+            else:
+                yield "\n"
+            continue
+        if made is None:
+            made = _stamp_maker(row, stamps)
+            row = made(row)
+        else:
+            yield from "\n" * above
+            above = 0
+            if dialect.has_commas:
+                row = [_COMMA.sub(r"\1.\2", one) if _COMMA.fullmatch(one) else one for one in row]
+            try:
+                row = made(row)
+            except TraceError as error:
+                raise TraceError(f"line {number}: {error}") from None
+        written = io.StringIO()
+        csv.writer(written, lineterminator="\n").writerow(row)
+        yield written.getvalue()
+
+
+def _rows(text: io.TextIOWrapper, dialect: Dialect) -> Iterator[tuple[int, list[str] | None]]:
+    """The rows with the numbers of their lines; `None`: it is none."""
+    for number in range(1, dialect.above + 1):
+        text.readline()
+        yield number, None
+    above, is_header = dialect.above, True
+    if dialect.is_commented:
+        told = _COMMENT.sub("", text.readline(), count=1)
+        above, is_header = above + 1, False
+        yield above, _cells(told, dialect.separator)
+    for number, row in _split(text, dialect.separator, above):
+        # What begins so is a comment where there were some above the header.
+        is_comment = not is_header and above and row and _COMMENT.match(row[0])
+        is_header = is_header and not row
+        if is_comment or not any(cell.strip() for cell in row):
+            yield number, None
+        else:
+            yield number, [cell.strip() for cell in row]
+
+
+def _split(text: io.TextIOWrapper, separator: str, above: int) -> Iterator[tuple[int, list[str]]]:
+    if not separator:
+        yield from ((number, line.split()) for number, line in enumerate(text, above + 1))
+        return
+    reader = csv.reader(text, delimiter=separator, strict=True)
+    while True:
+        try:
+            row = next(reader)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            line = above + reader.line_num
+            raise TraceError(f"line {line}: not a CSV row ({error})") from None
+        yield above + reader.line_num, row
+
+
+def _stamp_maker(header: Sequence[str], stamps: Stamps | None) -> Callable[[list[str]], list[str]]:
+    """What puts the stamp that several columns, or a pattern, give into a row, the header first."""
+    if stamps is None or not ("+" in stamps.column or stamps.pattern):
+        return lambda row: row
+    parts = [stamps.column] if stamps.column in header else stamps.column.split("+")
+    missing = [part for part in parts if part not in header]
+    if missing or (not stamps.pattern and len(parts) != 2):
+        return lambda row: row  # whoever looks for the column says that it is missing
+    places = [header.index(part) for part in parts]
+    is_header = [True]
+
+    def made(row: list[str]) -> list[str]:
+        if is_header.pop() if is_header else False:
+            kept = [name for name in row if name != stamps.column]
+            return [*kept, stamps.column]
+        if len(row) != len(header):
+            return row
+        cells = [row[place] for place in places]
+        kept = [cell for name, cell in zip(header, row, strict=True) if name != stamps.column]
+        return [*kept, _stamp(cells, parts, stamps)]
+
+    return made
+
+
+def _stamp(cells: Sequence[str], parts: Sequence[str], stamps: Stamps) -> str:
+    text = " ".join(cells)
+    try:
+        if stamps.pattern:
+            found = datetime.strptime(text, stamps.pattern)
+            return found.isoformat()
+        scale = _PARTS.get(re.split(r"[._\s]", parts[1])[-1].lower(), 1)
+        return str(int(cells[0]) * 1_000_000_000 + int(cells[1]) * scale)
+    except ValueError:
+        form = f"a date like `{stamps.pattern}`" if stamps.pattern else "two whole numbers"
+        raise TraceError(f"time `{shorten(text)}` is not {form}") from None
+
+
+def name_and_unit(column: str) -> tuple[str, str]:
+    """A name without the unit that stands behind it in brackets, and that.
+
+    >>> name_and_unit("speed [m/s]"), name_and_unit("mode")
+    (('speed', 'm/s'), ('mode', ''))
+    """
+    found = _UNIT_IN_NAME.fullmatch(column)
+    return (column, "") if found is None else (found["name"], found["unit"] or found["same"] or "")
+
+
+def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema]:
+    """A header without the units that stand in it, where what is left is a name that is read.
+
+    Raises:
+        TraceError: a column that is read is in another unit than its name is declared in.
+    """
+    declared = {*schema.signals, *schema.events}
+    declared |= {f"{name}.{field}" for name, own in schema.events.items() for field in own}
+    aliases = aliases_of(schema)
+    names: list[str] = []
+    for column in header:
+        bare, unit = name_and_unit(column)
+        name = aliases.get(column, bare)
+        if name in declared:
+            _expect_unit(column, name, unit, schema)
+        is_time = schema.stamps is None and name in DEFAULT_COLUMNS
+        if column in aliases or name in header or not (name in declared or is_time):
+            names.append(column)
+            continue
+        names.append(name)
+        if is_time and unit in UNITS:
+            schema = replace(schema, stamps=stamps_of(f"{name}:{unit}"))
+    return names, schema
+
+
+def _expect_unit(column: str, name: str, unit: str, schema: Schema) -> None:
+    """See that the unit in the name of a column is the declared one, as far as both are units."""
+    declared = schema.units.get(name, "")
+    try:
+        there, wanted = parse_unit(unit), parse_unit(declared)
+    except UnknownUnitError:
+        return
+    if declared and unit and (there.dimension, there.factor) != (wanted.dimension, wanted.factor):
+        raise TraceError(
+            f"column `{shorten(column)}` is in [{unit}], and `{name}` is declared [{declared}]: "
+            f"declare it in [{unit}], or convert the column"
+        )

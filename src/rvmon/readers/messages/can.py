@@ -1,0 +1,266 @@
+"""Logs of CAN, decoded by databases; needs python-can and cantools, the extra `can`."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.readers.messages.columns import path_of
+from rvmon.readers.messages.forms import DATABASES
+from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.values import first_line
+from rvmon.trace.sample import Outage
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import ticks_of_seconds
+
+_Key = tuple[int, bool]
+_PDU_2 = 240
+"""From this format on the second byte of an identifier of J1939 is no address."""
+
+
+class FrameMessages:
+    """An open log, gone through once for what is in it.
+
+    Args:
+        path: of it.
+        definitions: texts of databases by file name; without any, those beside the log count.
+
+    Attributes:
+        topics: by name, one a message of the database that the log has; the name says the channel
+            where a message comes on several.
+        end: the last stamp.
+        count: of the frames of these topics.
+        outages: that it was cut off.
+
+    Raises:
+        RvmonError: what reads it is not installed.
+        TraceError: it is no such log, or there is no database.
+    """
+
+    def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
+        self._path = path
+        self._is_cut = _is_cut(path)
+        self._known = _messages(path, definitions)
+        self._seen: dict[_Key, Any] = {}
+        self.outages: list[Outage] = []
+        self.count, self.end = 0, None
+        channels: dict[Any, set[Any]] = {}
+        others = 0
+        for t, key, channel, _ in self._frames():
+            self.end = t if self.end is None else max(self.end, t)
+            message = self._message(key)
+            if message is None:
+                others += 1
+            else:
+                channels.setdefault(message.name, set()).add(channel)
+                self.count += 1
+        if not self.count:
+            raise TraceError(
+                f"no frame is of a message that the databases know, of {others:,}: name the right "
+                'one in a binding, as `definitions = ["car.dbc"]`'
+            )
+        by_name = {message.name: message for message in self._known.values()}
+        self._several = {name for name, found in channels.items() if len(found) > 1}
+        self.topics: Mapping[str, Topic] = {
+            (name := self._name(message, channel)): _topic(name, by_name[message])
+            for message, found in channels.items()
+            for channel in sorted(found, key=str)
+        }
+        if self.end is not None and self._is_cut:
+            self.end += 1
+            self.outages.append(Outage(self.end, self.end, "it was cut off, or not closed"))
+
+    def _name(self, message: str, channel: Any) -> str:
+        return f"/can{channel}/{message}" if message in self._several else f"/{message}"
+
+    def _message(self, key: _Key) -> Any:
+        if key not in self._seen:
+            found = self._known.get(key)
+            self._seen[key] = self._known.get(_group(key)) if found is None and key[1] else found
+        return self._seen[key]
+
+    def _frames(self) -> Iterator[tuple[int, _Key, Any, bytes]]:
+        """Ticks, identifier, channel and data of each frame of data."""
+        if self._path.suffix.lower() == ".mf4":
+            from rvmon.readers.messages.mdf import mdf_frames
+
+            yield from mdf_frames(self._path)
+            return
+        held = None
+        with log_errors(), open(self._path, **_opening(self._path)) as file:
+            for frame in _reader_of(self._path)(file):
+                if frame.is_error_frame or frame.is_remote_frame:
+                    continue
+                if held is not None:
+                    yield held
+                key = (frame.arbitration_id, frame.is_extended_id)
+                t = ticks_of_seconds(frame.timestamp)
+                held = t, key, frame.channel, bytes(frame.data)
+        if held is not None and not (self._is_cut and self._path.suffix.lower() != ".blf"):
+            yield held  # of a line that is cut off nobody knows what it held
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The frames of these topics, as they were recorded."""
+        readers: dict[Any, Callable[[bytes], Mapping[str, Any]]] = {}
+        for t, key, channel, data in self._frames():
+            message = self._message(key)
+            if message is None or (name := self._name(message.name, channel)) not in topics:
+                continue
+            if message.name not in readers:
+                readers[message.name] = _reader(message)
+            try:
+                yield name, t, readers[message.name](data)
+            except Exception as error:  # noqa: BLE001 - the library has errors of its own
+                raise TraceError(
+                    f"a frame of {name} at {t} ns does not fit the database ({first_line(error)})"
+                ) from None
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+def _is_cut(path: Path) -> bool:
+    """Whether a log ends before it should: a text within a line, BLF before its size."""
+    ending = path.suffix.lower()
+    with open(path, "rb") as file:
+        size = file.seek(0, 2)
+        if ending == ".blf":
+            file.seek(16)
+            return int.from_bytes(file.read(8), "little") != size
+        file.seek(max(0, size - 1))
+        return bool(ending != ".mf4" and file.read() not in (b"\n", b"\r", b""))
+
+
+def _reader_of(path: Path) -> Callable[[Any], Iterable[Any]]:
+    """What reads an open log.
+
+    Raises:
+        RvmonError: it is not installed.
+    """
+    try:
+        from can import ASCReader, BLFReader, CanutilsLogReader, TRCReader
+    except ImportError:
+        raise not_installed("a log of CAN", "python-can") from None
+    readers: Mapping[str, Callable[[Any], Iterable[Any]]] = {
+        ".asc": ASCReader,
+        ".blf": BLFReader,
+        ".log": CanutilsLogReader,
+        ".trc": TRCReader,
+    }
+    return readers[path.suffix.lower()]
+
+
+def _opening(path: Path) -> dict[str, Any]:
+    is_text = path.suffix.lower() != ".blf"
+    return {"mode": "r", "errors": "replace"} if is_text else {"mode": "rb"}
+
+
+@contextmanager
+def log_errors() -> Iterator[None]:
+    """What goes wrong in a log is the fault of the log."""
+    try:
+        yield
+    except (RvmonError, MemoryError, GeneratorExit, OSError):
+        raise
+    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
+        raise TraceError(
+            f"cannot be read as a log of CAN ({first_line(error)}): is it cut off? Copy it again"
+        ) from None
+
+
+def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
+    """The messages of all databases by identifier; those of J1939 by their group as well."""
+    try:
+        from cantools import database
+    except ImportError:
+        raise not_installed("a database of CAN", "cantools") from None
+    logging.getLogger("cantools").setLevel(logging.CRITICAL)
+    texts = {name: text for name, text in definitions.items() if name.lower().endswith(DATABASES)}
+    beside = sorted(one for one in path.parent.iterdir() if one.suffix.lower() in DATABASES)
+    if not texts and not beside:
+        raise TraceError(
+            "holds frames of CAN, and nobody says what is in them: put the database (.dbc) beside "
+            'it, or name it in a binding, as `definitions = ["car.dbc"]`'
+        )
+    found: dict[_Key, Any] = {}
+    for name in texts or map(str, beside):
+        try:
+            if texts:
+                form = name.rpartition(".")[2].lower()
+                loaded = database.load_string(texts[name], database_format=form, strict=False)
+            else:
+                loaded = database.load_file(name, strict=False)
+        except Exception as error:  # noqa: BLE001 - each form of database has errors of its own
+            raise TraceError(
+                f"{name} cannot be read as a database of CAN ({first_line(error)})"
+            ) from None
+        for message in getattr(loaded, "messages", ()):
+            key = (message.frame_id, message.is_extended_frame)
+            found.setdefault(key, message)
+            if message.protocol == "j1939" and message.is_extended_frame:
+                found.setdefault(_group(key), message)
+    return found
+
+
+def _group(key: _Key) -> _Key:
+    """The group of an identifier of J1939, which no identifier is equal to."""
+    form, specific = key[0] >> 16 & 0xFF, key[0] >> 8 & 0xFF
+    page = key[0] >> 24 & 3
+    return -(page << 16 | form << 8 | (specific if form >= _PDU_2 else 0)) - 1, True
+
+
+def _topic(name: str, message: Any) -> Topic:
+    leaves, units = {}, {}
+    for signal in message.signals:
+        path = path_of(signal.name)
+        leaves[path] = _kind(signal)
+        if signal.unit:
+            units[path] = signal.unit
+    return Topic(name, message.name, leaves, units=units)
+
+
+def _is_named(signal: Any) -> bool:
+    """Whether the values of a signal have names that are its values: states, and no number."""
+    if not signal.choices or len(signal.choices) < 2 or signal.unit:
+        return False
+    return bool(signal.conversion.scale == 1 and signal.conversion.offset == 0)
+
+
+def _kind(signal: Any) -> Kind:
+    if _is_named(signal):
+        return Kind.LABEL
+    if signal.conversion.is_float or signal.conversion.scale != int(signal.conversion.scale):
+        return Kind.REAL
+    if signal.conversion.offset != int(signal.conversion.offset):
+        return Kind.REAL
+    return Kind.BOOL if signal.length == 1 else Kind.INT
+
+
+def _reader(message: Any) -> Callable[[bytes], Mapping[str, Any]]:
+    """What gives the values of a frame; one that has a name and should be a number is unknown."""
+    named = {signal.name: signal.choices for signal in message.signals if _is_named(signal)}
+    special = {
+        signal.name: {
+            signal.conversion.raw_to_scaled(raw, decode_choices=False) for raw in signal.choices
+        }
+        for signal in message.signals
+        if signal.choices and signal.name not in named
+    }
+    bits = {one.name for one in message.signals if _kind(one) is Kind.BOOL}
+
+    def value(name: str, number: Any) -> Any:
+        if name in named:
+            return str(named[name].get(number, number))
+        if name in special and number in special[name]:
+            return None
+        return bool(number) if name in bits else number
+
+    def read(data: bytes) -> Mapping[str, Any]:
+        decoded = message.decode(data, decode_choices=False, allow_truncated=False)
+        return {path_of(name): value(name, number) for name, number in decoded.items()}
+
+    return read

@@ -1,0 +1,192 @@
+"""Telemetry of MAVLink (`.tlog`); needs pymavlink, the extra `mavlink`."""
+
+from __future__ import annotations
+
+import struct
+from array import array
+from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rvmon.errors import TraceError, not_installed
+from rvmon.readers.messages.topic import Message, Topic
+from rvmon.trace.sample import Outage
+from rvmon.trace.schema import Kind
+
+_STAMP = 8
+"""Bytes before each packet: microseconds since 1970."""
+
+_MAGIC_1, _MAGIC_2 = 0xFE, 0xFD
+_IS_SIGNED = 1
+_FAR = 3 * 24 * 3600 * 1_000_000
+"""Microseconds: a stamp so far from the one before is none."""
+
+
+class TelemetryMessages:
+    """An open recording of telemetry, gone through once for the place of each packet.
+
+    Args:
+        path: of it.
+
+    Attributes:
+        topics: by name, one a message and sender; the name says the sender where several send it.
+        end: the last stamp.
+        count: of all packets.
+        outages: where there is no packet that its checksum fits.
+
+    Raises:
+        RvmonError: pymavlink is not installed.
+        TraceError: it is no such recording.
+    """
+
+    def __init__(self, path: Path) -> None:
+        try:
+            from pymavlink.dialects.v10 import ardupilotmega as first
+            from pymavlink.dialects.v20 import ardupilotmega
+        except ImportError:
+            raise not_installed("telemetry of MAVLink", "pymavlink") from None
+        self._dialect, self._first = ardupilotmega, first
+        self._data = path.read_bytes()
+        self.outages: list[Outage] = []
+        self._times, self._places, self._senders = array("q"), array("q"), array("q")
+        self._keys: dict[tuple[int, int, int], int] = {}
+        self._index()
+        if not self._times:
+            raise TraceError("holds no packet of MAVLink: is it telemetry?")
+        self.count = len(self._times)
+        self.end: int | None = max(
+            max(self._times), max((one.until for one in self.outages), default=0)
+        )
+        senders: dict[int, int] = {}
+        for number, _, _ in self._keys:
+            senders[number] = senders.get(number, 0) + 1
+        self._names = [self._name(*key, is_only=senders[key[0]] == 1) for key in self._keys]
+        self.topics: Mapping[str, Topic] = {
+            name: self._topic(name, key[0])
+            for name, key in zip(self._names, self._keys, strict=True)
+        }
+
+    def _index(self) -> None:
+        data, place, lost, last = self._data, 0, -1, -1
+        while place + _STAMP < len(data):
+            packet = self._packet_at(place)
+            micros = int.from_bytes(data[place : place + _STAMP], "big")
+            if packet is None or (last >= 0 and abs(micros - last) > _FAR):
+                lost = place if lost < 0 else lost
+                place += 1
+                continue
+            if lost >= 0:
+                self._lose(lost, last, micros)
+                lost = -1
+            size, key = packet
+            last = micros
+            self._times.append(micros * 1_000)
+            self._places.append(place + _STAMP)
+            self._senders.append(self._keys.setdefault(key, len(self._keys)))
+            place += _STAMP + size
+        if self._times and (lost >= 0 or place < len(data)):
+            end = max(self._times)
+            self.outages.append(Outage(end + 1, end + 1, "it ends within a packet"))
+
+    def _lose(self, place: int, last: int, micros: int) -> None:
+        since = last * 1_000 + 1 if last >= 0 else micros * 1_000 - 1
+        until = max(since, micros * 1_000 - 1)
+        self.outages.append(Outage(since, until, f"there is no packet at byte {place:,}"))
+
+    def _packet_at(self, place: int) -> tuple[int, tuple[int, int, int]] | None:
+        """The size of the packet behind a stamp, and its message and sender; `None`: none is."""
+        data, start = self._data, place + _STAMP
+        head = data[start : start + 10]
+        if len(head) < 8 or head[0] not in (_MAGIC_1, _MAGIC_2):
+            return None
+        if head[0] == _MAGIC_1:
+            header, signature = 6, 0
+            system, component, number = head[3], head[4], head[5]
+        else:
+            if len(head) < 10:
+                return None
+            header, signature = 10, 13 if head[2] & _IS_SIGNED else 0
+            system, component = head[5], head[6]
+            number = head[7] | head[8] << 8 | head[9] << 16
+        behind = start + header + head[1]
+        if behind + 2 + signature > len(data):
+            return None
+        known = self._dialect.mavlink_map.get(number)
+        if known is not None:
+            body = bytearray(data[start + 1 : behind])
+            body.append(known.crc_extra)
+            [checksum] = struct.unpack_from("<H", data, behind)
+            if self._dialect.x25crc(body).crc != checksum:
+                return None
+        return header + head[1] + 2 + signature, (number, system, component)
+
+    def _name(self, number: int, system: int, component: int, *, is_only: bool) -> str:
+        known = self._dialect.mavlink_map.get(number)
+        name = f"message_{number}" if known is None else known.msgname
+        return f"/{name}" if is_only else f"/sys{system}_comp{component}/{name}"
+
+    def _topic(self, name: str, number: int) -> Topic:
+        known = self._dialect.mavlink_map.get(number)
+        if known is None:
+            fault = f"message {number} of MAVLink is of a dialect that is not ArduPilot's"
+            return Topic(name, "", {}, fault)
+        kinds = {"float": Kind.REAL, "double": Kind.REAL, "char": Kind.LABEL}
+        places = [known.ordered_fieldnames.index(field) for field in known.fieldnames]
+        leaves = {
+            f"{field}[]" if known.array_lengths[place] and kind != "char" else field: kinds.get(
+                kind, Kind.INT
+            )
+            for field, kind, place in zip(known.fieldnames, known.fieldtypes, places, strict=True)
+        }
+        return Topic(name, known.msgname, leaves, units=known.fieldunits_by_name)
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The packets of these topics by time."""
+        wanted = [place for place, name in enumerate(self._names) if name in topics]
+        times, senders = np.asarray(self._times), np.asarray(self._senders)
+        chosen = np.flatnonzero(np.isin(senders, wanted))
+        chosen = chosen[np.argsort(times[chosen], kind="stable")]
+        keys = list(self._keys)
+        readers: dict[int, Callable[[int], Mapping[str, Any]]] = {}
+        for one in chosen.tolist():
+            sender = self._senders[one]
+            if sender not in readers:
+                readers[sender] = self._reader(keys[sender][0])
+            yield self._names[sender], self._times[one], readers[sender](self._places[one])
+
+    def _reader(self, number: int) -> Callable[[int], Mapping[str, Any]]:
+        """What gives the fields of the packet at a place, whose checksum fits.
+
+        Zeros at the end of a packet are not sent. Version 1 of MAVLink knows no extensions.
+        """
+        known = self._dialect.mavlink_map[number]
+        first = self._first.mavlink_map.get(number, known)
+        size, unpack, data = known.unpacker.size, known.unpacker.unpack, self._data
+        slots: list[tuple[str, int, int, bool]] = []
+        place = 0
+        for field, length in zip(known.ordered_fieldnames, known.array_lengths, strict=True):
+            is_text = known.fieldtypes[known.fieldnames.index(field)] == "char"
+            slots.append((field, place, length, is_text))
+            place += 1 if is_text or not length else length
+        plain = [slot for slot in slots if slot[0] in first.fieldnames]
+
+        def read(start: int) -> Mapping[str, Any]:
+            is_first = data[start] == _MAGIC_1
+            begin = start + (6 if is_first else 10)
+            payload = data[begin : begin + data[start + 1]][:size].ljust(size, b"\0")
+            parts = unpack(payload)
+            return {
+                field: parts[place].partition(b"\0")[0].decode("ascii", "replace")
+                if is_text
+                else list(parts[place : place + length])
+                if length
+                else parts[place]
+                for field, place, length, is_text in (plain if is_first else slots)
+            }
+
+        return read
+
+    def close(self) -> None:
+        """Nothing is open."""

@@ -1,0 +1,119 @@
+/* rvmon.native._csv for CPython: one function, which keeps nothing. */
+#include "csv.h"
+
+#include "../../core/python_abi.h"
+
+#ifndef RVMON_SOURCE_HASH
+#define RVMON_SOURCE_HASH "" /* compiled by hand */
+#endif
+
+static double slow_number(const char *text)
+{
+    const double found = PyOS_string_to_double(text, NULL, NULL);
+    if (PyErr_Occurred() != NULL) {
+        PyErr_Clear();
+        return NAN;
+    }
+    return found;
+}
+
+/* Whether rooms are as large as they have to be, and places are of columns. */
+static bool fit(const csv_reader *r, const Py_buffer *numbers, const Py_buffer *says,
+                const Py_buffer *table)
+{
+    const int64_t cells = (int64_t)r->columns * r->room;
+    int32_t i;
+    for (i = 0; i < r->width; i++) {
+        if ((r->slots[i] < -1) || (r->slots[i] >= r->columns)) {
+            return false;
+        }
+    }
+    return (r->at >= 0) && (r->at <= r->size) && (r->columns > 0)
+           && (numbers->len / 8 >= cells) && (says->len >= cells)
+           && (table->len / 8 >= r->label_room) && (r->label_room >= r->columns)
+           && (r->label_room < INT32_MAX / 4) && (r->odd_room >= r->columns);
+}
+
+/* read(text, start, is_last, longest, slots, kinds, absent, numbers, says, lines, odd, labels, table):
+ * as csv.h says. Gives how it ended, rows, at, end, lines, odd cells, labels. */
+static PyObject *csv_read_rows(PyObject *module, PyObject *args)
+{
+    enum { TEXT, SLOTS, KINDS, NUMBERS, SAYS, LINES, ODD, LABELS, TABLE, BUFFERS };
+    Py_buffer b[BUFFERS];
+    csv_reader r;
+    Py_ssize_t start;
+    Py_ssize_t longest;
+    Py_ssize_t absent_size = 0;
+    const char *absent = NULL;
+    int is_last;
+    PyObject *made = NULL;
+    int i;
+    (void)module;
+    (void)memset(&r, 0, sizeof r);
+    if (!PyArg_ParseTuple(args, "y*niny*y*z#w*w*w*w*w*w*", &b[TEXT], &start, &is_last,
+                          &longest, &b[SLOTS], &b[KINDS], &absent, &absent_size, &b[NUMBERS],
+                          &b[SAYS], &b[LINES], &b[ODD], &b[LABELS], &b[TABLE])) {
+        return NULL;
+    }
+    r.text = b[TEXT].buf;
+    r.size = b[TEXT].len;
+    r.at = start;
+    r.is_last = is_last != 0;
+    r.longest = longest;
+    r.slots = b[SLOTS].buf;
+    r.width = (int32_t)(b[SLOTS].len / 4);
+    r.kinds = b[KINDS].buf;
+    r.columns = (int32_t)(b[KINDS].len / 4);
+    r.absent = absent;
+    r.absent_size = absent_size;
+    r.slow = slow_number;
+    r.numbers = b[NUMBERS].buf;
+    r.says = b[SAYS].buf;
+    r.lines = b[LINES].buf;
+    r.room = b[LINES].len / 8;
+    r.odd = b[ODD].buf;
+    r.odd_room = b[ODD].len / 32;
+    r.labels = b[LABELS].buf;
+    r.label_room = b[LABELS].len / 24;
+    r.table = b[TABLE].buf;
+    if (fit(&r, &b[NUMBERS], &b[SAYS], &b[TABLE])) {
+        const csv_end ended = csv_read(&r);
+        made = Py_BuildValue("(iLLLLLL)", (int)ended, (long long)r.rows, (long long)r.at,
+                             (long long)r.end, (long long)r.line, (long long)r.odd_count,
+                             (long long)r.label_count);
+    } else {
+        PyErr_SetString(PyExc_ValueError, "the rooms do not fit");
+    }
+    for (i = 0; i < BUFFERS; i++) {
+        PyBuffer_Release(&b[i]);
+    }
+    return made;
+}
+
+static PyMethodDef methods[] = {
+    {"read", csv_read_rows, METH_VARARGS, NULL},
+    {NULL, NULL, 0, NULL},
+};
+
+static int execute(PyObject *module)
+{
+    return PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH);
+}
+
+static PyModuleDef_Slot slots[] = {
+    {Py_mod_exec, RVMON_SLOT(execute)},
+#ifdef Py_GIL_DISABLED
+    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
+#endif
+    {0, NULL},
+};
+
+static PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT, "_csv", NULL, 0, methods, slots, NULL, NULL, NULL,
+};
+
+PyMODINIT_FUNC PyInit__csv(void);
+PyMODINIT_FUNC PyInit__csv(void)
+{
+    return PyModuleDef_Init(&definition);
+}

@@ -1,0 +1,235 @@
+/* Single cells as numbers, exactly. */
+#include "csv.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Powers of ten that are exact doubles. */
+static const double POWERS[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+#define MOST_POWER 22
+
+/* So many digits fit in 64 bits. */
+#define MOST_DIGITS 19
+
+#define EXACT ((uint64_t)1 << 53)
+#define TIME_LIMIT ((uint64_t)1 << 62)
+
+/* The longest number that is read here. */
+#define LONGEST 127
+
+typedef struct {
+    uint64_t mantissa;
+    int32_t behind;   /* digits behind the point */
+    int32_t exponent; /* as written */
+    bool is_negative;
+    bool is_long; /* it has more digits than `mantissa` holds */
+} decimal;
+
+static bool is_digit(char c)
+{
+    return (c >= '0') && (c <= '9');
+}
+
+/* Digits and a point, perhaps; gives where they end, NULL if there is no digit. */
+static const char *digits_of(const char *at, const char *to, decimal *d)
+{
+    int32_t digits = 0;
+    int32_t held = 0;
+    bool pointed = false;
+    for (; at < to; at++) {
+        if (is_digit(*at)) {
+            digits++;
+            if ((held > 0) || (*at != '0')) {
+                held++;
+            }
+            if (held <= MOST_DIGITS) {
+                d->mantissa = d->mantissa * 10 + (uint64_t)(*at - '0');
+            }
+            d->behind += pointed ? 1 : 0;
+        } else if ((*at == '.') && !pointed) {
+            pointed = true;
+        } else {
+            break;
+        }
+    }
+    d->is_long = held > MOST_DIGITS;
+    return (digits > 0) ? at : NULL;
+}
+
+/* A decimal number, as Python reads one; false: it is none, or a long one. */
+static bool decimal_of(const char *from, const char *to, decimal *d)
+{
+    const char *at = from;
+    (void)memset(d, 0, sizeof *d);
+    if (to - from > LONGEST) {
+        return false;
+    }
+    if ((at < to) && ((*at == '-') || (*at == '+'))) {
+        d->is_negative = *at == '-';
+        at++;
+    }
+    at = digits_of(at, to, d);
+    if ((at != NULL) && (at < to) && ((*at == 'e') || (*at == 'E'))) {
+        bool down = false;
+        at++;
+        if ((at < to) && ((*at == '-') || (*at == '+'))) {
+            down = *at == '-';
+            at++;
+        }
+        if ((at == to) || (to - at > 4)) {
+            return false;
+        }
+        for (; (at < to) && is_digit(*at); at++) {
+            d->exponent = d->exponent * 10 + (*at - '0');
+        }
+        d->exponent = down ? -d->exponent : d->exponent;
+    }
+    return at == to;
+}
+
+/* A whole number of up to 19 digits by an exact power of ten, rounded once; false: it is not sure.
+ *
+ * The quotient's error is found exactly but for its own relative error of some 2^-52: where that may
+ * not change how the sum is rounded, it does not. */
+static bool quotient(uint64_t mantissa, double power, double *made)
+{
+    const double high = (double)mantissa;
+    const double low = (double)(int64_t)(mantissa - (uint64_t)high);
+    const double first = high / power;
+    const double rest = (fma(-first, power, high) + low) / power;
+    const double least = first + rest * (1.0 - 0x1p-50);
+    *made = first + rest * (1.0 + 0x1p-50);
+    return *made == least;
+}
+
+static int real_of(const csv_reader *r, const decimal *d, const char *from, const char *to,
+                   csv_number *made)
+{
+    const int32_t power = d->exponent - d->behind;
+    char copy[LONGEST + 1];
+    double found;
+    if (!d->is_long && (power <= 0) && (power >= -MOST_POWER)
+        && ((d->mantissa <= EXACT) || quotient(d->mantissa, POWERS[-power], &found))) {
+        if (d->mantissa <= EXACT) {
+            found = (double)d->mantissa / POWERS[-power];
+        }
+        made->real = d->is_negative ? -found : found;
+        return CSV_YES;
+    }
+    (void)memcpy(copy, from, (size_t)(to - from));
+    copy[to - from] = '\0';
+    made->real = r->slow(copy);
+    return isfinite(made->real) ? CSV_YES : CSV_ODD;
+}
+
+static uint64_t power_of_ten(int32_t power)
+{
+    uint64_t made = 1;
+    for (; power > 0; power--) {
+        made *= 10;
+    }
+    return made;
+}
+
+/* A decimal as a whole number, of which no part is behind the point; up to `most`. */
+static int whole_of(const decimal *d, uint64_t most, csv_number *made)
+{
+    uint64_t whole = d->mantissa;
+    if (d->is_long || (d->exponent != 0) || (d->behind > MOST_DIGITS)) {
+        return CSV_ODD;
+    }
+    if (d->behind > 0) {
+        const uint64_t scale = power_of_ten(d->behind);
+        most = (most > EXACT) ? EXACT : most; /* it is a double first */
+        if (whole % scale != 0) {
+            return CSV_ODD;
+        }
+        whole /= scale;
+    }
+    if (whole > most) {
+        return CSV_ODD;
+    }
+    made->whole = d->is_negative ? -(int64_t)whole : (int64_t)whole;
+    return CSV_YES;
+}
+
+/* A stamp as ticks, of which so many digits are whole; half a tick goes to the even one. */
+static int stamp_of(const decimal *d, int32_t places, csv_number *made)
+{
+    uint64_t ticks = d->mantissa;
+    if (d->is_long || (d->exponent != 0) || ((places == 0) && (d->behind > 0))) {
+        return CSV_ODD;
+    }
+    if (d->behind <= places) {
+        const uint64_t scale = power_of_ten(places - d->behind);
+        if (ticks > (TIME_LIMIT - 1) / scale) {
+            return CSV_ODD;
+        }
+        ticks *= scale;
+    } else if (d->behind - places > MOST_DIGITS) {
+        return CSV_ODD;
+    } else {
+        const uint64_t scale = power_of_ten(d->behind - places);
+        const uint64_t rest = ticks % scale;
+        ticks /= scale;
+        if ((rest > scale - rest) || ((rest == scale - rest) && (ticks % 2 == 1))) {
+            ticks++;
+        }
+    }
+    if (ticks >= TIME_LIMIT) {
+        return CSV_ODD;
+    }
+    made->whole = d->is_negative ? -(int64_t)ticks : (int64_t)ticks;
+    return CSV_YES;
+}
+
+static bool is_word(const char *from, const char *to, const char *word)
+{
+    const size_t size = (size_t)(to - from);
+    return (size == strlen(word)) && (memcmp(from, word, size) == 0);
+}
+
+static bool is_nan(const char *from, const char *to)
+{
+    return (to - from == 3) && ((from[0] | 32) == 'n') && ((from[1] | 32) == 'a')
+           && ((from[2] | 32) == 'n');
+}
+
+static int truth_of(const char *from, const char *to, csv_number *made)
+{
+    const bool yes = is_word(from, to, "true") || is_word(from, to, "True")
+                     || is_word(from, to, "TRUE");
+    if (yes || is_word(from, to, "false") || is_word(from, to, "False")
+        || is_word(from, to, "FALSE")) {
+        made->whole = yes ? 1 : 0;
+        return CSV_YES;
+    }
+    return CSV_ODD;
+}
+
+int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made)
+{
+    decimal d;
+    made->whole = 0;
+    if ((kind == CSV_BOOL) && (*from > '9') && (truth_of(from, to, made) == CSV_YES)) {
+        return CSV_YES;
+    }
+    if ((kind < CSV_LABEL) && is_nan(from, to)) {
+        if (kind == CSV_REAL) {
+            made->real = NAN;
+            return CSV_YES;
+        }
+        return CSV_UNKNOWN;
+    }
+    if ((kind == CSV_DATE) || !decimal_of(from, to, &d)) {
+        return CSV_ODD;
+    }
+    switch (kind) {
+    case CSV_BOOL: return d.is_negative ? CSV_ODD : whole_of(&d, 1, made);
+    case CSV_INT: return whole_of(&d, INT64_MAX, made);
+    case CSV_REAL: return real_of(r, &d, from, to, made);
+    default: return stamp_of(&d, kind - CSV_STAMP, made);
+    }
+}

@@ -1,0 +1,165 @@
+"""Pages from templates: texts in them are escaped, and no text can steer a reader or hide.
+
+Drawings, whose attributes are computed, are built element by element (`markup.e`); a template
+takes them as they are.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping
+from functools import cache
+from importlib import resources
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from rvmon.diagnostics.shown import shown
+from rvmon.report.markup import to_html
+from rvmon.report.percent import counted, percent_text, share_text
+from rvmon.report.proportion import interval_text
+from rvmon.report.style import MARKS, verdict_colours
+from rvmon.report.table import Counts, VerdictTable, checked_text
+from rvmon.verdict.verdict import Verdict
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+
+_UNIT = re.compile(r"(?<=\d) (?=(s|ns|us|ms|min|h|m|cm|mm)\b)")
+"""The space between a number and its unit, where no line should end."""
+
+
+def render(name: str, **values: object) -> str:
+    """Fill in a template of this package.
+
+    Args:
+        name: of its file.
+        values: what it speaks of, by name.
+    """
+    return _environment().get_template(name).render(**values)
+
+
+def component(name: str, *values: object, **options: object) -> Markup:
+    """One macro of `components.html`, for who shows a piece of a page alone."""
+    macro = getattr(_environment().get_template("components.html").module, name)
+    return Markup(macro(*values, **options))  # noqa: S704 - a template escapes
+
+
+def asset(name: str) -> Markup:
+    """The text of a style sheet or script, for a page that needs nothing but itself."""
+    path = resources.files("rvmon.report") / "assets" / name
+    return Markup(path.read_text(encoding="utf-8").strip())  # noqa: S704 - our own
+
+
+def with_code(sentence: str) -> Markup:
+    """A sentence whose `quoted` words become code.
+
+    >>> with_code("saw `x < 1` twice")
+    Markup('saw <code>x &lt; 1</code> twice')
+    """
+    parts = _UNIT.sub("\N{NO-BREAK SPACE}", shown(sentence.expandtabs(4))).split("`")
+    if len(parts) % 2 == 0:  # an odd number of quotes quotes nothing
+        return Markup.escape(shown(sentence))
+    code = Markup("<code>{}</code>").format
+    return Markup().join(code(part) if index % 2 else part for index, part in enumerate(parts))
+
+
+def data(value: object) -> Markup:
+    r"""Data for a script, as JSON that cannot end the element it stands in.
+
+    Texts and keys in it are those that the page shows and has in its attributes.
+
+    >>> data({"</script>": 1})
+    Markup('{"\\u003c/script\\u003e":1}')
+    """
+    text = json.dumps(_as_shown(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    for character in "<>&":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return Markup(text)  # noqa: S704 - without the signs of markup
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("rvmon.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=_finished,
+    )
+    environment.filters.update(
+        code=with_code,
+        counted=counted,
+        data=data,
+        grouped="{:,}".format,
+        share=share_text,
+    )
+    environment.globals.update(
+        asset=asset, colours=verdict_colours, marks=MARKS, percent=percent_text, verdicts=[*Verdict]
+    )
+    return environment
+
+
+def _finished(value: object) -> object:
+    """What is written where a template names a value."""
+    if isinstance(value, ET.Element):
+        return Markup(to_html(value))  # noqa: S704 - escaped as it is written
+    if value is None or isinstance(value, Markup):
+        return value or ""
+    return shown(str(value))
+
+
+def _as_shown(value: object) -> object:
+    match value:
+        case str():
+            return shown(value)
+        case dict():
+            return {shown(key): _as_shown(part) for key, part in value.items()}
+        case list() | tuple():
+            return [_as_shown(part) for part in value]
+        case _:
+            return value
+
+
+Link = Callable[[str, str, Verdict], str | None]
+"""The address of an example behind a count, from group, requirement and verdict."""
+
+
+def table_html(
+    table: VerdictTable,
+    *,
+    beside: Mapping[str, VerdictTable] | None = None,
+    link: Link | None = None,
+    witnesses: Mapping[str, str] | None = None,
+) -> Markup:
+    """A table of counts, with a line per requirement.
+
+    Args:
+        table: the counts.
+        beside: by label, tables whose counts stand in further lines of each row.
+        link: where a count leads to.
+        witnesses: by requirement, the address of a run that shows what model checking says.
+    """
+    others = beside or {}
+    text = render(
+        "counts.html",
+        table=table,
+        others=others,
+        link=link,
+        witnesses=witnesses or {},
+        has_checked=any(one.checked for one in (table, *others.values())),
+        checked_text=checked_text,
+        interval_text=interval_text,
+        counts_in=_counts_in,
+    )
+    return Markup(text)  # noqa: S704 - a template escapes
+
+
+def _counts_in(table: VerdictTable, group: str, requirement: str) -> Counts | None:
+    return next((one.counts.get(requirement) for one in table.groups if one.name == group), None)

@@ -1,0 +1,342 @@
+"""What the page of a run shows: its panels, an attempt each, and on which it opens."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import TypeGuard
+
+from rvmon.errors import RvmonError
+from rvmon.explain.dissect import Strand, strands_of
+from rvmon.explain.late import late_in, waits_of
+from rvmon.explain.not_triggered import miss_in, parts_asked
+from rvmon.explain.truths import Eye, Question, Seen, look_through, parts_of
+from rvmon.report.markup import Child
+from rvmon.report.scene import Scene
+from rvmon.report.timeline import Ghost
+from rvmon.report.tracks import Changes, Track, TrackKind, changes_of, tracks_of
+from rvmon.report.view import View, view_of, whole_run
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.health import HealthKind
+from rvmon.trace.sample import Sample
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRun:
+    """A run with its verdicts.
+
+    Attributes:
+        name: what people call it, such as a test's name or a file's.
+        report: the verdicts.
+        samples: that were judged, in time order; empty if they were not kept.
+    """
+
+    name: str
+    report: Report
+    samples: Sequence[Sample]
+
+
+@dataclass(frozen=True, slots=True)
+class RunPage:
+    """What the page of a run is made of.
+
+    Attributes:
+        run: the one that the page is about.
+        spec: that judged it.
+        command: replays it.
+        others: runs by the same spec, whose passing attempts a failed one can be held against.
+        facts: more about the run, as pairs of name and value.
+        scene: what the robot did, if it is known.
+        back: address of the page that links here.
+    """
+
+    run: JudgedRun
+    spec: CheckedSpec
+    command: str
+    others: Sequence[JudgedRun] = ()
+    facts: Sequence[tuple[str, Child]] = ()
+    scene: Scene | None = None
+    back: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """What a page shows of one attempt.
+
+    Attributes:
+        id: of the element on the page, and its address behind `#`.
+        requirement: its id.
+        attempt: `None` if there is none.
+        verdict: of the attempt, or of a requirement without any.
+        view: the stretch of time that is shown.
+        tracks: of the signals and events concerned.
+        ghost: the nearest passing attempt, for a failed one.
+        strands: the truth of each part of the requirement over the view; empty if that would take
+            too long.
+        late: when what the attempt had awaited came after its deadline, ticks; `None`: it did not.
+        miss: without an attempt, what the trigger lacked when it was nearest.
+    """
+
+    id: str
+    requirement: str
+    attempt: Attempt | None
+    verdict: Verdict
+    view: View
+    tracks: tuple[Track, ...]
+    ghost: Ghost | None
+    strands: tuple[Strand, ...] = ()
+    late: int | None = None
+    miss: str = ""
+
+    @property
+    def instant(self) -> int:
+        """Where the cursor stands at first: at the decision, else at the trigger."""
+        if self.attempt is None:
+            return self.view.start
+        return self.attempt.triggered if self.attempt.decided is None else self.attempt.decided
+
+
+LOOKS = 60
+"""Instants at which two runs are compared, evenly over the view."""
+
+MOST = 100
+"""Passing attempts that are compared, the first ones."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A run in which passing attempts of a requirement are looked for.
+
+    Attributes:
+        run: the run.
+        tracks: of the signals that the requirement concerns.
+    """
+
+    run: JudgedRun
+    tracks: tuple[Track, ...]
+
+
+def nearest_passing(
+    attempt: Attempt, tracks: Sequence[Track], view: View, candidates: Sequence[Candidate]
+) -> Ghost | None:
+    """The passing attempt whose signals differ least from those of a failed one.
+
+    Both are laid over each other at their triggers. Two tracks differ by the share of the view
+    over which their values are different, numbers by their mean distance over their range, events
+    by how far apart they occur.
+    """
+    best: tuple[float, Candidate, Attempt] | None = None
+    for candidate, passed in islice(_passing(attempt.requirement, candidates), MOST):
+        shift = attempt.triggered - passed.triggered
+        pairs = zip(tracks, candidate.tracks, strict=True)
+        distance = sum(_distance(mine, other, view, shift) for mine, other in pairs)
+        if best is None or distance < best[0]:
+            best = (distance, candidate, passed)
+    return None if best is None else _laid_over(best[1], best[2], attempt)
+
+
+def _passing(
+    requirement: str, candidates: Sequence[Candidate]
+) -> Iterator[tuple[Candidate, Attempt]]:
+    for candidate in candidates:
+        for attempt in candidate.run.report.attempts:
+            if attempt.requirement == requirement and attempt.verdict is Verdict.PASS:
+                yield candidate, attempt
+
+
+def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Ghost:
+    shift = failed.triggered - passed.triggered
+    moved = (
+        replace(track, changes=tuple((t + shift, value) for t, value in track.changes))
+        for track in candidate.tracks
+    )
+    end = candidate.run.report.end
+    return Ghost(
+        name=candidate.run.name,
+        number=passed.number,
+        tracks=tuple(moved),
+        end=failed.triggered if end is None else end + shift,
+        decided=None if passed.decided is None else passed.decided + shift,
+    )
+
+
+def _distance(mine: Track, other: Track, view: View, shift: int) -> float:
+    """How much two tracks differ, from 0 (not at all) to 1, the other moved by `shift`."""
+    if mine.kind is TrackKind.EVENT:
+        return abs(_first(mine, view, 0) - _first(other, view, shift))
+    instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in range(LOOKS)]
+    pairs = [(mine.value_at(instant), other.value_at(instant - shift)) for instant in instants]
+    numbers = [abs(value) for pair in pairs for value in pair if _is_number(value)]
+    scale = max(numbers, default=0.0) or 1.0
+    differences = (
+        min(abs(a - b) / scale, 1.0) if _is_number(a) and _is_number(b) else float(a != b)
+        for a, b in pairs
+    )
+    return sum(differences) / LOOKS
+
+
+def _first(track: Track, view: View, shift: int) -> float:
+    """Where in the view an event first occurs; at its end if it does not."""
+    index = bisect_left(track.changes, view.start - shift, key=lambda change: change[0])
+    if index == len(track.changes):
+        return 1.0
+    return min(view.fraction(track.changes[index][0] + shift), 1.0)
+
+
+def _is_number(value: object) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+MOST_DISSECTED = 50_000
+"""Of longer runs the parts are not drawn; `rvmon why` takes the time for it."""
+
+
+def panels_of(content: RunPage) -> list[Panel]:
+    """A panel for each attempt that is shown, and for each requirement without any."""
+    shown = shown_attempts(content.run.report)
+    made = _Panels(content, shown)
+    return [panel for name, attempts in shown.items() for panel in made.of(name, attempts)]
+
+
+class _Panels:
+    """Makes the panels of a page, whose run is looked through once for all of them."""
+
+    def __init__(self, content: RunPage, shown: Mapping[str, Sequence[Attempt]]) -> None:
+        self._content = content
+        report = content.run.report
+        self._changes: dict[int, Mapping[str, Changes]] = {}
+        self._waits = {
+            name: waits_of(content.spec.requirements[name], attempts)
+            for name, attempts in shown.items()
+            if name not in report.late
+        }
+        self._seen: Seen | None = None
+        if content.run.samples and report.end is not None:
+            questions = self._questions(shown)
+            samples, names = content.run.samples, _sources(content)
+            self._seen = look_through(content.spec, questions, samples, report.end, names)
+
+    def _questions(self, shown: Mapping[str, Sequence[Attempt]]) -> Iterator[Question]:
+        for name, attempts in shown.items():
+            requirement = self._content.spec.requirements[name]
+            yield from self._waits.get(name, {}).values()
+            if not attempts and name not in self._content.run.report.misses:
+                yield parts_asked(requirement)
+            if len(self._content.run.samples) <= MOST_DISSECTED:
+                yield from (parts_of(requirement, attempt) for attempt in attempts)
+
+    def of(self, name: str, attempts: Sequence[Attempt]) -> Iterator[Panel]:
+        """The panels of a requirement."""
+        run = self._content.run
+        report, samples = run.report, run.samples
+        tracks = self._tracks(run, name)
+        if not attempts:
+            view = whole_run(report, samples[0].t if samples else report.origin)
+            verdict, miss = report.verdicts[name], self._miss(name)
+            yield Panel(panel_id(name, None), name, None, verdict, view, tracks, None, miss=miss)
+        candidates: list[Candidate] = []
+        if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
+            candidates.append(Candidate(run, tracks))
+            others = (other for other in self._content.others if other.samples)
+            candidates.extend(Candidate(other, self._tracks(other, name)) for other in others)
+        late = self._late(name, attempts)
+        for attempt in attempts:
+            came = None if attempt.in_doubt else late.get(attempt.number)
+            view = view_of(attempt, report, came)
+            ghost = None
+            if attempt.verdict is Verdict.FAIL:
+                ghost = nearest_passing(attempt, tracks, view, candidates)
+            yield Panel(
+                panel_id(name, attempt),
+                name,
+                attempt,
+                attempt.verdict,
+                view,
+                tracks,
+                ghost,
+                self._strands(attempt, view),
+                came,
+            )
+
+    def _tracks(self, run: JudgedRun, name: str) -> tuple[Track, ...]:
+        if not run.samples:
+            return ()
+        spec = self._content.spec
+        if id(run) not in self._changes:
+            self._changes[id(run)] = changes_of(spec, run.samples)
+        return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.health)
+
+    def _strands(self, attempt: Attempt, view: View) -> tuple[Strand, ...]:
+        """The truth of each part over a view, as far as the run reaches."""
+        samples = self._content.run.samples
+        if self._seen is None or len(samples) > MOST_DISSECTED:
+            return ()
+        start, stop = max(view.start, samples[0].t), min(view.end, self._seen.end)
+        if start > stop:
+            return ()
+        requirement = self._content.spec.requirements[attempt.requirement]
+        return strands_of(Eye(requirement, attempt, self._seen), start, stop)
+
+    def _miss(self, name: str) -> str:
+        """What the trigger lacked: as was found when the run was judged, or by looking now."""
+        found = self._content.run.report.misses.get(name)
+        if found is not None or self._seen is None:
+            return found or ""
+        return miss_in(self._content.spec, self._content.spec.requirements[name], self._seen)
+
+    def _late(self, name: str, attempts: Sequence[Attempt]) -> Mapping[int, int]:
+        """What came after its deadline: as was found when the run was judged, or now."""
+        if name not in self._waits or self._seen is None:
+            return self._content.run.report.late.get(name, {})
+        return late_in(attempts, self._waits[name], self._seen)
+
+
+def _sources(content: RunPage) -> frozenset[str]:
+    """The signals and events that the run has."""
+    health = content.run.report.health
+    absent = {one.name for one in health if one.kind is HealthKind.ABSENT}
+    return frozenset({*content.spec.signals, *content.spec.events} - absent)
+
+
+def panel_id(requirement: str, attempt: Attempt | None) -> str:
+    """The address of an attempt on the page, or of a requirement without any."""
+    if attempt is None:
+        return requirement
+    return f"{requirement}-{'in-doubt-' if attempt.in_doubt else ''}{attempt.number}"
+
+
+SHOWN = {Verdict.FAIL: 4, Verdict.INCONCLUSIVE: 2, Verdict.PASS: 2}
+"""Attempts per requirement and verdict that are shown, the first ones; the rest is counted."""
+
+
+def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
+    """By requirement, the attempts that get a timeline, in order of trigger."""
+    shown = {}
+    for name in report.verdicts:
+        some = [
+            attempt
+            for verdict, most in SHOWN.items()
+            for attempt in islice(report.of(name, verdict), most)
+        ]
+        shown[name] = sorted(some, key=lambda one: one.number)
+    return shown
+
+
+def opening(report: Report) -> tuple[str, Attempt | None]:
+    """The requirement and attempt that a page opens on: the first F, else I, else any.
+
+    Raises:
+        RvmonError: there is no requirement.
+    """
+    if not report.verdicts:
+        raise RvmonError("a page shows requirements, and the specification has none: add one")
+    for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):
+        for attempt in report.attempts:
+            if attempt.verdict is verdict:
+                return attempt.requirement, attempt
+    return next(iter(report.verdicts)), None

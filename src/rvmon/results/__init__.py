@@ -1,1 +1,0 @@
-"""Verdicts on many recordings as data: files of them, what is known to fail, what has changed."""

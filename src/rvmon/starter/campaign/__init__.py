@@ -1,0 +1,22 @@
+"""A campaign of tests that runs at once, as a beginning for one's own."""
+
+from __future__ import annotations
+
+from importlib import resources
+
+_ENDING = ".txt"
+
+
+def campaign_files() -> dict[str, str]:
+    """The texts of its files, by name: code under test, requirements, and the campaign.
+
+    >>> sorted(campaign_files())
+    ['campaign.py', 'lift.py', 'lift.rv']
+    """
+    folder = resources.files("rvmon.starter.campaign")
+    files = sorted(folder.iterdir(), key=lambda one: one.name)
+    return {
+        one.name.removesuffix(_ENDING): one.read_text(encoding="utf-8")
+        for one in files
+        if one.name.endswith(_ENDING)
+    }

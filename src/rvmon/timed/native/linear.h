@@ -1,0 +1,488 @@
+/* Runs that a generalised Buechi automaton accepts: those of a formula of LTL, without next.
+ *
+ * The pieces are the automaton's states, each with what holds there; a run takes an arc of it with
+ * each move, and while time passes. That a piece lasts while what it does not speak of changes is
+ * right for the automata of such formulas. Strongly connected components are found depth first; one
+ * counts if it meets all sets of acceptance and makes moves, for else nothing ever happens there:
+ * runs that end, idle or stuck, are looked for by themselves. Where the plan has a timer, time passes
+ * on for ever where infinitely many moves find that a unit of time has passed.
+ *
+ * Source: Couvreur, On-the-Fly Verification of Linear Temporal Logic, FM 1999; Alur, Courcoubetis,
+ * Dill, Model-Checking in Dense Real-Time, 1993; Tripakis, Yovine, Bouajjani, Checking Timed Buechi
+ * Automata Emptiness Efficiently, 2005. */
+#ifndef RVMON_ZONES_LINEAR_H
+#define RVMON_ZONES_LINEAR_H
+
+#include "stay.h"
+
+#define MOVES ((uint32_t)1 << 29)
+#define TICKS ((uint32_t)1 << 30)
+#define CLOSED UINT32_MAX
+
+static const int32_t *way_of(const engine *h, int k)
+{
+    return plan_rows(h->plan, AT_WAYS) + (ptrdiff_t)WAY_SIZE * k;
+}
+
+static int32_t arc_at(const engine *h, int32_t a)
+{
+    return plan_rows(h->plan, AT_ARCS)[a];
+}
+
+/* What makes a component count. */
+static uint32_t wanted_flags(const engine *h)
+{
+    return (((uint32_t)1 << h->plan[HEAD_SETS]) - 1) | MOVES | ((h->timer != 0) ? TICKS : 0);
+}
+
+static uint32_t flags_of(const engine *h, uint32_t n)
+{
+    return (uint32_t)way_of(h, piece_of(h, n))[WAY_SETS];
+}
+
+/* --- successors ------------------------------------------------------------------------------------- */
+
+/* A zone inside a piece, as a successor of the node at hand. */
+static void succeed_in(engine *h, bound *z, int k, bool delays, uint32_t flags,
+                       const int32_t *places, int32_t *values)
+{
+    const uint32_t before = h->successor_count;
+    uint32_t *at;
+    find_limits(h, places);
+    blur(h, z);
+    pack(h, places, values, 1 + (uint32_t)k, h->packed);
+    at = find_state(h, h->packed);
+    if ((at != NULL) && ((*at != NONE) || add_state(h, at, delays))) {
+        succeed(h, *at, z);
+    }
+    if (h->successor_count > before) {
+        h->successors[before].flags = flags;
+    }
+}
+
+/* A zone behind a move, or at the start, in all pieces that the automaton goes on to. */
+static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t *values)
+{
+    const bool delays = may_delay(h, places, values);
+    const int32_t *way = (h->from_node == NONE) ? NULL : way_of(h, piece_of(h, h->from_node));
+    const int32_t count = (way == NULL) ? h->inside_count : way[WAY_ARCS];
+    int32_t i;
+    int tick;
+    for (i = 0; (i < count) && runs(h) && !h->failed; i++) {
+        const int k = (way == NULL) ? i : arc_at(h, way[WAY_ARC] + i);
+        if (((way == NULL) && (way_of(h, k)[WAY_STARTS] == 0))
+            || !holds(h, piece_at(h, k)[ROW_CONDITION], places, values)) {
+            continue;
+        }
+        for (tick = 0; tick <= (h->timer != 0); tick++) {
+            copy_zone(h, h->inside, z);
+            if ((h->timer != 0)
+                && !(tick ? constrain(h->inside, h->dim, h->timer, 0, -1)
+                          : constrain(h->inside, h->dim, 0, h->timer, 2))) {
+                continue;
+            }
+            if (tick) {
+                reset(h->inside, h->dim, h->timer, 0);
+            }
+            if (settle_in_piece(h, h->inside, k, delays, places, values)) {
+                succeed_in(h, h->inside, k, delays, MOVES | (tick ? TICKS : 0), places, values);
+            }
+        }
+    }
+}
+
+/* The successors of a node: behind moves, and as time passes. */
+static void expand_way(engine *h, uint32_t n)
+{
+    walk *w = &h->out;
+    const int k = piece_of(h, n);
+    const int32_t *way = way_of(h, k);
+    const bool delays = h->delays[h->nodes[n].state] != 0;
+    int32_t i;
+    unpack(h, h->nodes[n].state, w->places, w->values);
+    copy_zone(h, w->source, zone_of(h, n));
+    h->from_node = n;
+    w->ordinal = 0;
+    h->phase = 1;
+    (void)each_move(h, w, take);
+    for (i = 0; delays && h->clocked && (i < 2 * way[WAY_ARCS]) && runs(h) && !h->failed; i++) {
+        const int m = arc_at(h, way[WAY_ARC] + i / 2);
+        if ((m != k) && holds(h, piece_at(h, m)[ROW_CONDITION], w->places, w->values)
+            && cross(h, w->zone, w->source, k, m, i % 2 == 1, w->places, w->values)) {
+            h->link = LINK_CROSSING | (uint32_t)(i % 2);
+            succeed_in(h, w->zone, m, delays, 0, w->places, w->values);
+        }
+    }
+}
+
+/* --- runs that end ------------------------------------------------------------------------------------ */
+
+/* From which pieces the automaton accepts while only those that are allowed hold, for ever: `rest`. */
+static void find_rest(engine *h)
+{
+    const int32_t n = h->inside_count;
+    const uint32_t sets = wanted_flags(h) & ~(MOVES | TICKS);
+    int32_t r;
+    (void)memset(h->rest_good, 0, (size_t)n);
+    for (r = 0; r < n; r++) {
+        uint32_t met = 0;
+        int side;
+        int32_t k;
+        /* reached from r, and reaching r: both in rounds until nothing is new */
+        for (side = 0; side < 2; side++) {
+            uint8_t *found = side ? h->rest_back : h->rest_on;
+            bool changed = true;
+            (void)memset(found, 0, (size_t)n);
+            while (changed && (h->allowed[r] != 0)) {
+                changed = false;
+                labour(h);
+                for (k = 0; k < n; k++) {
+                    const int32_t *way = way_of(h, k);
+                    int32_t a;
+                    for (a = 0; (h->allowed[k] != 0) && (a < way[WAY_ARCS]); a++) {
+                        const int32_t m = arc_at(h, way[WAY_ARC] + a);
+                        const int32_t from = side ? m : k;
+                        const int32_t to = side ? k : m;
+                        if ((h->allowed[m] != 0) && (found[to] == 0)
+                            && ((from == r) || (found[from] != 0))) {
+                            found[to] = 1;
+                            changed = true;
+                        }
+                    }
+                }
+            }
+        }
+        for (k = 0; k < n; k++) {
+            if ((h->rest_on[k] != 0) && (h->rest_back[k] != 0)) {
+                met |= (uint32_t)way_of(h, k)[WAY_SETS];
+            }
+        }
+        if ((h->rest_on[r] != 0) && ((met & sets) == sets)) {
+            h->rest_good[r] = 1;
+            for (k = 0; k < n; k++) {
+                h->rest_good[k] |= h->rest_back[k];
+            }
+        }
+    }
+}
+
+/* Whether the automaton accepts from a piece on while only the pieces that are allowed hold. */
+static bool rests(engine *h, int k)
+{
+    const size_t n = (size_t)h->inside_count;
+    if (!h->rest_known || (memcmp(h->allowed, h->rest_allowed, n) != 0)) {
+        find_rest(h);
+        (void)memcpy(h->rest_allowed, h->allowed, n);
+        h->rest_known = true;
+    }
+    return (h->allowed[k] != 0) && (h->rest_good[k] != 0);
+}
+
+/* The valuations from which an atom, or for an upper bound its opposite, holds when time stops. */
+static bool reaches_atom(engine *h, bound *to, const int32_t *atom, bool delays, bool *upper)
+{
+    walk *w = &h->out;
+    int x;
+    int y;
+    bound b;
+    if (!atom_at(h, atom, w->places, w->values, &x, &y, &b)) {
+        return false;
+    }
+    *upper = x == 0;
+    universe(to, h->dim);
+    if (!cut_invariant(h, to, w->places, w->values)
+        || !(*upper ? constrain(to, h->dim, y, 0, negated(b)) : constrain(to, h->dim, x, y, b))) {
+        return false;
+    }
+    if (delays) {
+        before(to, h->dim);
+    }
+    return true;
+}
+
+/* Whether a piece holds when time stops, for a zone that no atom divides. */
+static bool holds_last(engine *h, const bound *z, int k, bool delays)
+{
+    const int32_t *piece = piece_at(h, k);
+    int32_t i;
+    for (i = 0; i < piece[ROW_ATOMS]; i++) {
+        bool upper = false;
+        bool met = reaches_atom(h, h->copy, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + i),
+                                delays, &upper)
+                   && cut_zone(h, h->copy, z);
+        if (h->failed || (met == upper)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether a run is accepted that gets stuck in piece k: then with `parts`. Time ends in each part of
+ * the zone in one and the same way. */
+static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
+{
+    walk *w = &h->out;
+    bound *reach = h->inside;
+    federation parts = {0, 0, NULL};
+    uint32_t i;
+    int32_t a;
+    int m;
+    bool found = false;
+    if (!find_dead(h, z, w->places, w->values)) {
+        return false;
+    }
+    for (m = 0; m < h->inside_count; m++) {
+        const int32_t *piece = piece_at(h, m);
+        for (a = 0; (h->allowed[m] != 0) && (a < piece[ROW_ATOMS]) && runs(h); a++) {
+            bool upper;
+            if (!reaches_atom(h, reach, h->atoms + (ptrdiff_t)ATOM_SIZE * (piece[ROW_ATOM] + a),
+                              delays, &upper)) {
+                continue;
+            }
+            parts.count = 0;
+            for (i = 0; i < h->dead.count; i++) {
+                copy_zone(h, h->copy, nth(h, &h->dead, i));
+                if (cut_zone(h, h->copy, reach)) {
+                    (void)push_zone(h, &parts, h->copy);
+                }
+            }
+            (void)subtract(h, &h->dead, reach);
+            for (i = 0; i < parts.count; i++) {
+                (void)push_zone(h, &h->dead, nth(h, &parts, i));
+            }
+        }
+    }
+    (void)memcpy(h->been, h->allowed, (size_t)h->inside_count);
+    for (i = 0; (i < h->dead.count) && !found && runs(h) && !h->failed; i++) {
+        for (m = 0; m < h->inside_count; m++) {
+            h->allowed[m] = (h->been[m] != 0) && holds_last(h, nth(h, &h->dead, i), m, delays);
+        }
+        if (rests(h, k)) {
+            h->parts.count = 0;
+            found = push_zone(h, &h->parts, nth(h, &h->dead, i));
+        }
+    }
+    (void)memset(h->been, 0, (size_t)h->inside_count);
+    give_back(h, &parts);
+    return found;
+}
+
+/* Whether an accepted run can end at a node: it idles for ever, or is stuck. */
+static bool ends_here(engine *h, uint32_t n)
+{
+    const bound *z = zone_of(h, n);
+    const bool delays = h->delays[h->nodes[n].state] != 0;
+    const int k = piece_of(h, n);
+    walk *w = &h->out;
+    bool open;
+    int m;
+    unpack(h, h->nodes[n].state, w->places, w->values);
+    open = delays && (invariant_of(h, w->places, w->values) == 0);
+    for (m = 0; m < h->inside_count; m++) {
+        const int32_t *piece = piece_at(h, m);
+        int32_t i;
+        h->allowed[m] = holds(h, piece[ROW_CONDITION], w->places, w->values);
+        for (i = 0; open && (i < piece[ROW_ATOMS]); i++) {
+            h->allowed[m] &= h->atoms[ATOM_SIZE * (piece[ROW_ATOM] + i) + ATOM_OP] > 1;
+        }
+    }
+    if (h->failed || !rests(h, k)) {
+        return false;
+    }
+    h->ending = open ? END_IDLE : END_STUCK;
+    h->parts.count = 0;
+    return open || ((h->timer == 0) && look_for_stuck(h, z, k, delays));
+}
+
+/* --- components ---------------------------------------------------------------------------------------- */
+
+static bool in_component(const engine *h, uint32_t n, uint32_t rank)
+{
+    return (n < h->rank_room) && (h->rank[n] >= rank) && (h->rank[n] != CLOSED);
+}
+
+/* Tell a shortest way inside a component, from a node to where a flag is given that is wanted, or if
+ * none is to the root. What is wanted of it is taken off; where it leads, or NONE. */
+static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t *wanted)
+{
+    const uint32_t rank = h->rank[root_node];
+    const uint32_t mark = h->successor_count;
+    uint32_t at;
+    uint32_t i;
+    uint32_t last = NONE;
+    h->trail_count = 0;
+    if (!ROOM(h, h->trail, h->trail_room, 1)) {
+        return NONE;
+    }
+    h->trail[h->trail_count++] = (step){from, NONE, 0, 0};
+    for (at = 0; (at < h->trail_count) && (last == NONE) && runs(h); at++) {
+        expand_way(h, h->trail[at].node);
+        for (i = mark; (i < h->successor_count) && (last == NONE) && runs(h); i++) {
+            const successor s = h->successors[i];
+            const uint32_t flags = s.flags | (in_component(h, s.node, rank) ? flags_of(h, s.node) : 0);
+            const bool ends = (*wanted != 0) ? (flags & *wanted) != 0 : s.node == root_node;
+            if (!in_component(h, s.node, rank) || (!ends && (h->colours[s.node] != 0))
+                || !ROOM(h, h->trail, h->trail_room, (uint64_t)h->trail_count + 1)) {
+                continue;
+            }
+            h->colours[s.node] = 1;
+            h->trail[h->trail_count++] = (step){s.node, at, s.link, flags};
+            last = ends ? h->trail_count - 1 : NONE;
+        }
+        h->successor_count = mark;
+    }
+    for (i = 0; i < h->trail_count; i++) {
+        h->colours[h->trail[i].node] = 0;
+    }
+    if (last == NONE) {
+        return NONE;
+    }
+    /* turn the chain round, then tell it */
+    for (at = last, i = NONE; at != NONE;) {
+        const uint32_t parent = h->trail[at].parent;
+        h->trail[at].parent = i;
+        i = at;
+        at = parent;
+    }
+    for (at = i; h->trail[at].parent != NONE; at = h->trail[at].parent) {
+        const step to = h->trail[h->trail[at].parent];
+        (void)tell_link(h, h->trail[at].node, to.node, to.link);
+        *wanted &= ~to.flags;
+    }
+    return h->trail[last].node;
+}
+
+/* A component counts: the way to it, and one round in it that meets all that is wanted. */
+static void tell_round(engine *h, uint32_t rank)
+{
+    uint32_t wanted = wanted_flags(h);
+    uint32_t root_node;
+    uint32_t at;
+    int counts = 1;
+    while (h->rank[h->frames[h->frame_count - 1].node] != rank) {
+        h->frame_count--;
+    }
+    root_node = h->frames[h->frame_count - 1].node;
+    tell_way(h, root_node);
+    at = root_node;
+    do {
+        at = tell_part(h, at, root_node, &wanted);
+    } while ((at != NONE) && ((wanted != 0) || (at != root_node)) && runs(h));
+    if (runs(h) && (h->timer == 0)) {
+        counts = ask_counts(h, root_node);
+    }
+    if (runs(h)) {
+        h->ending = (counts != 0) ? END_LOOP : END_ZENO;
+        h->parts.count = 0;
+        h->state = SEARCH_FOUND;
+    }
+}
+
+/* Go on from a node that is met for the first time. */
+static void open_node(engine *h, successor s)
+{
+    const uint32_t had = h->rank_room;
+    visit(h);
+    h->stored++;
+    if (!ROOM(h, h->rank, h->rank_room, h->node_count)) {
+        return;
+    }
+    (void)memset(h->rank + had, 0, (h->rank_room - had) * sizeof *h->rank);
+    if (!ROOM(h, h->frames, h->frame_room, (uint64_t)h->frame_count + 1)
+        || !ROOM(h, h->roots, h->root_room, (uint64_t)h->root_count + 1)
+        || !ROOM(h, h->open, h->open_room, (uint64_t)h->open_count + 1)) {
+        return;
+    }
+    h->rank[s.node] = ++h->last_rank;
+    h->open[h->open_count++] = s.node;
+    h->roots[h->root_count++] = (root){h->last_rank, flags_of(h, s.node), s.flags};
+    h->frames[h->frame_count++] =
+        (frame){s.node, s.link, h->successor_count, h->successor_count};
+    if (ends_here(h, s.node)) {
+        tell_way(h, NONE);
+        h->state = runs(h) ? SEARCH_FOUND : h->state;
+        return;
+    }
+    h->ending = END_REACHED;
+    expand_way(h, s.node);
+    h->frames[h->frame_count - 1].end = h->successor_count;
+}
+
+/* Close the last frame, and its component if it is the root of one. */
+static void close_frame(engine *h)
+{
+    const uint32_t n = h->frames[--h->frame_count].node;
+    const uint32_t rank = h->rank[n];
+    if (h->roots[h->root_count - 1].number == rank) {
+        h->root_count--;
+        while ((h->open_count > 0) && (h->rank[h->open[h->open_count - 1]] >= rank)) {
+            h->rank[h->open[--h->open_count]] = CLOSED;
+        }
+    }
+}
+
+/* An edge into the way: what lies between is one component; found, if that counts. */
+static void merge(engine *h, successor s)
+{
+    const uint32_t wanted = wanted_flags(h);
+    const uint32_t rank = h->rank[s.node];
+    uint32_t flags = s.flags;
+    root *top = h->roots + h->root_count - 1;
+    while (top->number > rank) {
+        flags |= top->flags | top->in;
+        top--;
+        h->root_count--;
+    }
+    top->flags |= flags;
+    if ((top->flags & wanted) == wanted) {
+        tell_round(h, top->number);
+    }
+}
+
+/* Search for a run that the automaton accepts, from the zone in `out`. */
+static void look_for_run(engine *h)
+{
+    walk *w = &h->out;
+    uint32_t next = 0;
+    uint32_t end;
+    int32_t k;
+    for (k = 0; k < h->inside_count; k++) {
+        h->clocked = h->clocked || (piece_at(h, k)[ROW_ATOMS] > 0);
+    }
+    h->phase = 1;
+    h->stem = NONE;
+    h->from_node = NONE;
+    enter_way(h, w->zone, w->target, w->changed);
+    end = h->successor_count;
+    while (runs(h) && !h->failed) {
+        successor s;
+        if (next == end) {
+            if (h->frame_count == 0) {
+                break;
+            }
+            close_frame(h);
+        } else {
+            s = h->successors[next++];
+            if (h->frame_count == 0) {
+                h->resume = next;
+                h->resume_end = end;
+            } else {
+                h->frames[h->frame_count - 1].next = next;
+            }
+            if ((s.node >= h->rank_room) || (h->rank[s.node] == 0)) {
+                open_node(h, s);
+            } else if (h->rank[s.node] != CLOSED) {
+                merge(h, s);
+            }
+            if (!runs(h)) {
+                break;
+            }
+        }
+        next = (h->frame_count == 0) ? h->resume : h->frames[h->frame_count - 1].next;
+        end = (h->frame_count == 0) ? h->resume_end : h->frames[h->frame_count - 1].end;
+        h->successor_count = end;
+    }
+    h->phase = 0;
+}
+
+#endif

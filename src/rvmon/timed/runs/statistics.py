@@ -1,0 +1,157 @@
+"""Probabilities and expected values of random runs: figures with their errors, never proofs.
+
+A probability is estimated with Clopper and Pearson's bounds, or compared with a level by Wald's
+sequential test, which takes as many runs as it needs. An expected value has bounds by the normal
+approximation. How chance decides says `simulate`.
+
+Source: Wald, Sequential Tests of Statistical Hypotheses, 1945; Younes and Simmons, Statistical
+Probabilistic Model Checking, 2006 (the indifference region).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import fsum, log, log1p, sqrt
+from random import Random
+from statistics import NormalDist
+
+from rvmon.timed.model.evaluate import evaluator
+from rvmon.timed.model.guards import normal_form
+from rvmon.timed.model.network import Chance, Mean, Network, Query
+from rvmon.timed.model.operators import BinaryOp, PathOp
+from rvmon.timed.model.rules import model_error
+from rvmon.timed.runs.simulate import GRID, exact_bounds, stretches, trial_of
+from rvmon.timed.zones.deadlock import check_start
+from rvmon.timed.zones.successors import Space
+from rvmon.timed.zones.zone_unions import is_plain
+
+RUNS = 1_000
+"""Runs of an estimate that does not say how many."""
+
+MARGIN = 0.01
+"""A test need not tell a probability from the level that is nearer to it; near 0 and 1 half of what
+is left is the margin."""
+
+ERROR = 0.05
+"""How often a test may be wrong, either way; estimates have bounds with the rest as confidence."""
+
+MOST_TRIALS = 1_000_000
+"""After so many runs a test gives up."""
+
+MEAN_WAIT = 10.0
+"""Units of time by which a wait without end exceeds its beginning on average."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sampled:
+    """What random runs say of a query.
+
+    Attributes:
+        query: the question.
+        runs: how many were simulated.
+        value: the share of runs, or the mean.
+        low, high: bounds of an estimate, with 95 % confidence; of a test there are none.
+        holds: of a test; `None` if it gave up, or for an estimate.
+        margin: of a test: it may be wrong where the probability is nearer to the level.
+    """
+
+    query: Query
+    runs: int
+    value: float
+    low: float | None = None
+    high: float | None = None
+    holds: bool | None = None
+    margin: float | None = None
+
+
+def sample(
+    network: Network, query: Query, *, seed: int = 1, watch: Callable[[int], bool] | None = None
+) -> Sampled:
+    """Answer a query about probabilities or expected values by simulation.
+
+    Args:
+        network: what to simulate.
+        query: `Pr…` or `E[…](max: …)`.
+        seed: of all choices.
+        watch: asked after each run, with their number, whether to go on.
+
+    Raises:
+        ModelError: the query cannot be judged on one run, or the network cannot start.
+    """
+    check_start(network)
+    random = Random(seed)  # noqa: S311 - repeatable, not secret
+    match query.formula:
+        case Chance() as chance:
+            return _chance(network, query, chance, random, watch or _on)
+        case Mean() as mean:
+            return _mean(network, query, mean, random, watch or _on)
+        case _:
+            raise model_error("TA020", "this asks for no probability", query.span)
+
+
+def _on(_runs: int) -> bool:
+    return True
+
+
+def _chance(
+    network: Network,
+    query: Query,
+    chance: Chance,
+    random: Random,
+    watch: Callable[[int], bool],
+) -> Sampled:
+    if not is_plain(chance.body):
+        fix = "write a condition on the state: Pr[<=T](<> p)"
+        raise model_error("TA020", "this cannot be evaluated on one run", query.span, fix)
+    meets = chance.op is PathOp.FINALLY
+    sought = normal_form(chance.body, positive=meets)
+    trial = trial_of(network, sought, chance.horizon, random, MEAN_WAIT)
+    if chance.sign is not None:
+        return _tested(query, chance, lambda: trial() == meets, watch)
+    runs = successes = 0
+    while runs < (chance.runs or RUNS) and watch(runs):
+        successes += trial() == meets
+        runs += 1
+    low, high = exact_bounds(successes, runs, 1 - ERROR) if runs else (0.0, 1.0)
+    return Sampled(query, runs, successes / max(1, runs), low, high)
+
+
+def _tested(
+    query: Query, chance: Chance, trial: Callable[[], bool], watch: Callable[[int], bool]
+) -> Sampled:
+    """Wald's test of what lies above the level by the margin against what lies below."""
+    level = chance.level
+    margin = min(MARGIN, level / 2, (1 - level) / 2)
+    above, below = level + margin, level - margin
+    hit, miss = log(below) - log(above), log1p(-below) - log1p(-above)
+    limit = log((1 - ERROR) / ERROR)
+    most = chance.runs or MOST_TRIALS
+    evidence, runs, successes = 0.0, 0, 0
+    while -limit < evidence < limit and runs < most and watch(runs):
+        met = trial()
+        evidence += hit if met else miss
+        successes += met
+        runs += 1
+    share = successes / max(1, runs)
+    if -limit < evidence < limit:
+        return Sampled(query, runs, share, margin=margin)
+    holds = (evidence < 0) == (chance.sign is BinaryOp.GE)
+    return Sampled(query, runs, share, holds=holds, margin=margin)
+
+
+def _mean(
+    network: Network, query: Query, mean: Mean, random: Random, watch: Callable[[int], bool]
+) -> Sampled:
+    space, value = Space(network), evaluator(mean.value)
+    best: Callable[[list[int]], int] = max if mean.largest else min
+    found: list[float] = []
+    while len(found) < (mean.runs or RUNS) and watch(len(found)):
+        run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID)
+        found.append(best([value(state.vector.locations, state.values) for state, _, _ in run]))
+    if len(found) < 2:
+        raise model_error("TA019", "too few runs were simulated", query.span)
+    middle = fsum(found) / len(found)
+    spread = sqrt(fsum((one - middle) ** 2 for one in found) / (len(found) - 1))
+    away = NormalDist().inv_cdf(1 - ERROR / 2) * spread / sqrt(len(found))
+    return Sampled(query, len(found), middle, middle - away, middle + away)

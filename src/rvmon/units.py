@@ -1,0 +1,218 @@
+"""The units of measure: their table, how they are read, multiplied and compared."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit: `factor` times the product of base units to the powers of `dimension`.
+
+    Attributes:
+        symbol: as people write it; empty for a plain number.
+        dimension: exponent by base unit, sorted by its symbol, none zero.
+        factor: exact, but for degrees of angle (60 digits of π).
+    """
+
+    symbol: str
+    dimension: tuple[tuple[str, int], ...] = ()
+    factor: Fraction = Fraction(1)
+
+
+PLAIN = Unit("")
+"""The unit of a plain number."""
+
+
+_PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494")
+
+# An angle is no plain number here, so that a limit in radians is not met by a signal without a
+# unit. Degrees Celsius are never converted: they have another zero.
+_BASES = ("m", "kg", "s", "A", "K", "rad", "degC", "px", "B", "mol", "cd")
+
+_DERIVED: tuple[tuple[str, str, Fraction | int], ...] = (
+    ("g", "kg", Fraction(1, 1000)),
+    ("t", "kg", 1000),
+    ("L", "m^3", Fraction(1, 1000)),
+    ("min", "s", 60),
+    ("h", "s", 3600),
+    ("N", "kg*m/s^2", 1),
+    ("Pa", "N/m^2", 1),
+    ("bar", "N/m^2", 100_000),
+    ("J", "N*m", 1),
+    ("watt", "J/s", 1),
+    ("W", "J/s", 1),
+    ("Wh", "J", 3600),
+    ("Ah", "A*s", 3600),
+    ("V", "W/A", 1),
+    ("ohm", "V/A", 1),
+    ("T", "N/A/m", 1),
+    ("lx", "cd/m^2", 1),
+    ("Hz", "1/s", 1),
+    ("deg", "rad", _PI / 180),
+    ("rev", "rad", 2 * _PI),
+    ("rpm", "rad/s", 2 * _PI / 60),
+    ("inch", "m", Fraction(254, 10_000)),
+    ("ft", "m", Fraction(3048, 10_000)),
+    ("kB", "B", 10**3),
+    ("MB", "B", 10**6),
+    ("GB", "B", 10**9),
+    ("bit", "B", Fraction(1, 8)),
+    ("kbit", "bit", 10**3),
+    ("Mbit", "bit", 10**6),
+    ("%", "", Fraction(1, 100)),
+)
+_PREFIXED = (
+    *("m", "g", "s", "A", "K", "rad", "L", "N", "Pa", "bar", "J", "W", "Wh", "Ah"),
+    *("V", "ohm", "T", "Hz", "mol"),
+)
+_PREFIXES = {
+    "n": Fraction(1, 10**9),
+    "u": Fraction(1, 10**6),
+    "µ": Fraction(1, 10**6),
+    "m": Fraction(1, 1000),
+    "c": Fraction(1, 100),
+    "d": Fraction(1, 10),
+    "k": Fraction(1000),
+    "M": Fraction(10**6),
+    "G": Fraction(10**9),
+}
+
+SPOKEN = {"A": "ampere", "W": "watt"}
+"""The letters are operators, so behind a number the words stand for them."""
+
+_LONGEST = 60
+"""Longer units are refused: their factors could have thousands of digits."""
+
+_PART = re.compile(r"([*/]?)\s*([^\s*/^]+)(?:\^(-?\d{1,2}))?\s*")
+
+
+class UnknownUnitError(ValueError):
+    """A part of a unit is not in the table; its only argument is that part."""
+
+
+@cache
+def unit_table() -> Mapping[str, Unit]:
+    """All simple units by symbol."""
+    table = {base: Unit(base, ((base, 1),)) for base in _BASES}
+    table["ampere"] = Unit("ampere", (("A", 1),))
+    for symbol, definition, factor in _DERIVED:
+        defined = _parse(definition, table)
+        table[symbol] = Unit(symbol, defined.dimension, defined.factor * factor)
+        if symbol in _PREFIXED:
+            _add_prefixed(table, symbol)
+    for base in _BASES:
+        if base in _PREFIXED:
+            _add_prefixed(table, base)
+    return table
+
+
+def _add_prefixed(table: dict[str, Unit], symbol: str) -> None:
+    unit = table[symbol]
+    for prefix, factor in _PREFIXES.items():
+        name = prefix + symbol
+        table.setdefault(name, Unit(name, unit.dimension, unit.factor * factor))
+
+
+def parse_unit(text: str) -> Unit:
+    """Read a unit such as `m/s`, `kg*m^2`, `1/s`.
+
+    Raises:
+        UnknownUnitError: a part is unknown, or the text is no product of parts.
+
+    >>> parse_unit("km/h").factor
+    Fraction(5, 18)
+    """
+    if len(text) > _LONGEST:
+        raise UnknownUnitError(text)
+    return _parse(text, unit_table())
+
+
+def _parse(text: str, table: Mapping[str, Unit]) -> Unit:
+    return _of_powers(_powers(text), table)
+
+
+def _powers(text: str) -> Mapping[str, int]:
+    """The parts of a unit, each with its power."""
+    powers: Counter[str] = Counter()
+    place = 0
+    while place < len(text):
+        part = _PART.match(text, place)
+        if part is None or (part[1] == "") != (place == 0):
+            raise UnknownUnitError(text[place:])
+        place = part.end()
+        name = SPOKEN.get(part[2], part[2])
+        if name != "1":
+            powers[name] += int(part[3] or 1) * (-1 if part[1] == "/" else 1)
+    return powers
+
+
+def _of_powers(powers: Mapping[str, int], table: Mapping[str, Unit]) -> Unit:
+    dimension: Counter[str] = Counter()
+    factor = Fraction(1)
+    for name, power in powers.items():
+        unit = table.get(name)
+        if unit is None:
+            raise UnknownUnitError(name)
+        factor *= unit.factor**power
+        for base, exponent in unit.dimension:
+            dimension[base] += exponent * power
+    kept = tuple(sorted((base, power) for base, power in dimension.items() if power))
+    return Unit(_symbol(powers), kept, factor)
+
+
+def _symbol(powers: Mapping[str, int]) -> str:
+    above = [_power(name, power) for name, power in powers.items() if power > 0]
+    below = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(("*".join(above) or ("1" if below else ""), *below))
+
+
+def _power(name: str, power: int) -> str:
+    return name if power == 1 else f"{name}^{power}"
+
+
+def product(left: Unit, right: Unit) -> Unit:
+    """The unit of a product."""
+    return _combined(left, right, 1)
+
+
+def quotient(left: Unit, right: Unit) -> Unit:
+    """The unit of a quotient."""
+    return _combined(left, right, -1)
+
+
+def _combined(left: Unit, right: Unit, power: int) -> Unit:
+    powers = Counter(_powers(left.symbol))
+    for name, exponent in _powers(right.symbol).items():
+        powers[name] += power * exponent
+    return _of_powers(powers, unit_table())
+
+
+def root(unit: Unit) -> Unit | None:
+    """The unit of a square root of a number in base units, or `None` if there is none."""
+    if any(exponent % 2 for _, exponent in unit.dimension):
+        return None
+    return base_unit({base: exponent // 2 for base, exponent in unit.dimension})
+
+
+def base_unit(dimension: Mapping[str, int]) -> Unit:
+    """The product of base units with these exponents."""
+    powers = {SPOKEN.get(base, base): power for base, power in dimension.items()}
+    return _of_powers(powers, unit_table())
+
+
+def compound_pattern(excluded: Iterable[str]) -> str:
+    """A regular expression for units of several known parts, or with powers, without spaces.
+
+    Args:
+        excluded: words that are never a part.
+    """
+    refused = frozenset(excluded)
+    names = sorted((name for name in unit_table() if name not in refused), key=len, reverse=True)
+    part = f"({'|'.join(name for name in names if name != '%')})(\\^-?\\d+)?"
+    return rf"{part}([*/]{part})*(?![\w^]|\.\w)"

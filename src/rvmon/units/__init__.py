@@ -1,1 +1,0 @@
-"""Units of measure: how they are read, multiplied and compared."""

@@ -1,0 +1,178 @@
+"""What has changed between two files of verdicts."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from rvmon.verdict.read_rows import Kept
+from rvmon.verdict.verdict import Verdict, fold
+
+
+class Change(StrEnum):
+    """What became of a requirement in a recording; what people look at first stands first."""
+
+    BROKE = "fails now"
+    UNREADABLE = "can no longer be evaluated"
+    NO_LONGER_SHOWN = "no longer shown to hold"
+    FIXED = "fixed"
+    NO_LONGER_FAILS = "no longer fails, and is not shown to hold"
+    NEWLY_SHOWN = "newly shown to hold"
+    READABLE = "can be evaluated again"
+    OTHERWISE = "otherwise not shown"
+
+    @property
+    def is_loss(self) -> bool:
+        """Whether less holds than before."""
+        return self in (Change.BROKE, Change.UNREADABLE, Change.NO_LONGER_SHOWN)
+
+    @property
+    def is_gain(self) -> bool:
+        """Whether more holds than before."""
+        return self in (Change.FIXED, Change.NEWLY_SHOWN, Change.READABLE)
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A requirement that is judged otherwise in a recording; or a recording that can be judged now.
+
+    Attributes:
+        change: what kind of difference it is.
+        recording: its name in the newer file.
+        requirement: its id; empty if it is about the recording.
+        before: its verdict; `None` if it is about the recording.
+        after: likewise.
+        failures: how many attempts failed before, and how many fail now.
+        reason: why the first of these failed, or what is wrong with the recording.
+    """
+
+    change: Change
+    recording: str
+    requirement: str = ""
+    before: Verdict | None = None
+    after: Verdict | None = None
+    failures: tuple[int, int] = (0, 0)
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two files of verdicts, held against each other.
+
+    Attributes:
+        differences: of recordings and requirements that both have; losses first.
+        failing: requirements that failed in both, by recording.
+        only_before: recordings and requirements that only the older file has, in words.
+        only_after: likewise of the newer one.
+        same: how many verdicts of recordings and requirements that both have are equal.
+    """
+
+    differences: Sequence[Difference]
+    failing: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    only_before: Sequence[str] = ()
+    only_after: Sequence[str] = ()
+    same: int = 0
+
+
+@dataclass(slots=True)
+class _Run:
+    """What a file says of one recording."""
+
+    error: str = ""
+    verdicts: dict[str, list[Verdict]] = field(default_factory=dict)
+    failures: dict[str, list[str]] = field(default_factory=dict)
+
+
+def compare(before: Iterable[Kept], after: Iterable[Kept]) -> Comparison:
+    """Hold two files of verdicts against each other, by recording and requirement.
+
+    Recordings are the same that have the same name. If no name stands in both files, the folder
+    that all recordings of a file lie in is left out: the recordings were moved.
+
+    >>> old = Kept("a.csv", "R1", "R1#1", "P", "", "")
+    >>> compare([old], [old._replace(verdict="F", reason="late")]).differences[0].change.value
+    'fails now'
+    """
+    old, new = _runs(before), _runs(after)
+    if not old.keys() & new.keys():
+        old, new = _moved(old), _moved(new)
+    differences: list[Difference] = []
+    failing: dict[str, list[str]] = {}
+    both = [name for name in old if name in new]
+    only = [name for name in old if name not in new], [name for name in new if name not in old]
+    same = 0
+    for name in both:
+        was, now = old[name], new[name]
+        if was.error or now.error:
+            if not was.error:
+                differences.append(Difference(Change.UNREADABLE, name, reason=now.error))
+            elif not now.error:
+                differences.append(Difference(Change.READABLE, name))
+            continue
+        only[0].extend(f"{one} in {name}" for one in was.verdicts if one not in now.verdicts)
+        only[1].extend(f"{one} in {name}" for one in now.verdicts if one not in was.verdicts)
+        for one in [one for one in was.verdicts if one in now.verdicts]:
+            found = _difference(name, one, was, now)
+            if found is not None:
+                differences.append(found)
+                continue
+            same += 1
+            if fold(now.verdicts[one]) is Verdict.FAIL:
+                failing.setdefault(name, []).append(one)
+    order = list(Change)
+    differences.sort(key=lambda one: (order.index(one.change), one.recording, one.requirement))
+    return Comparison(differences, failing, *only, same)
+
+
+def _difference(name: str, requirement: str, was: _Run, now: _Run) -> Difference | None:
+    before, after = fold(was.verdicts[requirement]), fold(now.verdicts[requirement])
+    if before is after:
+        return None
+    failures = was.failures.get(requirement, []), now.failures.get(requirement, [])
+    counts = len(failures[0]), len(failures[1])
+    reason = (failures[1] or failures[0] or [""])[0]
+    change = _change(before, after)
+    return Difference(change, name, requirement, before, after, counts, reason)
+
+
+def _change(before: Verdict, after: Verdict) -> Change:
+    match before, after:
+        case _, Verdict.FAIL:
+            return Change.BROKE
+        case Verdict.FAIL, Verdict.PASS:
+            return Change.FIXED
+        case Verdict.FAIL, _:
+            return Change.NO_LONGER_FAILS
+        case Verdict.PASS, _:
+            return Change.NO_LONGER_SHOWN
+        case _, Verdict.PASS:
+            return Change.NEWLY_SHOWN
+        case _:
+            return Change.OTHERWISE
+
+
+def _runs(rows: Iterable[Kept]) -> dict[str, _Run]:
+    runs: dict[str, _Run] = {}
+    for row in rows:
+        run = runs.setdefault(row.recording, _Run())
+        run.error = run.error or row.error
+        if row.requirement is None or row.verdict is None:
+            continue
+        verdict = Verdict(row.verdict)
+        run.verdicts.setdefault(row.requirement, []).append(verdict)
+        if verdict is Verdict.FAIL:
+            failure = f"{row.attempt}: {row.reason}" if row.reason else str(row.attempt)
+            run.failures.setdefault(row.requirement, []).append(failure)
+    return runs
+
+
+def _moved(runs: Mapping[str, _Run]) -> dict[str, _Run]:
+    """The same without the folder that all lie in."""
+    folders = {os.path.dirname(name) for name in runs}
+    try:
+        common = os.path.commonpath(folders)
+    except ValueError:  # there are none, or some are absolute and some are not
+        return dict(runs)
+    return {os.path.relpath(name, common) if common else name: run for name, run in runs.items()}

@@ -1,0 +1,91 @@
+"""Suites that are chosen by the mutants that they kill, too."""
+
+import importlib.util
+from typing import Annotated
+
+import msgspec
+import pytest
+
+from rvmon import cdv
+from rvmon.cdv.close import Budget, close
+from rvmon.cdv.close.document import closed_document
+from rvmon.cdv.close.faults import with_mutants
+from rvmon.cdv.documents import to_json
+from rvmon.errors import RvmonError
+
+CODE = """def limited(wanted):
+    level = wanted + 1
+    if level > 8:
+        level = 8
+    return level - 1
+"""
+SPEC = """signal level : int
+requirement L1 "It goes no further"
+  always (0 <= level and level <= 7)
+cover never = level == 100
+"""
+
+
+class Wanted(cdv.Test):
+    """What the machine is asked for."""
+
+    wanted: Annotated[int, msgspec.Meta(ge=0, le=20)] = 0
+
+
+class Machine:
+    """Runs the code under test once."""
+
+    def __init__(self, path):
+        spec = importlib.util.spec_from_file_location("limited_machine", path)
+        self._module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(self._module)
+
+    def play(self, test, observer):
+        observer(0, {"level": self._module.limited(test.wanted)})
+        return cdv.Run(1)
+
+
+def asked(count, seed):
+    """A strategy that asks for 0."""
+    return [Wanted(name="asked", strategy="asked", seed=1)]
+
+
+@pytest.fixture
+def limited(tmp_path):
+    """A campaign against code that limits a level; what it covers says nothing of the limit."""
+    (tmp_path / "limited_machine.py").write_text(CODE)
+    (tmp_path / "limited.rv").write_text(SPEC)
+    path = tmp_path / "limited_machine.py"
+    return cdv.Campaign(
+        name="limited",
+        test=Wanted,
+        strategies={"asked": asked},
+        robots={"machine": cdv.Robot(lambda: Machine(path), tmp_path / "limited.rv")},
+        code=cdv.Code(cdv.blocks_of(path), branches=False),
+    )
+
+
+def test_what_the_suite_lets_live_is_killed_by_tests_that_are_added(limited):
+    """Each choice of tests kills at least as much as a smaller one, and what is held out counts."""
+    closed = close(limited, "machine", jobs=1, budget=Budget(tests=40))
+    found = with_mutants(limited, "machine", closed, 100, jobs=1)
+    trade = found.trade
+    one, two, suite, everything = trade.choices
+    assert [one.times, two.times, suite.times, everything.times] == [1, 2, None, 0]
+    assert one.killed <= two.killed < suite.killed == everything.killed <= trade.mutants
+    assert one.held_out <= suite.held_out <= everything.held_out <= trade.held_out
+    assert 0 < trade.held_out < trade.mutants
+    assert len(closed.suite) < len(found.suite) < len(closed.tests)
+    assert {one.job.test.name for one in closed.suite} < {one.job.test.name for one in found.suite}
+    assert suite.tests - two.tests == len(found.suite) - len(closed.suite)
+    assert b'"trade"' in to_json(closed_document(found))
+
+
+def test_no_code_no_mutants(limited):
+    """A campaign that measures no code is told so."""
+    from dataclasses import replace
+
+    plain = replace(limited, code=None)
+    closed = close(plain, "machine", jobs=1, budget=Budget(tests=4))
+    with pytest.raises(RvmonError, match="names no code"):
+        with_mutants(plain, "machine", closed, 10, jobs=1)

@@ -1,0 +1,295 @@
+"""What a document answers, without an editor."""
+
+import re
+from pathlib import Path
+from types import MappingProxyType
+
+import pytest
+from lsprotocol.types import Position, Range
+from pygls.uris import to_fs_path
+from tests.tools.code_pages import page
+
+from rvmon.cli.lsp.completion import hover, proposals
+from rvmon.cli.lsp.document import Document, Text
+from rvmon.cli.lsp.names import _LINES, meanings
+from rvmon.diagnostics.span import Source, Span
+from rvmon.explain.codes import every_rule, page_of
+from rvmon.spec.syntax.expected import accepted_terminals
+from rvmon.spec.syntax.parse import grammar
+from rvmon.spec.syntax.split import split_items
+from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
+
+ROOT = Path(__file__).parents[4]
+SPEC = """spec demo "😋 all kinds of names"
+signal state : {idle, moving}  output
+signal s : real [m]  input  stale after 200 ms
+event moving, pick(id: int, `well done`: bool)  input
+define soon(p, d) = within d p
+const T = 3 s
+requirement R1 "What is picked moves"
+  upon pick and state == moving and age(s) < 5 s
+  then soon(moving, T) and pick.id == v
+  let v = pick.id + 1
+  source "ISO 0000"
+coverpoint phase = state {idle, moves: moving}
+cross both = phase
+  ignore phase == idle
+"""
+
+
+def document(text, files=MappingProxyType({})):
+    """A document in a folder where these files are open as well."""
+
+    def read(path):
+        if path.name in files:
+            return files[path.name]
+        raise FileNotFoundError(2, "no such file")
+
+    return Document("file:///demo/main.rv", Text(text), read)
+
+
+def after(text, words, number=0):
+    """The position behind the first letter of a place, found by what stands there."""
+    offset = [found.start() for found in re.finditer(re.escape(words), text)][number]
+    return Text(text).position(offset + 1)
+
+
+def about(of, position):
+    """What hovering shows."""
+    found = hover(of.names, of.compiled.checked, of.place(position))
+    return (found[0].text, found[1]) if found else None
+
+
+def offered(text):
+    """What may stand at the end of a text, by what it is."""
+    of = document(SPEC)
+    place = Span(Source("main.rv", SPEC + text), len(SPEC + text), len(SPEC + text))
+    word, found = proposals(of.names, place)
+    kinds = {kind: {text for text, k in found.items() if k == kind} for kind in found.values()}
+    return word.text, kinds
+
+
+USES = {
+    ("moving, pick", 0): ["moving, pick", "moving, T"],
+    ("pick(", 0): ["pick(", "pick and", "pick.id ==", "pick.id +"],
+    ("id: int", 0): ["id: int", "id ==", "id +"],
+    ("s : real", 0): ["s : real", "s) < 5"],
+    ("T = 3", 0): ["T = 3", "T) and"],
+    ("p, d", 0): ["p, d", "p\n"],
+    ("v = pick", 0): ["v = pick", "v\n"],
+    ("phase = state", 0): ["phase = state", "phase\n", "phase == idle"],
+}
+
+
+@pytest.mark.parametrize("place", USES, ids=lambda place: place[0].split()[0])
+def test_names_are_found_where_they_mean_the_same(place):
+    """A label is no event, a unit no signal, a field its event's; from each place to all."""
+    of = document(SPEC)
+    expected = {Span(of.source, SPEC.index(words), 0).start for words in USES[place]}
+    for words in USES[place]:
+        position = after(SPEC, words)
+        found = of.key(position)
+        starts = {span.start for span in of.uses(found)}
+        assert starts == expected, words
+        (definition,) = of.definitions(position)
+        assert definition.range.start == Text(SPEC).position(SPEC.index(place[0]))
+
+
+def test_names_of_other_files():
+    """Definitions lead into files that are imported, as they are in the editor, and libraries."""
+    text = 'import "signals.rv"\nimport patterns\nrequirement R\n  bounded_response(a, b, 2 s)\n'
+    of = document(text, {"signals.rv": "# unsaved\nevent a, b\n"})
+    assert [str(place) for place in of.definitions(after(text, "a, b"))] == [
+        "file:///demo/signals.rv:1:6-1:7"
+    ]
+    (macro,) = of.definitions(after(text, "bounded"))
+    line = (
+        Path(to_fs_path(macro.uri)).read_text(encoding="utf-8").split("\n")[macro.range.start.line]
+    )
+    assert line.startswith("define bounded_response(")
+    (file,) = of.definitions(after(text, "signals"))
+    assert file.uri == "file:///demo/signals.rv"
+    assert len(of.definitions(after(text, "patterns"))) > 1
+
+
+def test_names_in_what_cannot_be_read():
+    """While an item is half written, its names lead to their declarations all the same."""
+    text = f"{SPEC}requirement R2 upon pick then (within\n"
+    of = document(text)
+    (place,) = of.definitions(after(text, "pick then"))
+    assert place.range == Text(text).range(SPEC.index("pick("), SPEC.index("pick(") + 4)
+
+
+def test_a_requirement_in_words():
+    """Over its name stands what it means, as `rvmon explain` says it, and where it comes from."""
+    word, text = about(document(SPEC), after(SPEC, "R1"))
+    assert word == "R1"
+    assert "What is picked moves" in text
+    assert "within 3 s, moving occurs" in text
+    assert "ISO 0000" in text
+
+
+def test_declarations():
+    """Over a signal stand its type, unit, role and staleness; over a captured value its clause."""
+    of = document(SPEC)
+    signal = "signal s : real [m]  input  stale after 200 ms"
+    assert about(of, after(SPEC, "s) < 5")) == ("s", f"```rv\n{signal}\n```")
+    assert about(of, after(SPEC, "v\n")) == ("v", "```rv\nlet v = pick.id + 1\n```")
+    assert about(of, after(SPEC, "s\n  then")) is None, "a unit"
+
+
+def test_words_of_the_language():
+    """Each word has a line, and it stands in the reference; longer words come before shorter."""
+    page = (ROOT / "docs" / "reference" / "language.md").read_text(encoding="utf-8")
+    flat = " ".join(page.replace(" | |", " |").split()).replace(" | ", ": ")
+    assert not [line for line in _LINES.values() if line not in flat]
+    parts = {part for word in meanings() for part in word.split()}
+    words = (RESERVED | INFIX_WORDS | CLAUSE_WORDS) - {"A", "E", "true", "false"}
+    assert words <= parts
+    word, text = about(document(SPEC), after(SPEC, "after 200"))
+    assert word == "stale after"
+    assert text == meanings()["stale after"]
+
+
+def test_nothing_is_said_about_texts_and_comments():
+    """Words of the language in a text or comment are none."""
+    text = 'event a # upon a\nrequirement R "upon a" always a\n'
+    of = document(text)
+    assert [about(of, after(text, "upon a", number)) for number in (0, 1)] == [None, None]
+
+
+def test_half_written_texts():
+    """Wherever a text ends, or something is missing from it, all questions have an answer."""
+    for cut in range(0, len(SPEC), 13):
+        for text in (SPEC[:cut], SPEC[:cut] + SPEC[cut + 9 :], f"{SPEC[:cut]}\0({SPEC[cut:]}"):
+            of = document(text)
+            place = Text(text).position(cut)
+            assert of.diagnostics.keys() == {of.uri}
+            list(of.symbols())
+            about(of, place)
+            of.definitions(place)
+            proposals(of.names, of.place(place))
+            assert all(0 <= use.start <= use.end <= len(text) for use, _ in of.names.all())
+
+
+def test_findings():
+    """A finding has its code with a page, its places, and what fixes it."""
+    text = "event a\nevent a\nconst T = 3 s\nrequirement R upon a then within 2 s a\n"
+    of = document(text)
+    (double,) = of.diagnostics[of.uri]
+    assert (double.code, str(double.range)) == ("RV011", "1:6-1:7")
+    assert double.message == "name `a` is declared twice\nhelp: rename one of them"
+    ((first, said),) = [(r.location, r.message) for r in double.related_information]
+    assert (str(first), said) == (f"{of.uri}:0:6-0:7", "first here")
+    page = Path(to_fs_path(double.code_description.href)).read_text(encoding="utf-8")
+    assert page == page_of("RV011")
+    (unused,) = document(text.replace("event a\n", "", 1)).diagnostics[of.uri]
+    assert unused.tags, "what is not needed is shown so"
+
+
+def test_findings_of_other_files():
+    """What is wrong in an imported file is reported of that file."""
+    of = document('import "a.rv"\nrequirement R always p\n', {"a.rv": "signal p : boo\n"})
+    assert [(uri, len(found)) for uri, found in of.diagnostics.items()] == [
+        (of.uri, 0),
+        ("file:///demo/a.rv", 1),
+    ]
+
+
+FIXED = {"RV012", "RV013", "RV014", "RV023", "RV030", "RV032", "RV045", "RV052"}
+
+
+def test_fixes_mend():
+    """Where a fix is offered, what was found is gone with it; the usual slips have one."""
+    mended = set()
+    for code in every_rule():
+        example = page(code).example
+        of = document(example)
+        everywhere = Range(Position(0, 0), Position(999, 0))
+        for fix in of.fixes(everywhere) if len(of.compiled.findings) < 9 else ():
+            ((edit,),) = fix.edit.changes.values()
+            start, end = of.text.offset(edit.range.start), of.text.offset(edit.range.end)
+            better = document(example[:start] + edit.new_text + example[end:])
+            (shown,) = fix.diagnostics
+            wrong = [found.code for found in of.compiled.findings]
+            assert [found.code for found in better.compiled.findings].count(shown.code) < (
+                wrong.count(shown.code)
+            )
+            mended.add(code)
+    assert mended == FIXED
+    sign = "event a, b\nrequirement R a → b\n"
+    assert [fix.title for fix in document(sign).fixes(everywhere)] == ["Write `->`"]
+
+
+def test_no_fix_that_makes_things_worse():
+    """What a help proposes is not offered if the compiler is no happier with it."""
+    text = "signal d : real [kgg]\nrequirement R always d < 5,3 kg\n"
+    everywhere = Range(Position(0, 0), Position(9, 0))
+    assert "did you mean `kg`" in document(text).compiled.findings[0].help
+    assert not list(document(text).fixes(everywhere))
+
+
+def test_outline():
+    """The outline lists declarations and requirements with their texts, half-written ones too."""
+    text = f'{SPEC}requirement R2 "later" upon\n'
+    names = {symbol.name: symbol.detail for symbol in document(text).symbols()}
+    assert list(names) == ["state", "s", "moving", "pick", "soon", "T", "R1", "phase", "both", "R2"]
+    assert (names["R1"], names["s"]) == ("What is picked moves", "real [m]")
+    assert names["R2"] == "cannot be read"
+    for symbol in document(text).symbols():
+        assert symbol.range.start <= symbol.selection_range.start
+        assert symbol.selection_range.end <= symbol.range.end
+
+
+OFFERED = {
+    "requirement R\n  upon pi": (
+        "pi",
+        {"name": {"pick", "pick.id", "s"}, "function": {"soon(", "age("}},
+    ),
+    "requirement R upon pick then within ": ("", {"name": {"T"}}),
+    "requirement R upon pick then within 5 m": ("m", {"unit": {"ms", "min"}}),
+    "requirement R always s < 5 c": ("c", {"unit": {"cm", "kg"}, "keyword": {"and", "until"}}),
+    "requirement R always state == mo": ("mo", {"label": {"idle", "moving"}}),
+    "requirement R always s > 3 m\n  at": ("at", {"keyword": {"at end", "source", "requirement"}}),
+    "requirement R always s > 3 m\n  at end: ": ("", {"keyword": {"strict", "fail"}}),
+    "signal x : ": ("", {"keyword": {"bool", "int", "real"}}),
+    "signal x : real [": ("", {"unit": {"m", "W"}}),
+    "signal x : real [m] ": ("", {"keyword": {"input", "ignore NaN", "stale after"}}),
+    "cross c = ": ("", {"name": {"phase"}}),
+    "define f(u, w) = ": ("", {"name": {"u", "w"}}),
+}
+
+
+@pytest.mark.parametrize("text", OFFERED)
+def test_what_is_offered(text):
+    """Names, labels, units and words are offered where they may stand."""
+    word, expected = OFFERED[text]
+    begun, kinds = offered(text)
+    assert begun == word
+    for kind, some in expected.items():
+        assert some <= kinds[kind], kinds
+
+
+def test_what_is_not_offered():
+    """No words in comments, texts and new names; no length as a duration; labels alone by `==`."""
+    assert [offered(t)[1] for t in ("signal ", "requirement R # no", 'requirement R "no')] == [
+        {}
+    ] * 3
+    assert "mm" not in offered("requirement R upon pick then within 5 m")[1]["unit"]
+    assert offered("requirement R always state == ")[1].keys() == {"label"}
+    assert "requirement" not in offered("requirement R always s > ")[1]["keyword"]
+
+
+@pytest.mark.parametrize("cut", range(0, len(SPEC), 17))
+def test_words_that_are_offered_can_stand_there(cut):
+    """By the grammar the text goes on with each word that is offered, or a new item starts."""
+    text = SPEC[:cut]
+    begun, found = proposals(document(SPEC).names, Span(Source("main.rv", text), cut, cut))
+    before = text[: begun.start]
+    start = split_items(before)[-1][0] if split_items(before) else 0
+    if not accepted_terminals(grammar(), before[start:], "item")[1]:
+        return
+    for word in (word for word, kind in found.items() if kind == "keyword"):
+        whole = f"{before}{word} "
+        start = split_items(whole)[-1][0]
+        assert accepted_terminals(grammar(), whole[start:], "item")[1], word

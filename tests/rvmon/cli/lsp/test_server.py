@@ -1,0 +1,233 @@
+"""`rvmon lsp` as editors use it: a process that is talked to by the protocol."""
+
+import asyncio
+import json
+import re
+import signal
+import subprocess
+import sys
+from contextlib import asynccontextmanager
+
+import pytest
+import pytest_lsp
+from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
+
+from rvmon.cli import main
+
+pytestmark = pytest.mark.process
+
+COMMAND = (sys.executable, "-m", "rvmon", "lsp", "--stdio")
+MAIN = """spec main "😋"\r
+import "signals.rv"\r
+requirement R "😋" upon ask then within 3 s anser\r
+"""
+LAID_OUT = """spec door "😋"
+signal d : real [m]
+
+requirement R
+  always d < 5 cm
+"""
+
+
+class Editor:
+    """An editor with its documents."""
+
+    def __init__(self, client, folder):
+        self.client = client
+        self.folder = folder
+        self._version = 0
+
+    def document(self, name):
+        """What requests call a document."""
+        return lsp.TextDocumentIdentifier((self.folder / name).as_uri())
+
+    async def notified(self):
+        """Wait for the next findings."""
+        method = lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
+        return await asyncio.wait_for(self.client.wait_for_notification(method), 60)
+
+    async def open(self, name, text):
+        """Open a document, and give what was found in it, each by code and place."""
+        item = lsp.TextDocumentItem(self.document(name).uri, "rv", 1, text)
+        self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
+        while item.uri not in self.client.diagnostics:
+            await self.notified()
+        return self.found(name)
+
+    def type(self, name, line, start, end, text):
+        """Put a text in place of some columns."""
+        self._version += 1
+        where = lsp.Range(lsp.Position(line, start), lsp.Position(line, end))
+        document = lsp.VersionedTextDocumentIdentifier(self._version, self.document(name).uri)
+        change = lsp.TextDocumentContentChangePartial(where, text)
+        self.client.text_document_did_change(lsp.DidChangeTextDocumentParams(document, [change]))
+
+    def found(self, name):
+        """What was last found in a document."""
+        found = self.client.diagnostics[self.document(name).uri]
+        return [(one.code, str(one.range)) for one in found]
+
+
+@asynccontextmanager
+async def editor(folder, encodings=None):
+    """An editor that is connected to the server, and leaves it as it should be left."""
+    client = pytest_lsp.make_test_lsp_client()
+    await client.start_io(*COMMAND)
+    capabilities = pytest_lsp.client_capabilities("visual-studio-code")
+    capabilities.general.position_encodings = encodings
+    await client.initialize_session(lsp.InitializeParams(capabilities=capabilities))
+    yield Editor(client, folder)
+    await client.shutdown_session()
+    assert client._server.returncode == 0
+    assert not client.messages, "no error was shown"
+    await client.stop()
+
+
+def test_a_session(tmp_path):
+    """Findings follow edits in this and in imported files; questions have their answers."""
+
+    async def session():
+        async with editor(tmp_path) as of:
+            assert await of.open("signals.rv", "event ask\n") == []
+            assert await of.open("main.rv", MAIN) == [("RV012", "2:44-2:49")]
+            of.type("signals.rv", 0, 9, 9, ", answer")
+            await of.notified()
+            document = of.document("main.rv")
+            at = lsp.Position(2, 45)
+            context = lsp.CodeActionContext([])
+            (fix,) = await of.client.text_document_code_action_async(
+                lsp.CodeActionParams(document, lsp.Range(at, at), context)
+            )
+            ((edit,),) = fix.edit.changes.values()
+            assert (str(edit.range), edit.new_text) == ("2:44-2:49", "answer")
+            for number, letter in enumerate("answer"):
+                place = 44 + number
+                of.type("main.rv", 2, place, place if number else 49, letter)
+            while of.found("main.rv"):
+                await of.notified()
+            shown = await of.client.text_document_hover_async(
+                lsp.HoverParams(document, lsp.Position(2, 12))
+            )
+            assert "within 3 s, answer occurs" in shown.contents.value
+            (place,) = await of.client.text_document_definition_async(
+                lsp.DefinitionParams(document, at)
+            )
+            assert (place.uri, str(place.range)) == (of.document("signals.rv").uri, "0:11-0:17")
+            uses = await of.client.text_document_references_async(
+                lsp.ReferenceParams(lsp.ReferenceContext(True), document, at)
+            )
+            assert sorted(str(use.range) for use in uses) == ["0:11-0:17", "2:44-2:50"]
+            made = await of.client.text_document_rename_async(lsp.RenameParams(document, at, "for"))
+            assert {
+                uri: [(str(edit.range), edit.new_text) for edit in edits]
+                for uri, edits in made.changes.items()
+            } == {
+                of.document("signals.rv").uri: [("0:11-0:17", "`for`")],
+                document.uri: [("2:44-2:50", "`for`")],
+            }
+            for name, why in (("ask", "there is a `ask` already"), ("a\nb", "cannot be written")):
+                with pytest.raises(JsonRpcException, match=why):
+                    await of.client.text_document_rename_async(lsp.RenameParams(document, at, name))
+            offered = await of.client.text_document_completion_async(
+                lsp.CompletionParams(document, lsp.Position(2, 24))
+            )
+            assert {one.label: str(one.text_edit.range) for one in offered}["ask"]
+            outline = await of.client.text_document_document_symbol_async(
+                lsp.DocumentSymbolParams(document)
+            )
+            assert [(one.name, one.detail) for one in outline] == [("R", "😋")]
+            of.client.text_document_did_close(lsp.DidCloseTextDocumentParams(document))
+            await of.notified()
+            assert of.client.diagnostics[document.uri] in ([], ())
+
+    asyncio.run(session())
+
+
+def test_layout_and_another_encoding(tmp_path):
+    """Positions are counted as the editor wants; layout is that of `rvmon format`; saves count."""
+
+    async def session():
+        async with editor(tmp_path, [lsp.PositionEncodingKind.Utf8]) as of:
+            assert await of.open("a.rv", 'spec door "😋"  signal\r\n') == [("RV001", "0:18-0:24")]
+            layout = lsp.DocumentFormattingParams(
+                of.document("a.rv"), lsp.FormattingOptions(2, True)
+            )
+            assert not await of.client.text_document_formatting_async(layout), "cannot be read"
+            lines = LAID_OUT.split("\n", 1)[1].replace("\n\n", "\n").replace("  ", " ")
+            of.type("a.rv", 0, 16, 24, "\r\n" + lines.replace("\n", "\r\n"))
+            (edit,) = await of.client.text_document_formatting_async(layout)
+            assert edit.new_text == LAID_OUT.replace("\n", "\r\n")
+            (tmp_path / "b.rv").write_text("event ask\n", encoding="utf-8")
+            text = 'import "b.rv"\nrequirement R upon ask then within 3 s ask\n'
+            assert await of.open("c.rv", text) == []
+            (tmp_path / "b.rv").write_text("event asked\n", encoding="utf-8")
+            saved = lsp.DidSaveTextDocumentParams(of.document("c.rv"))
+            of.client.text_document_did_save(saved)
+            while not of.found("c.rv"):
+                await of.notified()
+
+    asyncio.run(session())
+
+
+@pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGINT, None])
+def test_the_end_of_the_editor(ending):
+    """It ends at once when the editor does, or when it is stopped."""
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen(COMMAND, **pipes) as server:  # noqa: S603 - ours
+        body = b'{"jsonrpc":"2.0","id":1,"method":"shutdown"}'
+        server.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
+        server.stdin.flush()
+        assert server.stdout.readline().startswith(b"Content-Length"), "it listens"
+        if ending is None:
+            server.stdin.close()
+        else:
+            server.send_signal(ending)
+        assert server.wait(30) == (0 if ending is None else 130)
+
+
+def test_without_pygls(monkeypatch, capsys):
+    """Where the extra is missing its line of installation is named."""
+    monkeypatch.setitem(sys.modules, "pygls.lsp.server", None)
+    monkeypatch.delitem(sys.modules, "rvmon.cli.lsp.server", raising=False)
+    assert main(["lsp"]) == 2
+    assert "pip install 'rvmon[lsp]'" in capsys.readouterr().err
+
+
+MALFORMED = {
+    "{nope": (None, -32700),
+    "[" * 100_000: (None, -32700),
+    "[]": (None, -32600),
+    "null": (None, -32600),
+    '{"id": 7, "method": "shutdown"}': (7, -32600),
+    '{"jsonrpc": "2.0", "id": 7}': (7, -32600),
+    '{"jsonrpc": "2.0", "id": {"a": 1}, "method": "shutdown"}': (None, -32600),
+    '{"jsonrpc": "2.0", "id": 7, "method": "textDocument/hover", "params": [1]}': (7, -32602),
+    '{"jsonrpc": "2.0", "id": 7, "method": "textDocument/hover", "params": {"textDocument": '
+    '{"uri": "file:///x.rv"}, "position": {"line": 0, "character": 0}}}': (7, -32602),
+    '{"jsonrpc": "2.0", "id": 7, "method": "unknown/request"}': (7, -32601),
+    '{"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"x": 1}}': None,
+    '{"jsonrpc": "2.0", "method": "textDocument/didSave", "params": {"textDocument": '
+    '{"uri": "file:///x.rv"}}}': None,
+    '{"jsonrpc": "2.0", "id": 99, "result": null}': None,
+}
+
+
+def test_malformed_messages_are_answered_or_skipped():
+    """Each gets the error of the protocol, or nothing; what follows is served as ever."""
+    texts = [
+        '{"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": '
+        '{"processId": null, "rootUri": null, "capabilities": {}}}',
+        *MALFORMED,
+        '{"jsonrpc": "2.0", "id": 50, "method": "shutdown"}',
+        '{"jsonrpc": "2.0", "method": "exit"}',
+    ]
+    sent = "".join(f"Content-Length: {len(text)}\r\n\r\n{text}" for text in texts)
+    done = subprocess.run(COMMAND, input=sent.encode(), capture_output=True, timeout=60)  # noqa: S603
+    bodies = re.split(r"Content-Length: \d+\r\n(?:Content-Type: .*\r\n)?\r\n", done.stdout.decode())
+    told = [json.loads(body) for body in bodies[1:]]
+    answers = [(one["id"], one["error"]["code"]) for one in told if "error" in one]
+    assert answers == [answer for answer in MALFORMED.values() if answer]
+    assert [one["id"] for one in told if "error" not in one] == [1, 50]
+    assert b"Traceback" not in done.stderr
+    assert done.returncode == 0

@@ -1,0 +1,91 @@
+"""`rvmon look`: every name of a recording over time, as text and as a page."""
+
+import math
+
+import pytest
+from tests.tools.logs import write_ulog
+
+from rvmon.cli import main
+from rvmon.starter.course import MOST, Course
+
+SPEC = """
+spec base
+signal speed : real [m/s]
+signal never : bool
+event stop
+
+requirement R1 "Slow"
+  always speed < 3 m/s
+requirement R2 "Stops"
+  upon stop
+  then within 1 s (speed < 1 m/s or never)
+"""
+
+
+@pytest.fixture
+def recording(tmp_path):
+    rows = ["t,speed [m/s],mode,armed,limit,stop"]
+    for tick in range(400):
+        speed = f"{2 + math.sin(tick / 40):.3f}" if not 100 <= tick < 200 else ""
+        mode = "idle" if tick < 250 else "busy"
+        rows.append(f"{tick / 10},{speed},{mode},{tick % 2},7,{int(tick in (20, 300))}")
+    (tmp_path / "base.csv").write_text("\n".join([*rows, ""]))
+    (tmp_path / "base.rv").write_text(SPEC)
+    return tmp_path
+
+
+def test_each_name_has_its_kind_rate_gap_and_values(recording, capsys):
+    assert main(["look", str(recording / "base.csv")]) == 0
+    told = capsys.readouterr().out
+    lines = {line.split()[0]: line for line in told.splitlines() if line.split()}
+    assert "400 samples in 39.9 s" in told.replace("\n", "")
+    assert "real [m/s]" in lines["speed"]
+    assert "gap 10.1 s" in lines["speed"]
+    assert "idle, busy" in lines["mode"]
+    assert "false and true" in lines["armed"]
+    assert "always 7" in lines["limit"]
+    assert "2 times" in lines["stop"]
+    drawn = lines["speed"].split("s", 3)[-1]
+    assert "█" in drawn
+    assert "  " in drawn.strip()
+
+
+def test_with_a_specification_what_feeds_its_requirements_comes_first(recording, capsys):
+    """Under each; what nothing feeds is told."""
+    words = [str(recording / "base.csv"), str(recording / "base.rv")]
+    assert main(["look", *words]) == 0
+    told = capsys.readouterr().out
+    assert told.index("R1  Slow") < told.index("real [m/s]") < told.index("R2  Stops")
+    assert "left out: never: nothing feeds it" in told
+
+
+def test_a_page_holds_each_name_and_nothing_of_it_is_markup(recording, capsys):
+    path = recording / "base.csv"
+    path.write_text(path.read_text().replace("mode", "<b>mode"))
+    assert main(["look", str(path), "-o", str(recording / "look.html")]) == 0
+    text = (recording / "look.html").read_text()
+    assert "wrote" in "".join(capsys.readouterr())
+    assert "&lt;b&gt;mode" in text
+    assert "<b>mode" not in text
+    assert text.count('class="course"') >= 3  # `speed` in two parts, `armed`
+    assert text.count('class="event"') == 2
+
+
+def test_what_a_log_lost_is_told_and_shaded(tmp_path, capsys):
+    pytest.importorskip("pyulog")
+    rows = [(t, t / 1e6, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    path = write_ulog(tmp_path / "a.ulg", rows, drops=[(100, 30)])
+    assert main(["look", str(path)]) == 0
+    assert "lost: everything from 1.100000001 s: the logger dropped" in capsys.readouterr().out
+    assert main(["look", str(path), "-o", str(tmp_path / "a.html")]) == 0
+    assert 'class="lost"' in (tmp_path / "a.html").read_text()
+
+
+def test_a_course_is_bounded_and_loses_no_peak():
+    course = Course(0)
+    for t in range(0, 10**9, 10**6):
+        course.note(t, 9.0 if t == 123 * 10**6 else 1.0)
+    stretches = course.until(10**9)
+    assert len(stretches) <= MOST
+    assert sum(one.updates for one in stretches) == 1000
+    assert max(one.high for one in stretches if one.high is not None) == 9.0

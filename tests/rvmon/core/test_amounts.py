@@ -1,0 +1,156 @@
+"""Counts, durations, extremes and functions in the core: of practice, and beside the oracle."""
+
+import pytest
+from tests.tools.differential import campaign_of
+from tests.tools.forms import Compiler, Maker
+
+import rvmon
+from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
+
+
+def ticks(form):
+    """Samples at whole seconds, one a letter."""
+    return [(float(t), one) for t, one in enumerate(form)]
+
+
+BEATS = [{"beat": {"ms": ms}} for ms in (900, 400, 400, 900, 400, 400, 400, 900)]
+STILL = [{"north": 47.0, "east": 8.0}] * 3
+
+CASES = {
+    "the glucose of a pump is between two levels for 70 % of the day": (
+        "signal g : real",
+        "upon end then immediately share(g >= 70 and g <= 180, 10 s) >= 70 %",
+        ticks([{"g": 60}, {}, {}, *[{"g": 100}] * 8]),
+        ticks([{"g": 60}, {}, {}, {}, *[{"g": 100}] * 7]),
+    ),
+    "a burner leaks for at most 4 s of any 60 s": (
+        "signal leak : bool",
+        "always duration(leak, 60 s) <= 4 s",
+        [(0.0, {"leak": False}), (10.0, {"leak": True}), (14.0, {"leak": False})],
+        [(0.0, {"leak": False}), (10.0, {"leak": True}), (14.1, {"leak": False})],
+    ),
+    "there are five fixes in each second": (
+        "event fix, begun",
+        "whenever held(not begun, 1 s) then count(fix, 1 s) >= 5",
+        [(n / 5, {"fix": True, "begun": n == 0}) for n in range(20)],
+        [(n / 5, {"fix": n != 9 and n != 10, "begun": n == 0}) for n in range(20)],
+    ),
+    "five failed logins of one user in a minute lock the account": (
+        "event failed(user: int), locked(user: int)",
+        "upon failed.user == u and count(failed.user == u, 1 min) >= 3 then "
+        "within 2 s locked.user == u for each u in failed.user",
+        ticks(
+            [
+                {"failed": {"user": 1}},
+                {"failed": {"user": 2}},
+                {"failed": {"user": 1}},
+                {"failed": {"user": 1}},
+                {"locked": {"user": 1}},
+                {},
+                {},
+            ]
+        ),
+        ticks(
+            [
+                {"failed": {"user": 1}},
+                {"failed": {"user": 2}},
+                {"failed": {"user": 1}},
+                {"failed": {"user": 1}},
+                {"locked": {"user": 2}},
+                {},
+                {},
+            ]
+        ),
+    ),
+    "five fast beats in eight seconds switch the mode": (
+        "event beat(ms: int), switched",
+        "upon beat and count(beat.ms < 500, 8 s) >= 5 then immediately switched",
+        ticks([*BEATS[:6], {**BEATS[6], "switched": True}]),
+        ticks(BEATS),
+    ),
+    "a temperature stays within 3 degrees of what it was over a minute": (
+        "signal c : real",
+        "always not (max(c, 60 s) > 23 and min(c, 60 s) < 20)",
+        [(0.0, {"c": 19}), (30.0, {"c": 21}), (91.0, {"c": 24})],
+        [(0.0, {"c": 19}), (30.0, {"c": 21}), (89.0, {"c": 24})],
+    ),
+    "the rotation of a frame is that of its angle": (
+        "signal yaw : real [deg]\nsignal m : real",
+        "always abs(m - cos(yaw)) <= 1e-6",
+        ticks([{"yaw": 60.0, "m": 0.5}]),
+        ticks([{"yaw": 60.0, "m": 0.6}]),
+    ),
+    "a drone stays near where it took off": (
+        "signal north, east : real [deg]",
+        "always distance_on_earth(north, east, 47 deg, 8 deg) <= 200 m",
+        ticks([*STILL, {"north": 47.0017, "east": 8.0}]),
+        ticks([*STILL, {"north": 47.0019, "east": 8.0}]),
+    ),
+    "the level of two sources of noise is at most 85 dB": (
+        "signal p, q : real",
+        "always 10 * log10(pow(10, p / 10) + pow(10, q / 10)) <= 85",
+        ticks([{"p": 80.0, "q": 81.0}]),
+        ticks([{"p": 84.0, "q": 81.0}]),
+    ),
+    "a status word says that nothing is armed": (
+        "signal status : int",
+        "always (not bit(status, 7) and bit_and(status, 3) != 3)",
+        ticks([{"status": 0b01100010}]),
+        ticks([{"status": 0b11100010}]),
+    ),
+    "a robot turns by at most 30 degrees from one pose to the next": (
+        "signal yaw : real [deg]",
+        "always abs(angle_between(prev(yaw), yaw)) <= 30 deg",
+        ticks([{"yaw": 340.0}, {"yaw": 5.0}, {"yaw": 350.0}]),
+        ticks([{"yaw": 340.0}, {"yaw": 15.0}]),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_requirements_of_practice(name):
+    """Each passes on one recording and fails on one that is a little off."""
+    head, body, good, bad = CASES[name]
+    spec = rvmon.loads(f"spec s\n{head}\nrequirement R\n  {body}\n")
+    assert [spec.evaluate(trace).verdicts["R"].value for trace in (good, bad)] == ["P", "F"]
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", TimeModel)
+def test_amounts_are_those_of_the_oracle(time):
+    """With losses and outages, step by step and by rows."""
+    seeds = [f"amounts/{time.name}/{number}" for number in range(60)]
+    profile, traces = Profile(time=time, amounts=100), TraceProfile(outages=20)
+    compiler = Compiler()
+    makers = {form: Maker(form, compiler) for form in ("c", "c rows")}
+    found = campaign_of(makers, seeds, profile, traces, each=4, online_every=4)
+    assert not found.disagreements, found.disagreements[0]
+    assert [(one.pairs, one.refused) for one in found.tallies.values()] == [(240, 0)] * 2
+
+
+def test_an_amount_is_due_between_samples():
+    """The tick at which a duration crosses its bound is a deadline."""
+    spec = rvmon.loads(
+        "spec s\nsignal a : bool\nrequirement R\n  always duration(a, 10 s) <= 4 s\n"
+    )
+    monitor = spec.monitor()
+    monitor.step(0.0, {"a": True})
+    assert monitor.next_due == 4_000_000_001
+    (failed,) = monitor.advance(5.0)
+    assert failed.decided == 4_000_000_001
+
+
+def test_a_loss_leaves_open_what_it_may_have_held():
+    """An amount is known where what was lost does not matter."""
+    spec = rvmon.loads("spec s\nevent e\nrequirement R\n  always count(e, 10 s) < 3\n")
+    monitor = spec.monitor()
+    monitor.step(0.0, {"e": True})
+    monitor.step(1.0, {"e": None})
+    monitor.step(2.0, {"e": True})
+    assert monitor.finish(20.0).verdicts["R"].value == "I"
+    monitor = spec.monitor()
+    monitor.step(0.0, {"e": True})
+    monitor.step(1.0, {"e": None})
+    assert monitor.finish(20.0).verdicts["R"].value == "P"

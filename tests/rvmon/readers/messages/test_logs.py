@@ -1,0 +1,225 @@
+"""Logs of vehicles and measurements: the records of CSV, and never green where they are damaged."""
+
+import random
+
+import pytest
+from tests.tools.logs import (
+    write_can,
+    write_csv,
+    write_dataflash,
+    write_hdf5,
+    write_mat,
+    write_mdf,
+    write_tlog,
+    write_ulog,
+)
+
+import rvmon
+from rvmon.cli import main
+from rvmon.errors import TraceError
+from rvmon.readers.recording import messages_of
+
+FORMS = {
+    "a.ulg": (write_ulog, "drive", "pyulog"),
+    "a.bin": (write_dataflash, "DRV", "pymavlink"),
+    "a.tlog": (write_tlog, "VFR_HUD", "pymavlink"),
+    "a.asc": (write_can, "Drive", "can"),
+    "a.blf": (write_can, "Drive", "can"),
+    "a.log": (write_can, "Drive", "can"),
+    "a.mf4": (write_mdf, "drive", "asammdf"),
+    "a.h5": (write_hdf5, "drive", "h5py"),
+    "a.mat": (write_mat, "drive", "scipy"),
+}
+"""By the name of a recording what writes it, what its topic is called, what reads it."""
+
+OF_ALL, OF_CAN = (1, 1_003, 10_000), (15_625, 31_250)
+"""Microseconds between messages; logs of CAN count from their start, and BLF drops fractions."""
+
+SPEC = """
+spec drive
+signal {0}.speed : real [m/s]
+signal {0}.mode : int
+
+requirement R1
+  always {0}.speed < 1.25 m/s
+requirement R2
+  upon {0}.mode == 3
+  then within 20 ms {0}.speed < 0.5 m/s
+requirement R3
+  upon {0}.mode == 1
+  then for 5 ms {0}.mode != 2
+"""
+
+
+def rows_at_random(seed, count=150, steps=OF_ALL):
+    """Numbers that a float of 32 bits holds, at stamps that doubles of seconds hold."""
+    rng = random.Random(seed)
+    t, rows = 1_000_000, []
+    for _ in range(count):
+        t += rng.choice(steps)
+        rows.append((t, rng.choice([0.0, 0.25, 1.0, 1.125, 1.5]), rng.randrange(5)))
+    return rows
+
+
+def written(folder, name, rows):
+    """A recording, and the specification that reads it."""
+    write, topic, package = FORMS[name]
+    pytest.importorskip(package)
+    folder.mkdir(exist_ok=True)
+    path = write(folder / name, rows)
+    return path, topic
+
+
+def spec_of(topic, name):
+    """The specification; the fields of telemetry are those of the dialect."""
+    spec = rvmon.loads(SPEC.format(topic))
+    if name != "a.tlog":
+        return spec
+    return spec.reading(
+        columns={f"{topic}.speed": f"/{topic}.airspeed", f"{topic}.mode": f"/{topic}.throttle"}
+    )
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_a_log_gives_the_records_that_csv_gives(tmp_path, name):
+    verdicts = set()
+    for seed in range(4):
+        rows = rows_at_random(seed, steps=OF_CAN if name in ("a.asc", "a.blf") else OF_ALL)
+        path, topic = written(tmp_path / str(seed), name, rows)
+        first = next(messages_of(str(path)).read({f"/{topic}"}))[1] // 1_000 - rows[0][0]
+        rows = [(t + first, speed, mode) for t, speed, mode in rows]
+        table = write_csv(tmp_path / f"{seed}.csv", rows, topic)
+        spec, plain = spec_of(topic, name), rvmon.loads(SPEC.format(topic))
+        found, expected = spec.evaluate(path), plain.evaluate(table)
+        assert found.attempts == expected.attempts
+        assert (found.verdicts, found.end) == (expected.verdicts, expected.end)
+        verdicts |= {str(attempt.verdict) for attempt in found.attempts}
+    assert {"P", "F"} <= verdicts
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_what_is_cut_off_is_never_green(tmp_path, name):
+    """Wherever it is cut: an error, or no requirement that goes on for ever is fulfilled."""
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    path, topic = written(tmp_path / "a", name, rows)
+    spec, data = spec_of(topic, name), path.read_bytes()
+    assert spec.evaluate(path).verdicts["R1"] == "P"
+    rng, judged = random.Random(1), 0
+    for _ in range(25):
+        path.write_bytes(data[: rng.randrange(1, len(data))])
+        try:
+            report = spec.evaluate(path)
+        except TraceError:
+            continue
+        judged += 1
+        assert report.verdicts["R1"] == "I" or is_whole(path.read_bytes(), data, name, len(rows))
+    assert judged or name in ("a.mf4", "a.h5", "a.mat", "a.blf")
+
+
+def is_whole(cut, data, name, count):
+    """Whether it was cut just between two messages, which nothing in such a log can tell."""
+    if name in ("a.asc", "a.log"):
+        return cut.endswith(b"\n")
+    size = {"a.ulg": 18, "a.bin": 16, "a.tlog": len(data) // count}[name]
+    return (len(data) - len(cut)) % size == 0
+
+
+@pytest.mark.parametrize("name", ["a.bin", "a.tlog"])
+def test_what_is_damaged_in_the_middle_is_an_outage(tmp_path, name):
+    """It says at which byte; what was required meanwhile is open, and what failed has failed."""
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    path, topic = written(tmp_path / "a", name, rows)
+    spec, data = spec_of(topic, name), bytearray(path.read_bytes())
+    middle = len(data) // 2
+    data[middle : middle + 40] = bytes(40)
+    path.write_bytes(data)
+    report = spec.evaluate(path)
+    assert report.verdicts["R1"] == "I"
+    assert any(
+        "no message at byte" in one.remark or "no packet" in one.remark for one in report.health
+    )
+    rows[3] = (rows[3][0], 7.0, 0)
+    data[: len(path.read_bytes())] = written(tmp_path / "a", name, rows)[0].read_bytes()
+    data[middle : middle + 40] = bytes(40)
+    path.write_bytes(data)
+    assert spec.evaluate(path).verdicts["R1"] == "F"
+
+
+def test_what_the_logger_dropped_is_an_outage(tmp_path):
+    """Of PX4: behind the message, for as long as the log says; also of robustness."""
+    pytest.importorskip("pyulog")
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    spec = spec_of("drive", "a.ulg")
+    path = write_ulog(tmp_path / "a.ulg", rows, drops=[(100, 30)])
+    report = spec.evaluate(path)
+    assert report.verdicts["R1"] == "I"
+    [found] = [one for one in report.health if one.remark == "the logger dropped messages"]
+    assert found.first == 1_100_000_001
+    assert spec.robustness(path).attempts
+
+
+def test_messages_without_a_stamp_are_lost_and_those_of_other_topics_are_not(tmp_path):
+    pytest.importorskip("pyulog")
+    path = write_ulog(tmp_path / "a.ulg", [(1_000_000, 0.0, 0), (0, 9.0, 0), (1_001_000, 0.0, 0)])
+    report = spec_of("drive", "a.ulg").evaluate(path)
+    assert any(one.remark == "messages have no stamp" for one in report.health)
+    assert report.verdicts["R1"] == "I"
+
+
+def test_units_that_a_log_says_are_compared(tmp_path):
+    """`speed` is in m/s in the database; an angle is no speed, and km/h is another unit."""
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", rows_at_random(1))
+    for unit, why in (("rad", "is in [m/s]"), ("km/h", "judged as it is")):
+        text = "spec s\nsignal Drive.speed : real [{0}]\nrequirement R\n always Drive.speed < 1 {0}"
+        spec = rvmon.loads(text.format(unit))
+        with pytest.raises(TraceError, match=r"Drive\.speed") as caught:
+            spec.evaluate(path)
+        assert why in str(caught.value)
+
+
+def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", rows_at_random(1))
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    (tmp_path / "car.dbc").rename(folder / "car.dbc")
+    spec = spec_of("Drive", "a.asc")
+    with pytest.raises(TraceError, match=r"put the database \(\.dbc\) beside it"):
+        spec.evaluate(path)
+    (tmp_path / "b.toml").write_text('definitions = ["elsewhere/car.dbc"]\n')
+    assert spec.evaluate(path, binding=tmp_path / "b.toml").attempts
+
+
+def test_states_have_their_names_and_named_values_of_a_number_are_unknown(tmp_path):
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", [(1_000_000, 0.5, 1), (1_001_000, 0.25, 7)])
+    text = (tmp_path / "car.dbc").read_text()
+    (tmp_path / "car.dbc").write_text(text + 'VAL_ 100 mode 0 "idle" 1 "busy" ;\n')
+    content = [dict(one) for _, _, one in messages_of(str(path)).read({"/Drive"})]
+    assert [one["mode"] for one in content] == ["busy", "7"]
+    (tmp_path / "car.dbc").write_text(
+        text.replace('255] ""', '255] "m"') + 'VAL_ 100 mode 7 "none" ;\n'
+    )
+    content = [dict(one) for _, _, one in messages_of(str(path)).read({"/Drive"})]
+    assert [one["mode"] for one in content] == [1, None]
+
+
+def test_the_stamps_of_arrays_can_be_named(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file["data/when"] = [0, 10, 20]
+        file["data/speed"] = [1.0, 2.0, 3.0]
+    spec = rvmon.loads("spec s\nsignal data.speed : real\nrequirement R\n always data.speed < 3")
+    with pytest.raises(TraceError, match="no array is called as stamps are"):
+        spec.evaluate(path)
+    assert spec.evaluate(path, time="data/when:ms").attempts[0].decided == 20_000_000
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_first_specifications_are_made_of_it_and_pass(tmp_path, monkeypatch, name):
+    path, _ = written(tmp_path / "a", name, rows_at_random(3))
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", str(path), "-o", "mine.rv"]) == 0
+    assert main(["run", "mine.rv", str(path)]) == 0

@@ -1,0 +1,42 @@
+"""Random texts by the grammar: they can be read, are varied, and layout keeps what they say."""
+
+import random
+
+import pytest
+from tests.rvmon.spec.generate_text import HEAD, random_text, syntax_of
+
+from rvmon.spec.print.format_words import pieces_of
+from rvmon.spec.print.formatter import format_text
+from rvmon.spec.syntax.parse import grammar
+
+
+@pytest.mark.slow
+def test_most_texts_can_be_read_and_all_words_occur():
+    """What the grammar makes the parser reads, but for what has to be bracketed."""
+    made = [random_text(random.Random(seed)).removeprefix(HEAD) for seed in range(1500)]
+    read = [text for text in made if syntax_of(text) is not None]
+    assert len(read) > 800
+    kinds = {piece.kind for text in read for piece in pieces_of(text)[0]}
+    ignored = set(grammar().ignore_tokens)
+    assert {terminal.name for terminal in grammar().terminals} - kinds - ignored == set()
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_layout_keeps_what_a_text_says(seed):
+    """Laid out, a text says the same, and a second time nothing changes."""
+    text = random_text(random.Random(f"layout {seed}"), items=2)
+    syntax = syntax_of(text)
+    if syntax is None:
+        return
+    once = format_text(text)
+    assert syntax_of(once) == syntax
+    assert format_text(once) == once
+
+
+def test_syntax_has_no_places():
+    """Two texts that differ in layout have one syntax; a bracket or another word makes two."""
+    first = syntax_of(HEAD + "requirement R always (p -> F q)")
+    assert first is not None
+    assert first == syntax_of(HEAD + "requirement R\n  always (p -> # note\n  eventually q)\n")
+    assert first != syntax_of(HEAD + "requirement R always (p -> F (q))")
+    assert syntax_of("requirement R always (") is None

@@ -1,0 +1,132 @@
+"""Probabilities and expected values: figures whose errors are what they are said to be."""
+
+import json
+
+import pytest
+
+from rvmon.cli import main
+from rvmon.errors import ModelError
+from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.runs.statistics import MARGIN, sample
+from rvmon.timed.search.verify import verify
+
+COIN = """
+clock x
+int[0,3] n
+automaton A {
+  location toss invariant x <= 1
+  location heads
+  location tails
+  start toss
+  edge toss -> heads when x >= 1 do n = 3 weight 0.3
+  edge toss -> tails when x >= 1 do n = 1 weight 0.7
+}
+"""
+
+
+def sampled(text, seed=1):
+    network = loads_network(COIN)
+    return sample(network, query_on(network, text), seed=seed)
+
+
+def test_estimates_have_bounds():
+    """The true probability is 0.3, or 0.7 of staying away; a run lasts as long as is said."""
+    one = sampled("Pr[<=2; 2000](<> A.heads)")
+    assert one.runs == 2_000
+    assert one.low < 0.3 < one.high < one.low + 0.05
+    assert sampled("Pr[<=2](<> A.heads)").runs == 1_000
+    away = sampled("Pr[<=2; 2000]([] not A.heads)")
+    assert away.low < 0.7 < away.high
+    assert sampled("Pr[<=0](<> A.heads)").value == 0
+
+
+def test_bounds_are_kept_about_as_often_as_they_say():
+    """Of 60 estimates with 95 % confidence few miss the truth."""
+    missed = sum(
+        not one.low <= 0.3 <= one.high
+        for one in (sampled("Pr[<=2; 100](<> A.heads)", seed) for seed in range(60))
+    )
+    assert missed <= 8
+
+
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("Pr[<=2](<> A.heads) >= 0.2", True),
+        ("Pr[<=2](<> A.heads) >= 0.4", False),
+        ("Pr[<=2](<> A.heads) <= 0.4", True),
+        ("Pr[<=2](<> A.heads) <= 0.2", False),
+        ("Pr[<=2]([] not A.heads) >= 0.6", True),
+        ("Pr[<=1](<> A.heads or A.tails) >= 0.99", True),
+    ],
+)
+def test_tests_take_as_many_runs_as_they_need(query, expected):
+    """Far from the level few runs are enough."""
+    one = sampled(query)
+    assert one.holds is expected
+    assert 5 < one.runs < 5_000
+
+
+def test_tests_are_wrong_as_seldom_as_they_say():
+    """At the edge of what they need not tell, 5 % of the tests may be wrong."""
+    level = 0.3 - 4 * MARGIN
+    wrong = sum(
+        not sampled(f"Pr[<=2](<> A.heads) >= {level:.2f}", seed).holds for seed in range(20)
+    )
+    assert wrong <= 3
+
+
+def test_a_test_that_is_cut_short_says_nothing():
+    """With few runs a probability near the level is not told from it."""
+    one = sampled("Pr[<=2; 50](<> A.heads) >= 0.3")
+    assert (one.runs, one.holds, one.margin) == (50, None, MARGIN)
+
+
+def test_expected_values():
+    """The mean of 3 in 0.3 and 1 in 0.7 of the runs is 1.6; the least value is the first."""
+    one = sampled("E[<=2; 2000](max: n)")
+    assert one.low < 1.6 < one.high < one.low + 0.1
+    assert sampled("E[<=2; 100](min: n)").value == 0
+    assert sampled("E[<=2; 2000](max: 10 * n)").low > 15
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "Pr[<=2](<> deadlock)",
+        "Pr[<=2](<> A.heads) >= 1.5",
+        "Pr[<=2](<> A.heads) > 0.5",
+        "Q[<=2](<> A.heads)",
+        "E[<=2; 9](max: x)",
+        "E[<=2; 9](sum: n)",
+        "E[<=2; 1](max: n)",
+        "E<> (Pr[<=2](<> A.heads))",
+    ],
+)
+def test_what_has_no_figure_is_refused(query):
+    """Deadlocks, clocks as values, levels that are no probability."""
+    with pytest.raises(ModelError):
+        sampled(query)
+
+
+def test_statistics_are_no_decision():
+    """The search refuses them; the command simulates them, and its exit code is that of tests."""
+    with pytest.raises(ModelError, match="no decision"):
+        verify(loads_network(COIN), "Pr[<=2](<> A.heads)")
+
+
+def test_the_command_says_figures(tmp_path, capsys):
+    """With their errors, never as a proof."""
+    model = tmp_path / "coin.ta"
+    model.write_text(COIN, "utf-8")
+    assert main(["verify", str(model), "--query", "Pr[<=2](<> A.heads)"]) == 0
+    assert "simulated: Pr" in (told := capsys.readouterr().out)
+    assert "95 % confidence" in told
+    failing = ["verify", str(model), "--query", "Pr[<=2](<> A.heads) >= 0.5"]
+    assert main(failing) == 1
+    assert "does not hold, by a test" in capsys.readouterr().out
+    assert main([*failing, "--format", "json"]) == 1
+    (one,) = json.loads(capsys.readouterr().out)["simulated"]
+    assert one["holds"] is False
+    assert one["error"] == 0.05

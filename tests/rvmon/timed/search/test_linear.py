@@ -1,0 +1,127 @@
+"""Formulas of LTL over all runs, under premises, with a run that shows where they fail."""
+
+from random import Random
+
+import pytest
+from tests.tools.timed_generate import random_model
+from tests.tools.timed_ltl import LinearTruth, random_linear, satisfied_by
+from tests.tools.timed_regions import TooManyRegionsError
+
+from rvmon.errors import ModelError
+from rvmon.timed.language.elaborate import query_on
+from rvmon.timed.language.load import loads_network
+from rvmon.timed.model.expressions import UnaryOperation
+from rvmon.timed.model.guards import is_linear
+from rvmon.timed.model.operators import UnaryOp
+from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.run import Ending
+from rvmon.timed.search.verify import verify
+from rvmon.timed.zones.zone_unions import compares_of
+
+RETRY = """
+clock x
+chan go
+automaton A {
+  location asked invariant x <= 5
+  location failed invariant x <= 5
+  location done
+  start asked
+  edge asked -> failed when x >= 1 do x = 0
+  edge failed -> asked when x >= 1 do x = 0
+  edge asked -> done
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("F A.done", False),
+        ("G F A.asked", False),
+        ("F G A.done", False),
+        ("F G A.done or G F A.failed", True),
+        ("F A.done assuming not (G F A.failed)", True),
+        ("A<> A.done assuming F G not A.failed", True),
+        ("A.asked --> A.done assuming G F A.failed", False),
+        ("A.failed --> A.asked", True),
+        ("E<> A.done assuming G F A.failed", False),
+        ("E (G F A.failed and G not A.done)", True),
+        ("A ([] (A.failed imply <> A.asked))", True),
+        ("(not A.done W A.failed)", False),
+        ("A[A.asked U A.done]", False),
+        ("E[A.asked U A.done]", True),
+        ("G (A.failed and x > 2 imply F (A.asked and x < 1))", True),
+        ("G (A.failed imply F x > 4)", False),
+        ("E (F G (A.failed and x <= 4))", False),
+    ],
+)
+def test_known_answers(query, expected):
+    """Answers that can be read off the model; what decides them is shown by a run."""
+    outcome = verify(loads_network(RETRY), query)
+    assert outcome.holds is expected
+    assert (outcome.run is not None) == (expected == query.startswith("E"))
+
+
+def test_a_loop_on_which_time_passes_is_preferred():
+    """A Zeno loop is shown only where there is no other, and then told as what it is."""
+    lazy = "clock x automaton A { location a start a edge a -> a edge a -> a when x >= 1 do x = 0 }"
+    assert verify(loads_network(lazy), "F x > 9").run.ending is Ending.LOOP
+    hasty = "clock x automaton A { location a invariant x <= 1 start a edge a -> a }"
+    outcome = verify(loads_network(hasty), "G F x == 0")
+    assert outcome.run.ending is Ending.ZENO_LOOP
+    assert "Zeno" in outcome.remark
+
+
+@pytest.mark.parametrize(
+    ("query", "message"),
+    [
+        ("G X (A.done)", "no next instant"),
+        ("G (A.asked imply AF A.done)", "CTL"),
+        ("AG (A (G F A.asked))", "CTL"),
+        ("F deadlock", "deadlock"),
+        ("A (A.done)", "speaks of runs"),
+        ("A.done assuming G F A.asked", "whole runs"),
+        ("E<> (F A.done)", "CTL"),
+    ],
+)
+def test_what_is_not_decided_says_why(query, message):
+    """Next, deadlock, and formulas that speak of other runs inside a run are refused."""
+    with pytest.raises(ModelError, match=message):
+        verify(loads_network(RETRY), query)
+
+
+def test_g_and_f_are_names_elsewhere():
+    """Variables, functions of arrays and templates may be called G, F, A, E, U and W."""
+    text = "int[0,1] G\nint[0,1] F = 1\nint[0,1] U\nautomaton A { location a start a }"
+    network = loads_network(text)
+    assert verify(network, "A[] (G < F and U == G)").holds
+    assert verify(network, "G (G == 0 and F == 1)").holds
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("first", range(0, 20, 5))
+def test_answers_agree_with_an_explicit_tableau(first):
+    """On random networks, with clocks in the formulas; also whether time passes on."""
+    compared = 0
+    for seed in range(first, first + 5):
+        network, random = loads_network(random_model(seed)), Random(seed)
+        states = [f"({query.text.partition(' ')[2]})" for query in network.queries[:4]]
+        for _ in range(6):
+            query = query_on(network, random_linear(random, states, 3))
+            if not is_linear(query.formula):
+                continue
+            denied = UnaryOperation(UnaryOp.NOT, query.formula)
+            outcome = verify(network, query)
+            try:
+                expected = not LinearTruth(network, denied, False, 3_000).some_run()
+                assert outcome.holds == expected, (seed, query.text)
+                if outcome.run is not None:
+                    replay(network, outcome.run)
+                    if not list(compares_of(denied)):
+                        assert satisfied_by(network, outcome.run, denied), (seed, query.text)
+                    passes = outcome.run.ending not in (Ending.ZENO_LOOP, Ending.TIME_LOCK)
+                    assert passes == LinearTruth(network, denied, True, 6_000).some_run()
+            except TooManyRegionsError:
+                continue
+            compared += 1
+    assert compared > 10

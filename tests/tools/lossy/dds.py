@@ -1,0 +1,198 @@
+"""Topics of ROS 2 over DDS: more messages than wait within it, or than there is room for."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, closing
+from threading import Event
+from typing import Any
+
+from rvmon.adapters import dds
+from rvmon.adapters.messages import MessageFeed
+from rvmon.live import Driver, SimulatedClock
+from rvmon.readers.messages.topic import Topic
+from rvmon.trace.schema import Kind
+from tests.tools.lossy.live import closed
+from tests.tools.lossy.trial import Trial, Verdicts
+from tests.tools.lossy.wires import until, until_told
+from tests.tools.servers import LOOPBACK
+
+_TYPES = {
+    Kind.BOOL: "std_msgs/msg/Bool",
+    Kind.INT: "std_msgs/msg/Int64",
+    Kind.REAL: "std_msgs/msg/Float64",
+    Kind.LABEL: "std_msgs/msg/String",
+}
+
+
+def domain() -> int:
+    """One of this process alone."""
+    return 100 + os.getpid() % 100
+
+
+class _Gate(MessageFeed):
+    """Takes a message when the gate is open, as one does that has much to do."""
+
+    gate: Event
+    at_gate = False
+
+    def take(self, topic: Topic, content: Any) -> None:
+        self.at_gate = True
+        self.gate.wait()
+        self.at_gate = False
+        super().take(topic, content)
+
+
+class _Talker:
+    """One run: a topic for each name, and what hears them."""
+
+    def __init__(self, number: int, trial: Trial, mouth: _Mouth) -> None:
+        self.trial, self.samples = trial, trial.case.samples
+        spec = trial.case.spec
+        topics = {n: f"/r{number}/{n}" for n in (*spec.signals, *spec.events)}
+        reading = trial.spec.reading(columns=topics)
+        self.clock = SimulatedClock(self.samples[0].t)
+        self.driver = Driver(reading, clock=self.clock, sources=trial.case.names)
+        self.feed = _Gate(self.driver, reading.schema)
+        self.feed.gate = Event()
+        self.feed.gate.set()
+        self.source = dds.DdsSource(self.feed, domain=domain())
+        self.mouth, self.topics = mouth, topics
+        for name, topic in topics.items():
+            kind = _TYPES[spec.signals[name].type.kind] if name in spec.signals else _EMPTY
+            mouth.say([topic, kind])
+        is_full = all(name in spec.signals for name in self.samples[trial.lost.start].values)
+        self.how = trial.rng.choice(("depth", "flood")) if is_full else "flood"
+        trial.is_named = True
+        if self.how == "depth":
+            trial.lost = range(trial.lost.start, trial.lost.start + 1)
+
+    def is_connected(self) -> bool:
+        """Whether each topic is heard."""
+        return len(self.source._readers) == len(self.topics) and all(
+            self.mouth.is_heard(topic) for topic in self.topics.values()
+        )
+
+    def write(self, name: str, value: Any) -> None:
+        """Publish what is said of a name."""
+        signal = self.trial.case.spec.signals.get(name)
+        is_real = signal is not None and signal.type.kind is Kind.REAL
+        self.mouth.say([self.topics[name], None, float(value) if is_real else value])
+
+    def play(self) -> None:
+        """Publish samples in their time, those that are to be lost in their way."""
+        for place, sample in enumerate(self.samples):
+            self.clock.set_ns(sample.t)
+            if place in self.trial.lost and self.how == "depth":
+                self._fill(place)
+            elif place in self.trial.lost:
+                self.driver._waiting.room = 0
+                self.driver.offer(sample.values, t_ns=sample.t)
+                self.driver._waiting.room = 10_000
+            else:
+                least = self.driver.waiting + len(sample.values)
+                for name, value in sample.values.items():
+                    self.write(name, value)
+                until_told(self.driver, least)
+            if self.trial.rng.random() < 0.3:
+                self.driver.work()
+
+    def _fill(self, place: int) -> None:
+        """Have the messages of a sample find no room, as others of their instant wait.
+
+        Those repeat what was said before; of two values of an instant the last counts.
+        """
+        for name, value in self.samples[place].values.items():
+            known = (s.values[name] for s in self.samples[place - 1 :: -1] if name in s.values)
+            former = next(known, value)
+            self.feed.gate.clear()
+            before = self.driver.waiting
+            self.write(name, former)
+            until(lambda: self.feed.at_gate)
+            self.write(name, former)
+            self.write(name, value)
+            until_told(self.driver, before + 1)
+            self.feed.gate.set()
+            until_told(self.driver, before + 4)  # lost, twice the former, found
+
+
+_EMPTY = "std_msgs/msg/Empty"
+
+
+class _Mouth:
+    """A process that publishes: what is said there goes over the wire."""
+
+    def __init__(self) -> None:
+        self._process = subprocess.Popen(  # noqa: S603
+            [sys.executable, "-m", "tests.tools.lossy.dds", str(domain())],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def say(self, words: list[Any]) -> None:
+        """Have a topic, with its type; or something published on it; or (one word) look at it."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(json.dumps(words) + "\n")
+        self._process.stdin.flush()
+
+    def is_heard(self, topic: str) -> bool:
+        """Whether somebody reads a topic."""
+        assert self._process.stdout is not None
+        self.say([topic])
+        return self._process.stdout.readline() == "True\n"
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.kill()
+        self._process.communicate()
+
+
+def through_dds(trials: Sequence[Trial]) -> Iterator[Verdicts]:
+    """Runs in one domain, in which one process publishes, and this one reads."""
+    os.environ.setdefault("CYCLONEDDS_URI", LOOPBACK)
+    depth, dds._DEPTH = dds._DEPTH, 1
+    try:
+        with ExitStack() as open_:
+            mouth = open_.enter_context(closing(_Mouth()))
+            talkers = [_Talker(number, trial, mouth) for number, trial in enumerate(trials)]
+            for talker in talkers:
+                open_.enter_context(talker.source)
+            for talker in talkers:
+                until(talker.is_connected)
+                talker.play()
+        yield from [closed(one.driver, one.clock, one.trial) for one in talkers]
+    finally:
+        dds._DEPTH = depth
+
+
+def main() -> None:
+    """Publish what is said on standard input."""
+    from cyclonedds.domain import DomainParticipant
+    from cyclonedds.pub import DataWriter
+    from cyclonedds.topic import Topic as DdsTopic
+
+    participant = DomainParticipant(int(sys.argv[1]))
+    writers: dict[str, tuple[Any, Any]] = {}
+    for line in sys.stdin:
+        topic, *words = json.loads(line)
+        match words:
+            case []:
+                print(bool(writers[topic][0].get_matched_subscriptions()), flush=True)
+            case [name]:
+                kind = dds._idl_type(name, ())
+                writer = DataWriter(participant, DdsTopic(participant, f"rt{topic}", kind))
+                writers[topic] = writer, kind
+            case [_, value]:
+                writer, kind = writers[topic]
+                field = next(iter(kind.__annotations__))
+                is_empty = field != "data"
+                writer.write(kind(**{field: 0 if is_empty else value}))
+
+
+if __name__ == "__main__":
+    main()

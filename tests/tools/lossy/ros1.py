@@ -1,0 +1,173 @@
+"""Topics of ROS 1 in a process of their own, by a real master: connections that are lost."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from rvmon.live import Driver, SimulatedClock
+from rvmon.session import Spec
+from rvmon.trace.schema import Kind
+from tests.tools.lossy.live import closed
+from tests.tools.lossy.trial import Trial, Verdicts
+from tests.tools.lossy.wires import until, until_told
+from tests.tools.servers import LONG, SYSTEM, master_of_ros1
+
+_PATIENCE = 3 * LONG
+"""Seconds in which the process has to end."""
+
+
+def through_ros1(trials: Sequence[Trial]) -> Iterator[Verdicts]:
+    """Runs by one master, in a process: rospy is begun once in one."""
+    given = [(trial.name, trial.case, trial.lost, trial.folder) for trial in trials]
+    with master_of_ros1() as address:
+        done = subprocess.run(
+            [sys.executable, "-m", "tests.tools.lossy.ros1"],
+            input=pickle.dumps(given),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            timeout=_PATIENCE,
+            check=True,
+            env={
+                **os.environ,
+                "ROS_MASTER_URI": address,
+                "ROS_IP": "127.0.0.1",
+                "ROS_HOME": str(trials[0].folder),
+            },
+        )
+    judged: list[tuple[str, Verdicts]] = pickle.loads(done.stdout)  # noqa: S301 - of our own
+    for trial, (how, verdicts) in zip(trials, judged, strict=True):
+        trial.is_named = how != "down"
+        yield verdicts
+
+
+class _Talker:
+    """One run: a topic for each name, and what hears them."""
+
+    def __init__(self, number: int, trial: Trial) -> None:
+        from rvmon.adapters.messages import MessageFeed
+        from rvmon.adapters.ros1 import Ros1Source
+
+        self.trial, self.samples = trial, trial.case.samples
+        spec = trial.case.spec
+        self._topics = {n: f"/r{number}/{n}" for n in (*spec.signals, *spec.events)}
+        self._publishers: dict[str, Any] = {}
+        reading = trial.spec.reading(columns=self._topics)
+        self.clock = SimulatedClock(self.samples[0].t)
+        self.driver = Driver(reading, clock=self.clock, sources=trial.case.names)
+        self.source = Ros1Source(MessageFeed(self.driver, reading.schema))
+        is_plain = all(name in spec.signals for name in trial.names)
+        self.how = trial.rng.choice(("down", "damaged" if is_plain else "down", "flood"))
+
+    def advertise(self) -> None:
+        """Begin to publish what is heard, each name by itself."""
+        import rospy
+
+        for name, topic in self._topics.items():
+            if self.trial.case.names is None or name in self.trial.case.names:
+                kind = self._kind(name)
+                self._publishers[name] = rospy.Publisher(topic, kind, queue_size=100)
+
+    def _kind(self, name: str) -> Any:
+        from std_msgs import msg
+
+        kinds = {
+            Kind.BOOL: msg.Bool,
+            Kind.INT: msg.Int64,
+            Kind.REAL: msg.Float64,
+            Kind.LABEL: msg.String,
+        }
+        signal = self.trial.case.spec.signals.get(name)
+        return msg.Empty if signal is None else kinds[signal.type.kind]
+
+    def is_connected(self) -> bool:
+        """Whether each topic is heard."""
+        return all(one.get_num_connections() > 0 for one in self._publishers.values())
+
+    def send(self, place: int, *, is_damaged: bool = False) -> None:
+        """Publish a sample, name by name, and wait until it is here."""
+        before, values = self.driver.waiting, self.samples[place].values
+        for name, value in values.items():
+            kind = self._kind(name)
+            if is_damaged:
+                kind = type(kind.__name__, (kind,), {"serialize": lambda *_: None})
+            signal = self.trial.case.spec.signals.get(name)
+            given: Any = float(value) if signal and signal.type.kind is Kind.REAL else value  # type: ignore[arg-type]
+            self._publishers[name].publish(kind() if signal is None else kind(given))
+        until_told(self.driver, before + len(values))
+
+    def play(self, places: range) -> None:
+        """Publish samples in their time, those that are to be lost in their way."""
+        for place in places:
+            is_lost = place in self.trial.lost
+            self.clock.set_ns(self.samples[place].t)
+            if is_lost and self.how == "down":
+                continue
+            if is_lost and self.how == "flood":
+                self.driver._waiting.room = 0
+                self.driver.offer(self.samples[place].values, t_ns=self.samples[place].t)
+                self.driver._waiting.room = 10_000
+            else:
+                self.send(place, is_damaged=is_lost)
+            if self.trial.rng.random() < 0.3:
+                self.driver.work()
+
+    def break_off(self) -> None:
+        """Close all connections, as a network does that goes away; nobody leaves."""
+        self.driver.work()
+        for publisher in self._publishers.values():
+            for connection in tuple(publisher.impl.connections):
+                connection.close()
+
+    def come_back(self) -> None:
+        """Have them made anew."""
+        for publisher in self._publishers.values():
+            publisher.unregister()
+        self.advertise()
+
+
+def main() -> None:
+    """Judge the trials that come in, and give their verdicts."""
+    sys.path.append(SYSTEM)
+    import rospy
+
+    given = pickle.load(sys.stdin.buffer)  # noqa: S301 - of our own
+    out, sys.stdout = sys.stdout.buffer, sys.stderr
+    rospy.init_node("rvmon", anonymous=True, disable_signals=True)
+    talkers = [
+        _Talker(number, Trial(name, Spec(case.spec), case, lost, folder))
+        for number, (name, case, lost, folder) in enumerate(given)
+    ]
+    for talker in talkers:
+        talker.source.__enter__()
+        talker.advertise()
+    down = [talker for talker in talkers if talker.how == "down"]
+    for talker in talkers:
+        until(talker.is_connected)
+    time.sleep(0.5)  # each has looked at its connections
+    for talker in talkers:
+        talker.play(range(talker.trial.lost.start if talker in down else len(talker.samples)))
+    for talker in down:
+        talker.break_off()
+    for talker in down:  # as many topics are lost as were heard
+        until_told(talker.driver, len(talker._publishers))
+        talker.clock.set_ns(talker.samples[talker.trial.lost[-1]].t)
+        talker.driver.work()
+        talker.come_back()
+    for talker in down:
+        until(talker.is_connected)
+        until_told(talker.driver, len(talker._publishers))
+        talker.play(range(talker.trial.lost.stop, len(talker.samples)))
+    verdicts = [(one.how, dict(closed(one.driver, one.clock, one.trial))) for one in talkers]
+    out.write(pickle.dumps(verdicts))
+    out.flush()
+    os._exit(0)  # what rospy has begun ends by itself in seconds
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,207 @@
+"""A random run of which something is to be lost, and what its verdicts are worth then."""
+
+from __future__ import annotations
+
+import itertools
+import random
+import shutil
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from rvmon.session import Spec
+from rvmon.testing.case import Case
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.trace.sample import Sample
+from rvmon.verdict.verdict import Verdict
+from tests.tools.differential import cases_of
+from tests.tools.law import judge, word
+from tests.tools.sound import is_spoken_of, narrowed
+
+FILLINGS = 6
+"""So many times what was lost is filled in: once by what it really was."""
+
+EACH = 4
+"""Runs of a specification."""
+
+_TRACES = TraceProfile(advances=False)
+
+GREEN = (Verdict.PASS, Verdict.NOT_TRIGGERED)
+START = 1_000
+"""Ticks by which runs are later than they are drawn: no format has stamps below zero."""
+
+Verdicts = Mapping[str, Verdict]
+
+
+@dataclass(slots=True)
+class Trial:
+    """A run, and its samples that are to be lost at a door.
+
+    Attributes:
+        name: of the run; every draw comes of it.
+        spec: what judges.
+        case: the run as it truly was.
+        lost: the places of the samples that are lost, which follow one another.
+        folder: for files.
+        rng: draws how they are lost.
+        names: what the lost samples spoke of; set by a door that loses only some of it.
+        is_late: set by a door at which they came too late: a failure may stay that was none.
+        is_named: set by a door that knows of each lost sample what it spoke of.
+        is_whole: set by a door that gives verdicts where nothing is lost, or none.
+    """
+
+    name: str
+    spec: Spec
+    case: Case
+    lost: range
+    folder: Path
+    rng: random.Random = field(init=False)
+    names: list[str] = field(init=False)
+    is_late: bool = False
+    is_whole: bool = False
+    is_named: bool = False
+
+    def __post_init__(self) -> None:
+        self.rng = random.Random(f"{self.name} door")
+        self.names = sorted({n for place in self.lost for n in self.case.samples[place].values})
+
+    @property
+    def end(self) -> int:
+        """An instant behind all samples."""
+        return self.case.samples[-1].t + 1
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of a trial.
+
+    Attributes:
+        name: of the trial.
+        overturned: the requirements whose verdict some filling turns that no filling may.
+        is_split: whether fillings turn a verdict.
+        is_refused: whether the door gave no verdict.
+    """
+
+    name: str
+    overturned: tuple[str, ...]
+    is_split: bool
+    is_refused: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Door:
+    """What loses something.
+
+    Attributes:
+        through: gives the verdicts of trials, in their order; `None`: it refuses the run.
+        traces: what runs may hold.
+        at_once: so many trials are given to it together.
+        ends: whether time goes on behind the last sample, by a tick.
+        plain: whether it takes no events with payloads, nor names that no requirement reads.
+    """
+
+    through: Callable[[Sequence[Trial]], Iterable[Verdicts | None]]
+    traces: TraceProfile = _TRACES
+    at_once: int = 1
+    ends: bool = True
+    plain: bool = False
+
+
+def trials(door: str, how: Door, count: int, seed: int, folder: Path) -> Iterator[Trial]:
+    """So many trials whose loss changes a letter that a requirement reads."""
+    return islice(_trials(door, how, seed, folder), count)
+
+
+def _trials(door: str, how: Door, seed: int, folder: Path) -> Iterator[Trial]:
+    profile = Profile(for_each=not how.plain)
+    for number in itertools.count():
+        spec = None
+        for part, drawn in enumerate(
+            cases_of(f"{door}/{seed}/{number}", profile, how.traces, EACH)
+        ):
+            case = _plain(narrowed(drawn) if how.plain else drawn)
+            spec = spec or Spec(case.spec)
+            if len(case.samples) < 3 or case.spec.max_delay or not is_spoken_of(case.spec):
+                continue
+            if how.plain and any(event.fields for event in case.spec.events.values()):
+                continue
+            name = f"{door}/{seed}/{number}/{part}"
+            rng = random.Random(name)
+            # Of the first and the last nobody may know that there was one.
+            begin = rng.randrange(1, len(case.samples) - 1)
+            lost = range(begin, min(begin + rng.randint(1, 6), len(case.samples) - 1))
+            trial = Trial(name, spec, case, lost, folder / f"{number}.{part}")
+            if trial.names and _changes_a_letter(trial):
+                trial.folder.mkdir()
+                yield trial
+
+
+def _plain(case: Case) -> Case:
+    """The samples of a case, later, but for those that say nothing, or that events do not occur."""
+    samples = [
+        Sample(
+            START + one.t,
+            {n: v for n, v in one.values.items() if n in case.spec.signals or v is not False},
+        )
+        for one in case.samples
+    ]
+    return replace(case, actions=tuple(one for one in samples if one.values), end=None)
+
+
+def _changes_a_letter(trial: Trial) -> bool:
+    rest = [s for place, s in enumerate(trial.case.samples) if place not in trial.lost]
+    truly, without = (
+        word(narrowed(replace(trial.case, actions=(*actions, trial.end))))
+        for actions in (trial.case.samples, rest)
+    )
+    return repr(truly.letters) != repr(without.letters)
+
+
+def outcome(trial: Trial, how: Door, verdicts: Verdicts | None) -> Outcome:
+    """Hold the verdicts of a door against those of the law, however what was lost is filled in."""
+    rng = random.Random(f"{trial.name} fillings")
+    seen: dict[str, set[bool]] = {name: set() for name in trial.case.spec.requirements}
+    bad = set()
+    for which in range(FILLINGS):
+        filled = trial.case if which == 0 else _filled(rng, trial)
+        if how.ends:
+            filled = replace(filled, actions=(*filled.actions, trial.end))
+        truly = judge(filled).verdicts
+        told = {} if verdicts is None or (trial.is_whole and which) else verdicts
+        for name, verdict in told.items():
+            failed = truly[name] is Verdict.FAIL
+            if verdict in GREEN and failed:
+                bad.add(name)
+            if verdict is Verdict.FAIL and not failed and not trial.is_late:
+                bad.add(name)
+        for name, verdict in truly.items():
+            seen[name].add(verdict is Verdict.FAIL)
+    split = any(len(kinds) > 1 for kinds in seen.values())
+    return Outcome(trial.name, tuple(sorted(bad)), split, verdicts is None)
+
+
+def _filled(rng: random.Random, trial: Trial) -> Case:
+    """The run with something else in place of what was lost."""
+    samples = list(trial.case.samples)
+    names = {*trial.names}
+    for place in trial.lost:
+        others: Any = random_trace(rng, trial.case.spec, TraceProfile()).samples or samples
+        told = samples[place].values
+        heard = {n: v for n, v in told.items() if n not in names}
+        may = names & told.keys() if trial.is_named else names
+        values = {n: v for n, v in rng.choice(others).values.items() if n in may}
+        samples[place] = Sample(samples[place].t, heard | values)
+    return replace(trial.case, actions=tuple(samples))
+
+
+def outcomes(door: str, how: Door, count: int, seed: int, folder: Path) -> Iterator[Outcome]:
+    """What comes of so many trials at a door."""
+    batch: list[Trial] = []
+    found = trials(door, how, count, seed, folder)
+    while batch := [trial for _, trial in zip(range(how.at_once), found, strict=False)]:
+        for trial, verdicts in zip(batch, how.through(batch), strict=True):
+            yield outcome(trial, how, verdicts)
+            shutil.rmtree(trial.folder)

@@ -1,0 +1,180 @@
+"""Formulas of CTL on the regions of a small network, by plain fixpoints, and random ones.
+
+What a formula says is worked out as the set of regions where it holds, from the inside out; bounds
+count on a second graph, whose regions have a timer that begins at 0.
+
+Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, section 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+import networkx as nx
+
+from rvmon.timed.model.expressions import (
+    BinaryOperation,
+    Deadlock,
+    Expression,
+    PathFormula,
+    UnaryOperation,
+)
+from rvmon.timed.model.guards import parts_of
+from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
+from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
+from rvmon.timed.zones.zone_unions import is_plain
+from tests.tools.timed_regions import Region, RegionGraph, satisfies
+
+Regions = frozenset[Region]
+
+
+def holds_at_start(network: Network, query: Query, limit: int = 2_000) -> bool:
+    """Whether a query holds, whatever operators of CTL it has.
+
+    Raises:
+        TooManyRegionsError: there are more regions than the limit.
+    """
+    formula = query.formula
+    assert not isinstance(formula, Chance | Mean)
+    if isinstance(formula, LeadsToFormula):
+        answered = PathFormula(PathOp.EVENTUALLY, formula.right, formula.bound)
+        implied = BinaryOperation(BinaryOp.IMPLY, formula.left, answered)
+        formula = PathFormula(PathOp.INVARIANTLY, implied)
+    truth = _Truth(network, formula, limit)
+    return truth.start in truth.where(formula)
+
+
+class _Truth:
+    """Where formulas hold."""
+
+    def __init__(self, network: Network, formula: Expression, limit: int) -> None:
+        bounds = [p.bound for p in parts_of(formula) if isinstance(p, PathFormula)]
+        known = [bound for bound in bounds if bound is not None]
+        self._regions = RegionGraph(network, [formula], None, limit)
+        self.start = self._regions.start()
+        self._plain = _Steps(self._regions, self._regions.reachable([self.start]))
+        if known:
+            timed = RegionGraph(network, [formula], max(known), 4 * limit)
+            starts = map(timed.restarted, self._plain.nodes)
+            self._timed = _Steps(timed, timed.reachable(starts))
+            self._restart = timed.restarted
+
+    def where(self, formula: Expression) -> Regions:
+        """The regions where a formula holds."""
+        everywhere = self._plain.nodes
+        if is_plain(formula):
+            return frozenset(r for r in everywhere if satisfies(r.now, formula))
+        match formula:
+            case Deadlock():
+                return frozenset(filter(self._regions.is_dead, everywhere))
+            case UnaryOperation(UnaryOp.NOT, operand):
+                return everywhere - self.where(operand)
+            case BinaryOperation(BinaryOp.AND, left, right):
+                return self.where(left) & self.where(right)
+            case BinaryOperation(BinaryOp.OR, left, right):
+                return self.where(left) | self.where(right)
+            case BinaryOperation(BinaryOp.IMPLY, left, right):
+                return (everywhere - self.where(left)) | self.where(right)
+            case PathFormula(op, body, bound, left):
+                return self._path(op, self.where(body), bound, self.where(left))
+            case _:
+                raise AssertionError(f"{formula} is not decided here")
+
+    def _path(self, op: PathOp, body: Regions, bound: int | None, left: Regions) -> Regions:
+        everywhere = self._plain.nodes
+        match op:
+            case PathOp.POSSIBLY:
+                return self._until(body, bound, left, every=False)
+            case PathOp.EVENTUALLY:
+                return self._until(body, bound, left, every=True)
+            case PathOp.INVARIANTLY:
+                return everywhere - self._until(everywhere - body, bound, left, every=False)
+            case PathOp.POTENTIALLY_ALWAYS:
+                return everywhere - self._until(everywhere - body, bound, left, every=True)
+            case PathOp.SOME_NEXT:
+                return self._plain.before_actions(body)
+            case PathOp.EVERY_NEXT:
+                return everywhere - self._plain.before_actions(everywhere - body)
+            case _:
+                raise AssertionError(f"{op} speaks of one run")
+
+    def _until(self, body: Regions, bound: int | None, left: Regions, *, every: bool) -> Regions:
+        if bound is None:
+            return self._plain.until(body, left, every=every)
+        lifted = {r: self._regions.region_of(r.now) for r in self._timed.nodes}
+        reached = frozenset(r for r, low in lifted.items() if low in body and r.timer <= bound)
+        before = frozenset(r for r, low in lifted.items() if low in left or low in body)
+        found = self._timed.until(reached, before, every=every)
+        return frozenset(r for r in self._plain.nodes if self._restart(r) in found)
+
+
+class _Steps:
+    """Regions and the steps between them."""
+
+    def __init__(self, graph: RegionGraph, nodes: set[Region]) -> None:
+        self.nodes = frozenset(nodes)
+        self._actions = nx.DiGraph()
+        self._delays = nx.DiGraph()
+        for node in nodes:
+            self._actions.add_edges_from((node, after) for after in graph.actions(node))
+            later = graph.later(node)
+            if later is not None:
+                self._delays.add_edge(node, later)
+        self._all = nx.compose(self._actions, self._delays)
+        self._all.add_nodes_from(nodes)
+
+    def until(self, body: Regions, left: Regions, *, every: bool) -> Regions:
+        """From where some path, or every one, leads to a set through another only."""
+        found, pending = set(body), list(body)
+        while pending:
+            for node in self._all.predecessors(pending.pop()):
+                if node in found or node not in left:
+                    continue
+                if every and not all(after in found for after in self._all.successors(node)):
+                    continue
+                found.add(node)
+                pending.append(node)
+        return frozenset(found)
+
+    def before_actions(self, body: Regions) -> Regions:
+        """From where, now or later, the next action can lead to a set."""
+        found = {a for a, b in self._actions.edges if b in body}
+        for node in list(found):
+            if node in self._delays:
+                found |= nx.ancestors(self._delays, node)
+        return frozenset(found)
+
+
+def random_formulas(random: Random, states: list[str], count: int) -> Iterator[str]:
+    """Queries of CTL over some state formulas, with nests of up to three operators."""
+    for _ in range(count):
+        yield _random_path(random, states, random.choice((1, 2, 2, 3)))
+
+
+def _random_path(random: Random, states: list[str], depth: int) -> str:
+    bound = f"[<={random.randint(0, 3)}]" if random.random() < 0.25 else ""
+    body = _random_state(random, states, depth - 1)
+    match random.choice(("unary", "unary", "unary", "until", "next")):
+        case "until":
+            left = _random_state(random, states, depth - 1)
+            return f"({random.choice('AE')}[{left} {random.choice('UUW')}{bound} {body}])"
+        case "next":
+            return f"({random.choice(('AX', 'EX'))} ({body}))"
+        case _:
+            return f"({random.choice(('EF', 'AG', 'AF', 'EG'))}{bound} ({body}))"
+
+
+def _random_state(random: Random, states: list[str], depth: int) -> str:
+    match random.choice(("plain", "path", "path", "not", "and", "or")):
+        case "path" if depth > 0:
+            return _random_path(random, states, depth)
+        case "not":
+            return (
+                f"not ({_random_state(random, states, depth - 1)})" if depth > 0 else "not deadlock"
+            )
+        case "and" | "or" as word if depth > 0:
+            first, second = (_random_state(random, states, depth - 1) for _ in range(2))
+            return f"({first} {word} {second})"
+        case _:
+            return random.choice(states)

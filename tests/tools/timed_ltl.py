@@ -1,0 +1,190 @@
+"""Formulas of LTL on the regions of a small network, by an explicit tableau, and random ones.
+
+A node is a region with the set of temporal formulas that are to hold from there; an edge must keep
+what they say of now and next; a component counts if no promise waits in all of it.
+
+Source: Clarke, Grumberg, Hamaguchi, Another Look at LTL Model Checking, 1997.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from itertools import product
+from random import Random
+
+import networkx as nx
+
+from rvmon.timed.model.expressions import BinaryOperation, Expression, PathFormula, UnaryOperation
+from rvmon.timed.model.guards import is_linear, parts_of
+from rvmon.timed.model.network import Network
+from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
+from rvmon.timed.runs.concrete import act, initial_configuration, wait
+from rvmon.timed.runs.run import Run
+from tests.tools.timed_regions import Region, RegionGraph, TooManyRegionsError, satisfies
+
+_Node = tuple[Region, frozenset[PathFormula]]
+
+
+class LinearTruth:
+    """What some run from the start satisfies.
+
+    Args:
+        network: small.
+        formula: of LTL.
+        progress: whether only runs count on which time passes on for ever.
+        limit: the most nodes.
+
+    Raises:
+        TooManyRegionsError: there are more.
+    """
+
+    def __init__(self, network: Network, formula: Expression, progress: bool, limit: int) -> None:
+        self._regions = RegionGraph(network, [formula], 1 if progress else None, limit)
+        self._formula, self._progress, self._limit = formula, progress, limit
+        temporal = [p for p in parts_of(formula) if isinstance(p, PathFormula)]
+        self._temporal = list(dict.fromkeys(temporal))
+        sets = product((False, True), repeat=len(self._temporal))
+        self._sets = [
+            frozenset(p for p, on in zip(self._temporal, chosen, strict=True) if on)
+            for chosen in sets
+        ]
+
+    def some_run(self) -> bool:
+        """Whether some run satisfies the formula."""
+        start = self._regions.start()
+        starts = [(start, held) for held in self._sets if self._holds(self._formula, (start, held))]
+        graph = self._graph(starts)
+        for component in nx.strongly_connected_components(graph):
+            inner = graph.subgraph(component)
+            if (
+                inner.number_of_edges()
+                and (not self._progress or any(tick for *_, tick in inner.edges.data("tick")))
+                and all(any(self._is_kept(p, node) for node in component) for p in self._temporal)
+            ):
+                return True
+        return False
+
+    def _is_kept(self, promise: PathFormula, node: _Node) -> bool:
+        # Who denies `G p` promises that p will not hold.
+        final = promise.op is PathOp.FINALLY
+        waits = (promise in node[1]) == final
+        return not waits or self._holds(promise.body, node) == final
+
+    def _holds(self, formula: Expression, node: _Node) -> bool:
+        region, held = node
+        if not is_linear(formula):
+            return satisfies(region.now, formula)
+        match formula:
+            case PathFormula():
+                return formula in held
+            case UnaryOperation(UnaryOp.NOT, operand):
+                return not self._holds(operand, node)
+            case BinaryOperation(op, left, right):
+                return _JOINED[op](self._holds(left, node), self._holds(right, node))
+            case _:
+                raise AssertionError(f"{formula} is none of LTL")
+
+    def _agree(self, node: _Node, after: _Node) -> bool:
+        for formula in self._temporal:
+            body, left = self._holds(formula.body, node), self._holds(formula.left, node)
+            following = formula in after[1]
+            if formula.op is PathOp.FINALLY:
+                expected = body or (left and following)
+            else:
+                expected = body and (not left or following)
+            if (formula in node[1]) != expected:
+                return False
+        return True
+
+    def _graph(self, starts: Sequence[_Node]) -> nx.DiGraph:
+        graph, pending = nx.DiGraph(), list(starts)
+        graph.add_nodes_from(starts)
+        while pending:
+            node = pending.pop()
+            for region, tick in self._steps(node[0]):
+                for held in self._sets:
+                    after = (region, held)
+                    if not self._agree(node, after):
+                        continue
+                    if after not in graph:
+                        pending.append(after)
+                    tick = tick or graph.get_edge_data(node, after, {}).get("tick", False)
+                    graph.add_edge(node, after, tick=tick)
+            if len(graph) > self._limit:
+                raise TooManyRegionsError
+        return graph
+
+    def _steps(self, region: Region) -> Iterator[tuple[Region, bool]]:
+        if self._progress and region.timer >= Fraction(1):
+            later = self._regions.later(region)
+            yield self._regions.restarted(region), True
+            if later == region:
+                yield region, True
+            return
+        actions, later = list(self._regions.actions(region)), self._regions.later(region)
+        for after in actions:
+            yield after, False
+        if later is not None:
+            yield later, False
+        elif not actions and not self._progress:
+            yield region, False
+
+
+def satisfied_by(network: Network, run: Run, formula: Expression) -> bool:
+    """Whether a run that ends in a loop, or at rest, satisfies a formula without clocks."""
+    letters, back = [initial_configuration(network)], 0
+    for number, step in enumerate(run.steps):
+        if number == run.loop:
+            back = len(letters)
+        letters.append(wait(network, letters[-1], step.delay))
+        if step.action is not None:
+            letters.append(act(network, letters[-1], step.action))
+    last = len(letters) - 1
+    following = [*range(1, last + 1), last if run.loop is None else back]
+
+    def where(part: Expression) -> list[bool]:
+        if not is_linear(part):
+            return [satisfies(letter, part) for letter in letters]
+        match part:
+            case PathFormula(op, body, _, left):
+                final = op is PathOp.FINALLY
+                now, until = [held == final for held in where(body)], where(left)
+                for _ in letters:
+                    now = [held or (until[n] and now[following[n]]) for n, held in enumerate(now)]
+                return [held == final for held in now]
+            case UnaryOperation(UnaryOp.NOT, operand):
+                return [not held for held in where(operand)]
+            case BinaryOperation(op, one, other):
+                pairs = zip(where(one), where(other), strict=True)
+                return [_JOINED[op](*pair) for pair in pairs]
+            case _:
+                raise AssertionError(f"{part} is none of LTL")
+
+    return where(formula)[0]
+
+
+_JOINED: dict[BinaryOp, Callable[[bool, bool], bool]] = {
+    BinaryOp.AND: lambda one, other: one and other,
+    BinaryOp.OR: lambda one, other: one or other,
+    BinaryOp.IMPLY: lambda one, other: other or not one,
+}
+
+
+def random_linear(random: Random, states: list[str], size: int) -> str:
+    """A formula of LTL over some state formulas, with at most so many operators of its own."""
+    match random.choice(("F", "G", "GF", "FG", "U", "W", "and", "or", "imply", "not", "plain")):
+        case "F" | "G" as word if size > 0:
+            return f"{word} ({random_linear(random, states, size - 1)})"
+        case "GF" | "FG" as words if size > 1:
+            return f"{words[0]} {words[1]} ({random_linear(random, states, size - 2)})"
+        case "U" | "W" as word if size > 0:
+            first = random_linear(random, states, (size - 1) // 2)
+            return f"({first} {word} {random_linear(random, states, (size - 1) // 2)})"
+        case "and" | "or" | "imply" as word if size > 0:
+            first = random_linear(random, states, size // 2)
+            return f"({first} {word} {random_linear(random, states, size - size // 2)})"
+        case "not":
+            return f"not ({random_linear(random, states, size)})"
+        case _:
+            return random.choice(states)
