@@ -11,16 +11,19 @@ def random_model(seed: int) -> str:
     """A network of one to three automata with queries of every kind; the same for the same seed.
 
     All parts of the model occur: integer guards and updates, resets to a number, binary, broadcast
-    and urgent channels, urgent and committed locations, strict and equal bounds.
+    and urgent channels, clock guards on receivers of broadcasts, urgent and committed locations,
+    strict and equal bounds; in every second model a record, an array, and functions with local
+    variables, branches, loops, parameters by value and by reference, which also set clocks.
     """
-    return _RandomModel(Random(seed)).model()
+    return _RandomModel(Random(seed), functions=seed % 2 == 1).model()
 
 
 class _RandomModel:
     """One throw of everything."""
 
-    def __init__(self, random: Random) -> None:
+    def __init__(self, random: Random, functions: bool) -> None:
         self._random = random
+        self._functions = functions
         self._clocks = ["x", "y", "z"][: random.choice((1, 2, 2, 2, 3))]
         self._largest = 2 if len(self._clocks) == 3 else random.choice((1, 2, 3))
         self._automata = random.choice((1, 2, 2, 3))
@@ -31,6 +34,8 @@ class _RandomModel:
     def model(self) -> str:
         lines = ["network random", f"clock {', '.join(self._clocks)}", "int[0,2] v", "bool b"]
         lines += [f"{self._kinds[channel]}chan {channel}" for channel in self._channels]
+        if self._functions:
+            lines += self._computing()
         for index in range(self._automata):
             lines += self._automaton(index)
         lines += [f"query: {query}" for query in self._queries()]
@@ -58,9 +63,7 @@ class _RandomModel:
         if self._channels and random.random() < 0.5:
             channel, end = random.choice(self._channels), random.choice("!?")
             sync = f" on {channel}{end}"
-            bare = self._kinds[channel].startswith("urgent") or (
-                self._kinds[channel] and end == "?"
-            )
+            bare = self._kinds[channel].startswith("urgent")
         else:
             bare = False
         if not bare and random.random() < 0.7:
@@ -69,6 +72,19 @@ class _RandomModel:
             guards.append(f"v {random.choice(_COMPARISONS)} {random.randint(0, 2)}")
         if random.random() < 0.1:
             guards.append(random.choice(("b", "not b")))
+        if self._functions and random.random() < 0.3:
+            guards.append(
+                random.choice(
+                    (
+                        "some(w, 1)",
+                        "next(v) == 1",
+                        "r.n > 0",
+                        "not r.b",
+                        "w[v % 2] < 2",
+                        "(v & 1) == 0",
+                    )
+                )
+            )
         updates = []
         if random.random() < 0.6:
             updates.append(f"{self._clock()} = {random.choice((0, 0, 0, 0, 1))}")
@@ -76,8 +92,47 @@ class _RandomModel:
             updates.append(random.choice(("v = (v + 1) % 3", "v = 0", "v = 2 - v")))
         if random.random() < 0.1:
             updates.append("b = not b")
+        if self._functions and random.random() < 0.6:
+            updates.append(
+                random.choice(
+                    ("act()", "put(v, 2)", "put(w[v % 2], next(v))", "put(r.n, 1)", "v = next(r.n)",
+                     "w[r.n % 2] = v <? 1", "r.b = some(w, 0)", "w[0] = w[1] = next(v)")
+                )
+            )  # fmt: skip
         when = f" when {' and '.join(guards)}" if guards else ""
         return text + when + sync + (f" do {', '.join(updates)}" if updates else "")
+
+    def _computing(self) -> list[str]:
+        """A record, an array and functions over them."""
+        return [
+            "typedef struct { int[0,2] n; bool b; } pair",
+            "pair r = {1, false}",
+            "int[0,2] w[2] = {0, 2}",
+            f"int[0,2] next(int[0,2] n) {{ int[0,2] k = n; {self._statements('k')}",
+            "  return (k + 1) % 3; }",
+            "bool some(int[0,2] z[2], int[0,2] n) {",
+            "  for (i : int[0,1]) { if (z[i] > n) return true; z[i] = n; } return false; }",
+            "void put(int[0,2] &to, int[0,2] by) {",
+            "  while (by > 0) { to = (to + 1) % 3; by--; if (to == 2 && b) return; } }",
+            f"void act() {{ pair old = r; int[0,2] k; {self._statements('k')}",
+            f"  if (old == r) {{ {self._clock()} = 0; r.b = not r.b; }} else put(w[old.n % 2], k);",
+            "  r.n = next(k); }",
+        ]
+
+    def _statements(self, local: str) -> str:
+        """Some statements that change a local variable."""
+        random = self._random
+        ways = (
+            lambda: f"{local} = ({local} + {random.randint(1, 2)}) % 3;",
+            lambda: f"if ({local} {random.choice(_COMPARISONS)} v) {local} = 2 - {local};",
+            lambda: f"for (i : int[0,{random.randint(0, 2)}]) {local} = ({local} + w[i % 2]) % 3;",
+            lambda: f"do {{ {local} = {local} >? 1; }} while ({local} == 0);",
+            lambda: f"{local} = b ? {local} : {random.randint(0, 2)};",
+            lambda: (
+                f"if (r.b) {{ int[0,2] j = {local}; {local} = (j * 2) % 3; }} else {local} = 0;"
+            ),
+        )
+        return " ".join(random.choice(ways)() for _ in range(random.randint(1, 3)))
 
     def _clock(self) -> str:
         return self._random.choice(self._clocks)

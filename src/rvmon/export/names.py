@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 from math import prod
 from typing import assert_never
@@ -16,13 +16,18 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    Function,
     InLocation,
+    Invoke,
     Lookup,
     PathFormula,
     Slot,
     UnaryOperation,
     VariableValue,
+    expressions_of,
+    statements_in,
 )
+from rvmon.timed.model.guards import parts_of
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
@@ -80,6 +85,8 @@ class Names:
         clocks: in order, arrays as one thing.
         variables: likewise.
         channels: likewise.
+        locals: of functions, likewise.
+        functions: those that were named so far, those that others call before them.
         automata: a name for each.
     """
 
@@ -89,6 +96,8 @@ class Names:
         self.clocks = self._things([clock.name for clock in network.clocks])
         self.variables = self._things([variable.name for variable in network.variables])
         self.channels = self._things([channel.name for channel in network.channels])
+        self.locals = self._things([variable.name for variable in network.locals])
+        self.functions: dict[int, tuple[str, Function]] = {}
         self.automata = [self._fresh(automaton.name) for automaton in network.automata]
 
     def _fresh(self, name: str) -> str:
@@ -105,13 +114,31 @@ class Names:
         things = []
         numbered = enumerate(names)
         for base, members in groupby(numbered, key=lambda item: _INDICES.sub("", item[1])):
-            elements = list(members)
-            indices = [tuple(map(int, _INDICES.findall(name))) for _, name in elements]
-            extents = tuple(
-                range(min(places), max(places) + 1) for places in zip(*indices, strict=True)
-            )
-            things.append(Thing(self._fresh(base), elements[0][0], extents))
+            alike: dict[tuple[int, ...], int] = {}
+            for index, name in members:
+                place = tuple(map(int, _INDICES.findall(name)))
+                if place in alike:  # locals of one name follow each other
+                    things.append(self._thing(base, alike))
+                    alike = {}
+                alike[place] = index
+            things.append(self._thing(base, alike))
         return things
+
+    def _thing(self, base: str, indices: Mapping[tuple[int, ...], int]) -> Thing:
+        extents = tuple(
+            range(min(places), max(places) + 1) for places in zip(*indices, strict=True)
+        )
+        return Thing(self._fresh(base), min(indices.values()), extents)
+
+    def function(self, function: Function) -> str:
+        """The name of a function; those that it calls are named before."""
+        if id(function) not in self.functions:
+            for statement in statements_in(function.body):
+                for part in (p for e in expressions_of(statement) for p in parts_of(e)):
+                    if isinstance(part, Invoke):
+                        self.function(part.function)
+            self.functions[id(function)] = self._fresh(function.name), function
+        return self.functions[id(function)][0]
 
     def location(self, automaton: int, place: int) -> str:
         """The name of a location, unique in its automaton."""
@@ -122,6 +149,13 @@ class Names:
     def clock(self, index: int) -> str:
         """The text for a clock."""
         return _holder(self.clocks, index).element(index)
+
+    def variable(self, slot: Slot) -> str:
+        """The text for a variable that the variables may choose, be it one of a function."""
+        if slot.first >= 0:
+            return self.slot(slot, self.variables)
+        first = slot.first + len(self.network.locals)
+        return self.slot(replace(slot, first=first), self.locals)
 
     def slot(self, slot: Slot, things: Iterable[Thing]) -> str:
         """The text for a variable or channel that the variables may choose."""
@@ -140,16 +174,16 @@ class Names:
             case Constant(value):
                 return str(value) if value >= 0 else f"({value})"
             case VariableValue(slot):
-                return self.slot(slot, self.variables)
-            case Lookup(values, extent, index, _):
-                chosen = self.expression(index)
-                tests = zip(extent, values[:-1], strict=False)
-                text = "".join(f"{chosen} == {place} ? {value} : " for place, value in tests)
-                return f"({text}{values[-1]})"
+                return self.variable(slot)
+            case Lookup(values, slot):
+                return _chosen(values, slot.extents, [self.expression(i) for i in slot.indices])
+            case Invoke(function, arguments):
+                given = ", ".join(map(self.expression, arguments))
+                return f"{self.function(function)}({given})"
             case UnaryOperation(UnaryOp.NOT, operand):
                 return f"!({self.expression(operand)})"
-            case UnaryOperation(_, operand):
-                return f"(-{self.expression(operand)})"
+            case UnaryOperation(op, operand):
+                return f"({op}{self.expression(operand)})"
             case BinaryOperation(op, left, right):
                 sign = _SIGNS.get(op, str(op))
                 return f"({self.expression(left)} {sign} {self.expression(right)})"
@@ -167,6 +201,20 @@ class Names:
                 return f"{op}{limit} {self.expression(body)}"
             case _:
                 assert_never(expression)
+
+
+def _chosen(values: Sequence[int], extents: Sequence[range], indices: Sequence[str]) -> str:
+    """An element of a constant array, one condition for each index."""
+    if not extents:
+        return str(values[0])
+    size = len(values) // len(extents[0])
+    rows = [values[at : at + size] for at in range(0, len(values), size)]
+    texts = [_chosen(row, extents[1:], indices[1:]) for row in rows]
+    tests = "".join(
+        f"{indices[0]} == {place} ? {text} : "
+        for place, text in zip(extents[0], texts[:-1], strict=False)
+    )
+    return f"({tests}{texts[-1]})"
 
 
 def _holder(things: Iterable[Thing], index: int) -> Thing:

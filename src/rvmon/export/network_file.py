@@ -9,8 +9,9 @@ from pathlib import Path
 
 from rvmon.errors import RvmonError
 from rvmon.explain.graph import quoted
+from rvmon.export.functions import updates_text
 from rvmon.export.names import Names
-from rvmon.export.uppaal import condition_text, sync_text, updates_text, uppaal_xml
+from rvmon.export.uppaal import condition_text, sync_text, uppaal_xml
 from rvmon.timed.model.network import Automaton, Network
 from rvmon.timed.model.operators import LocationKind
 from rvmon.writing import write_whole
@@ -92,7 +93,7 @@ def _cluster(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
         parts = [
             condition_text(names, edge.guard),
             sync_text(names, edge),
-            updates_text(names, edge),
+            updates_text(names, edge.updates),
             f"weight {edge.weight}" if edge.weight != 1 else "",
         ]
         text = "\n".join(filter(None, parts))

@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
 from rvmon.diagnostics.shown import shown, shown_line
+from rvmon.export.functions import function_lines, type_text, updates_text
 from rvmon.export.names import Names, Thing
-from rvmon.timed.model.expressions import TRUE, PathFormula
+from rvmon.timed.model.expressions import TRUE, PathFormula, Variable
 from rvmon.timed.model.network import (
     Automaton,
     Edge,
@@ -22,9 +23,6 @@ from rvmon.timed.model.network import (
     Network,
     Query,
     QueryFormula,
-    Reset,
-    Update,
-    Variable,
 )
 from rvmon.timed.model.operators import LocationKind, PathOp
 from rvmon.timed.zones.zone_unions import has_paths
@@ -43,15 +41,19 @@ _GRID = (200, 150)
 def uppaal_xml(network: Network) -> str:
     """The network as the text of an XML file."""
     names = Names(network)
-    lines = [f"  <declaration>{_text(_declarations(network, names))}</declaration>"]
-    for index, automaton in enumerate(network.automata):
-        lines += _template(names, index, automaton)
-    lines.append(f"  <system>system {', '.join(names.automata)};</system>")
-    lines.append("  <queries>")
+    templates = [
+        line
+        for index, automaton in enumerate(network.automata)
+        for line in _template(names, index, automaton)
+    ]
+    lines = [f"  <system>system {', '.join(names.automata)};</system>", "  <queries>"]
     for query in network.queries:
         lines += _query(names, query)
     lines += ["  </queries>", "</nta>", ""]
-    return _HEAD + "\n".join(lines)
+    # Which functions there are, all that is above has told.
+    declared = _text(_declarations(network, names))
+    head = f"  <declaration>{declared}</declaration>"
+    return _HEAD + "\n".join([head, *templates, *lines])
 
 
 def left_out(network: Network) -> list[Query]:
@@ -73,12 +75,8 @@ def _declarations(network: Network, names: Names) -> str:
         lines.append(f"{kind}chan {thing.declarator};")
     for thing in names.variables:
         members = network.variables[thing.first : thing.first + thing.length]
-        lines.append(f"{_type(members[0])} {thing.declarator} = {_initial(thing, members)};")
-    return "\n".join([*lines, ""])
-
-
-def _type(variable: Variable) -> str:
-    return "bool" if variable.is_bool else f"int[{variable.low},{variable.high}]"
+        lines.append(f"{type_text(members[0])} {thing.declarator} = {_initial(thing, members)};")
+    return "\n".join([*lines, *function_lines(names), ""])
 
 
 def _initial(thing: Thing, members: tuple[Variable, ...]) -> str:
@@ -119,7 +117,7 @@ def _edge(names: Names, index: int, edge: Edge) -> Iterator[str]:
     labels = {
         "guard": condition_text(names, edge.guard),
         "synchronisation": sync_text(names, edge),
-        "assignment": updates_text(names, edge),
+        "assignment": updates_text(names, edge.updates),
     }
     comments = [f"weight {edge.weight}"] if edge.weight != 1 else []
     labels["comments"] = "\n".join([*comments, *([f"as {edge.label}"] if edge.label else [])])
@@ -143,18 +141,6 @@ def sync_text(names: Names, edge: Edge) -> str:
         return ""
     channel = names.slot(edge.sync.slot, names.channels)
     return channel + ("!" if edge.sync.sends else "?")
-
-
-def updates_text(names: Names, edge: Edge) -> str:
-    """The updates of an edge in their order."""
-    return ", ".join(_update(names, update) for update in edge.updates)
-
-
-def _update(names: Names, update: Update) -> str:
-    if isinstance(update, Reset):
-        return f"{names.clock(update.clock)} = {names.expression(update.value)}"
-    target = names.slot(update.slot, names.variables)
-    return f"{target} = {names.expression(update.value)}"
 
 
 def _query(names: Names, query: Query) -> Iterator[str]:

@@ -7,7 +7,8 @@ from dataclasses import asdict
 from fractions import Fraction
 from typing import Any
 
-from rvmon.timed.model.network import Network, Variable
+from rvmon.timed.model.expressions import Variable
+from rvmon.timed.model.network import Network
 from rvmon.timed.observation.outcome import Observation
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
 from rvmon.timed.runs.statistics import ERROR, Sampled

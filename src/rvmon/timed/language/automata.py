@@ -3,34 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from itertools import product
 
 from rvmon.diagnostics import Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
-from rvmon.timed.language.declare import Findings, Parts, refuse_double
+from rvmon.timed.language.bodies import updates_of
+from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
-from rvmon.timed.language.resolve import MAX_VALUES, Resolver, values_of
-from rvmon.timed.model.expressions import MAX_TIME, ClockOp, Constant
-from rvmon.timed.model.guards import is_discrete, split_guard
+from rvmon.timed.language.layout import MAX_VALUES, refuse_double, values_of
+from rvmon.timed.language.resolve import Resolver
+from rvmon.timed.model.guards import refuse_changes, split_guard
 from rvmon.timed.model.network import (
-    Assignment,
     Automaton,
     Channel,
     Edge,
     Guard,
     Location,
-    Reset,
     Sync,
-    Update,
 )
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
     ChannelSymbol,
     ConstantSymbol,
     Scope,
-    VariableSymbol,
 )
 
 
@@ -60,7 +56,7 @@ def automaton_of(
         invariant = Guard()
         with findings.collect():
             if written.invariant is not None:
-                invariant = _invariant(written.invariant, scope, resolver)
+                invariant = _guard(written.invariant, scope, resolver)
         locations.append(Location(written.name, written.kind, invariant, written.span))
     edges: list[Edge] = []
     for edge in template.edges:
@@ -85,12 +81,10 @@ def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
     return names[name.name]
 
 
-def _invariant(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Guard:
-    guard = split_guard(resolver.expression(written, scope), written.span)
-    if any(compare.op in (ClockOp.GE, ClockOp.GT) for compare in guard.clocks):
-        fix = "put it on the guards of the edges that lead here"
-        raise model_error("TA009", "an invariant bounds a clock from below", written.span, fix)
-    return guard
+def _guard(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Guard:
+    condition = resolver.expression(written, scope)
+    refuse_changes(condition, written.span)
+    return split_guard(condition, written.span)
 
 
 def _edges(
@@ -117,15 +111,29 @@ def _edges(
         inner = scope.inner(selected) if selected else scope
         guard = Guard()
         if written.guard is not None:
-            guard = split_guard(resolver.expression(written.guard, inner), written.guard.span)
+            guard = _guard(written.guard, inner, resolver)
         sync = None if written.sync is None else _sync(written.sync, inner, resolver)
         if sync is not None:
             _refuse_clock_guard(guard, parts.channels[sync.slot.first], sync, written.span)
-        updates = tuple(_update(update, inner, resolver) for update in written.updates)
+        updates = updates_of(written.updates, inner, resolver)
+        weight = _weight(written, inner, resolver)
+        if weight == 0:
+            continue
         yield Edge(
-            source, target, guard, sync, updates, written.weight, written.label,
+            source, target, guard, sync, updates, weight, written.label,
             _edge_text(written, selected), written.span,
         )  # fmt: skip
+
+
+def _weight(written: syntax.EdgeText, scope: Scope, resolver: Resolver) -> float:
+    """The share of the runs that take an edge: written by itself, or among its branches."""
+    if written.shares is None:
+        return written.weight
+    own, *every = (resolver.constant(w, scope) for w in (written.shares[0], *written.shares[1]))
+    if min(every) < 0 or max(every) == 0:
+        fix = "weights are whole numbers, one of them above 0"
+        raise model_error("TA017", "the branches of this edge have no share", written.span, fix)
+    return own / sum(every)
 
 
 def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol]) -> str:
@@ -141,6 +149,8 @@ def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol])
 def _sync(written: syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
     match resolver.symbol(written.channel, scope):
         case ChannelSymbol(slot) if len(slot.indices) == len(slot.extents):
+            for index in slot.indices:
+                refuse_changes(index, written.span)
             return Sync(slot, written.sends)
         case ChannelSymbol():
             raise model_error("TA004", "an array of channels", written.span, "give an index")
@@ -150,27 +160,6 @@ def _sync(written: syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
 
 
 def _refuse_clock_guard(guard: Guard, channel: Channel, sync: Sync, span: Span) -> None:
-    if guard.clocks and channel.urgent:
+    if guard.clocks and channel.urgent and (sync.sends or not channel.broadcast):
         fix = "move the clock guard to an edge before, or make the channel not urgent"
         raise model_error("TA011", "a clock guard on an urgent channel", span, fix)
-    if guard.clocks and channel.broadcast and not sync.sends:
-        fix = "put the clock guard on the sender, or on an edge behind"
-        raise model_error("TA012", "a clock guard on a broadcast receiver", span, fix)
-
-
-def _update(written: syntax.UpdateText, scope: Scope, resolver: Resolver) -> Update:
-    clock = resolver.clock(written.target, scope)
-    value = resolver.expression(written.value, scope)
-    if not is_discrete(value):
-        fix = "set variables by numbers and variables only"
-        raise model_error("TA009", "a clock's state is written to a variable", written.span, fix)
-    if clock is not None:
-        if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
-            raise model_error("TA007", f"a clock is set to {value.value}", written.span)
-        return Reset(clock, value, written.span)
-    match resolver.symbol(written.target, scope):
-        case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
-            return Assignment(replace(slot, span=written.target.span), value)
-        case _:
-            fix = "only variables and clocks can be set"
-            raise model_error("TA004", "this cannot be set", written.target.span, fix)

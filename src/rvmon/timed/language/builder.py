@@ -38,7 +38,7 @@ class AutomatonBuilder:
             ModelError: the invariant cannot be read.
         """
         span = _span(f"location {self.name}.{name}", name)
-        condition = _read("expression", invariant, f"invariant of {self.name}.{name}", None)
+        condition = _read("conditions", invariant, f"invariant of {self.name}.{name}", None)
         self.locations.append(syntax.LocationText(name, kind, condition, span))
         if initial or self.initial is None:
             self.initial = syntax.Name(name, span)
@@ -72,7 +72,7 @@ class AutomatonBuilder:
                 syntax.Name(target, _span(place, target)),
                 span,
                 _read("selections", select, f"selection of {place}", ()),
-                _read("expression", guard, f"guard of {place}", None),
+                _read("conditions", guard, f"guard of {place}", None),
                 _read("sync", sync, f"synchronisation of {place}", None),
                 _read("updates", update, f"update of {place}", ()),
                 weight,

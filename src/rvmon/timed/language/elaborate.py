@@ -10,14 +10,17 @@ from rvmon.diagnostics import Severity, Source, Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
 from rvmon.timed.language.automata import automaton_of, location_names
-from rvmon.timed.language.declare import Findings, Parts, declare, refuse_double
+from rvmon.timed.language.declare import Findings, Parts, declare
+from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import processes_of
+from rvmon.timed.language.layout import refuse_double
 from rvmon.timed.language.linear import assuming
+from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.parse import parse_query
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.syntax import SignalText
 from rvmon.timed.model.expressions import Expression
-from rvmon.timed.model.guards import is_discrete
+from rvmon.timed.model.guards import is_discrete, refuse_changes
 from rvmon.timed.model.network import (
     Automaton,
     Chance,
@@ -28,7 +31,7 @@ from rvmon.timed.model.network import (
     QueryFormula,
     Signal,
 )
-from rvmon.timed.model.rules import finding, model_error
+from rvmon.timed.model.rules import finding, left_out, model_error
 from rvmon.timed.model.scope import AutomatonKey, AutomatonSymbol, Names, Scope
 
 MAX_EDGES = 100_000
@@ -47,7 +50,8 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
     """
     findings, parts = Findings(), Parts()
     document = _with_constants(document, constants or {}, findings)
-    resolver = Resolver(open_ints=document.open_ints)
+    functions = Functions(parts.variables)
+    resolver = Resolver(functions, open_ints=document.open_ints)
     top = Scope()
     declare(document.declarations, top, parts, resolver, findings)
     automata, edges = list[Automaton](), 0
@@ -66,12 +70,17 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
             break
     if not automata and not findings.found:
         findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
-    names = Names(top, symbols)
+    names = Names(top, symbols, functions)
     # Without all automata, which is an error itself, queries have no meaning.
     complete = bool(symbols) and not findings.has("TA019")
-    queries = _queries(document.queries if complete else (), names, findings)
+    queries = _queries(
+        document.queries if complete else (), names, findings, lenient=document.open_ints
+    )
     signals = _signals(document.signals if complete else (), names, findings)
     _check_channels(parts, automata, findings)
+    findings.raise_errors()
+    with findings.collect():
+        automata = list(without_lower_bounds(automata, parts.channels))
     findings.raise_errors()
     return Network(
         document.name,
@@ -122,17 +131,21 @@ def query_on(network: Network, text: str) -> Query:
 
 
 def _queries(
-    written: Iterable[syntax.QueryText], names: Names, findings: Findings
+    written: Iterable[syntax.QueryText], names: Names, findings: Findings, *, lenient: bool = False
 ) -> tuple[Query, ...]:
-    resolver, top = Resolver(names.automata), names.top
+    """The queries that have a meaning; if `lenient`, one that has none is only left out."""
+    resolver, top = Resolver(names.functions, names.automata), names.top
     queries, ids = [], Scope()
     for query in written:
-        with findings.collect():
+        own = Findings()
+        with own.collect() if lenient else findings.collect():
             if query.id:
                 refuse_double(query.id, query.span, ids)
                 ids.places[query.id] = query.span
             meaning = _formula(query.formula, resolver, top)
             queries.append(Query(query.id, query.remark, query.text, meaning, query.span))
+        for found in own.found.values():
+            findings.add(left_out(query.text, found))
     return tuple(queries)
 
 
@@ -150,12 +163,13 @@ def signal_on(network: Network, name: str, text: str) -> Signal:
 
 
 def _signals(written: Iterable[SignalText], names: Names, findings: Findings) -> tuple[Signal, ...]:
-    resolver, signals, taken = Resolver(names.automata), list[Signal](), Scope()
+    resolver = Resolver(names.functions, names.automata)
+    signals, taken = list[Signal](), Scope()
     for signal in written:
         with findings.collect():
             refuse_double(signal.name, signal.span, taken)
             taken.places[signal.name] = signal.span
-            value = resolver.expression(signal.value, names.top)
+            value = _condition(signal.value, resolver, names.top)
             if not is_discrete(value):
                 fix = "use locations and variables only"
                 raise model_error("TA009", "a signal with clocks or runs", signal.span, fix)
@@ -196,9 +210,15 @@ def _decided(
         asked = _decided(written.query, resolver, top)
         return assuming(asked, resolver.expression(written.premise, top), written.span)
     if not isinstance(written, syntax.LeadsTo):
-        return resolver.expression(written, top)
-    left, right = resolver.expression(written.left, top), resolver.expression(written.right, top)
+        return _condition(written, resolver, top)
+    left, right = _condition(written.left, resolver, top), _condition(written.right, resolver, top)
     return LeadsToFormula(left, right, resolver.limit(written.bound, top))
+
+
+def _condition(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expression:
+    condition = resolver.expression(written, top)
+    refuse_changes(condition, written.span)
+    return condition
 
 
 def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findings) -> None:

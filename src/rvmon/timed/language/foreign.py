@@ -8,9 +8,10 @@ Reason = tuple[str, str]
 """What is not supported, and what to do instead."""
 
 _STATEMENTS: Reason = (
-    "statements are not supported",
-    "an update is a list of assignments: put conditions on edges",
+    "statements stand in functions only",
+    "write a function, and call it in the update",
 )
+_JUMPS: Reason = ("break, continue and switch are not supported", "write if and while")
 _GAMES: Reason = ("games and strategies are not supported", "ask for a run with E<>")
 _EXTREMES: Reason = ("extreme values are not computed", "ask whether A[] x <= bound holds")
 _STATISTICS: Reason = (
@@ -40,12 +41,8 @@ _PRIORITIES: Reason = (
     "priorities are not supported",
     "order the steps by guards or by committed locations",
 )
-_BITS: Reason = ("operators on bits, minimum and maximum are not supported", "write them out")
 
 _DECLARING: dict[str, Reason] = {
-    "struct": ("records (struct) are not supported", "declare one variable for each field"),
-    "scalar": ("scalar sets are not supported", "use int[0, n - 1]: the answers are the same"),
-    "meta": ("meta variables are not supported", "declare a plain variable"),
     "hybrid": ("hybrid clocks are not supported", "use a plain clock"),
     "double": _FRACTIONS,
     "string": _TEXTS,
@@ -58,8 +55,11 @@ _DECLARING: dict[str, Reason] = {
 _COMPUTING: dict[str, Reason] = {
     **_DECLARING,
     "priority": _PRIORITIES,
-    "sum": ("sums over a type are not supported", "write the terms out"),
-    **dict.fromkeys(("if", "else", "for", "while", "do", "return", "switch"), _STATEMENTS),
+    **dict.fromkeys(("break", "continue", "switch"), _JUMPS),
+}
+_UPDATING: dict[str, Reason] = {
+    **_COMPUTING,
+    **dict.fromkeys(("if", "else", "for", "while", "do", "return"), _STATEMENTS),
 }
 _ASKING: dict[str, Reason] = {
     **dict.fromkeys(("Pr", "simulate"), _STATISTICS),
@@ -67,10 +67,16 @@ _ASKING: dict[str, Reason] = {
     **dict.fromkeys(("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"), _GAMES),
     **dict.fromkeys(("U", "W", "AU", "EU"), _UNTIL),
 }
+_REAL = (
+    "abs fabs fmod sqrt pow exp log ln floor ceil round sin cos tan random random_normal fint "
+    "hypot isnan"
+)
+REAL_FUNCTIONS = frozenset(_REAL.split())
+"""Of UPPAAL, over numbers with a fraction."""
+
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _OLD_CONSTANT = re.compile(r"\bconst\s+(\w+)\s+(-?\d+)$")
-_BIT_OPERATOR = re.compile(r"<<|>>|<\?|>\?|[&|^~]")
-_FRACTION = re.compile(r"\d+\.\d+$")
+_FRACTION = re.compile(r"\d*\.\d")
 
 
 def type_reason(name: str) -> Reason | None:
@@ -85,37 +91,27 @@ def type_reason(name: str) -> Reason | None:
 def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
     """What of UPPAAL's language a text uses at the place where it could not be read.
 
-    >>> reason_at("meta int i;", 5, 3, "declarations")[0]
-    'meta variables are not supported'
+    >>> reason_at("hybrid clock x;", 7, 5, "declarations")[0]
+    'hybrid clocks are not supported'
     """
     end = start + length
-    found, clause = text[start:end], _clause(text[:end], rule)
+    found, clause = text[start:end], _clause(text[:end].rstrip(" ;"), rule)
     words = re.findall(r"\w+", clause)
-    table = {"query": _ASKING, "document": _DECLARING}.get(rule, _COMPUTING)
+    tables = {"query": _ASKING, "document": _DECLARING, "updates": _UPDATING}
+    table = tables.get(rule, _COMPUTING)
     for word in words:
         if word in table:
             return table[word]
     if old := _OLD_CONSTANT.search(clause):
         return "a constant without a type", f"write const int {old[1]} = {old[2]}"
-    if _FRACTION.search(clause):
+    if _FRACTION.match(text, start):
         return _FRACTIONS
     if rule == "system" and found in ("<", ">"):
         return _PRIORITIES
-    if rule in ("declarations", "system") and found == "(":
-        return "functions are not supported", "write the body out where it is used"
-    if rule == "updates":
-        if found in ("", ",") and clause.rstrip(" ,\n").endswith(")"):
-            return "functions are not supported", "write the assignments of its body out"
-        if found == "=":
-            return "an assignment is no value", "write one assignment after the other"
+    if found in ("=", ":=") and rule in ("updates", "declarations"):
+        return "an assignment is no value", "write one assignment after the other"
     if found == "'":
         return _RATES
-    if found == "{" and rule != "document":
-        return _STATEMENTS
-    if rule == "expression" and found == ",":
-        return "a list of conditions", "join them by &&"
-    if _BIT_OPERATOR.search(text[max(0, start - 1) : start + 2]) and rule != "document":
-        return _BITS
     return None
 
 

@@ -8,14 +8,17 @@ from itertools import product
 
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
-from rvmon.timed.language.declare import Findings, array_extent, check_range, refuse_double
-from rvmon.timed.language.resolve import MAX_VALUES, Resolver, values_of
+from rvmon.timed.language.declare import Findings, check_range
+from rvmon.timed.language.layout import MAX_VALUES, count_of, refuse_double, values_of
+from rvmon.timed.language.resolve import Resolver
+from rvmon.timed.language.symbols import leaves
 from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
     ChannelSymbol,
     ClockSymbol,
     ConstantSymbol,
+    RecordSymbol,
     Scope,
     Symbol,
     VariableSymbol,
@@ -139,7 +142,7 @@ def _argument(
 ) -> Symbol:
     """What an argument stands for; its type has the names of `own`, itself those of `scope`."""
     kind = resolver.type(parameter.type, own)
-    extents = tuple(array_extent(size, own, resolver) for size in parameter.sizes)
+    extents = (*resolver.extents(parameter.sizes, own), *kind.extents)
     if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
@@ -153,8 +156,10 @@ def _argument(
         case VariableSymbol(slot):
             fits = kind.base in (BaseType.INT, BaseType.BOOL)
             fits = fits and slot.extents[len(slot.indices) :] == extents
+        case RecordSymbol():
+            fits = bool(kind.fields) and len(leaves(symbol)) == count_of(kind, extents)
         case _:
-            fits = isinstance(symbol, ConstantSymbol) and kind.const
+            fits = isinstance(symbol, ConstantSymbol) and (kind.const or not parameter.reference)
     if not fits:
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
         raise model_error("TA015", "this argument is of the wrong kind", written.span, fix)

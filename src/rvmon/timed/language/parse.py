@@ -23,7 +23,7 @@ STARTS = (
     "declarations",
     "parameters",
     "selections",
-    "expression",
+    "conditions",
     "sync",
     "updates",
     "instances",
@@ -84,7 +84,7 @@ def parse_part(text: str, start: str, place: Place) -> Any:
     if len(text) > MAX_CHARACTERS:
         raise model_error("TA019", f"the text has more than {MAX_CHARACTERS:,} characters", None)
     try:
-        tree = _parser().parse(text, start=start)
+        tree = _parser(whole=start == "document").parse(text, start=start)
         return SyntaxBuilder(place).transform(tree)
     except lark.exceptions.UnexpectedInput as error:
         raise _syntax_error(error, text, start, place) from None
@@ -95,9 +95,11 @@ def parse_part(text: str, start: str, place: Place) -> Any:
 
 
 @cache
-def _parser() -> lark.Lark:
+def _parser(whole: bool) -> lark.Lark:
+    """The parser of `.ta` files, or that of their parts, in which words of the former are names."""
     grammar = resources.files("rvmon.timed.language").joinpath("ta.lark").read_text("utf-8")
-    options = {"parser": "lalr", "start": list(STARTS), "propagate_positions": True}
+    starts = list(STARTS[:1] if whole else STARTS[1:])
+    options = {"parser": "lalr", "start": starts, "propagate_positions": True}
     return parser_of(grammar, options)
 
 
@@ -166,7 +168,7 @@ def _word(terminal: str) -> str:
         case "$END":
             return "the end"
         case _:
-            pattern = _parser().get_terminal(terminal).pattern
+            pattern = _parser(whole=True).get_terminal(terminal).pattern
             return f"`{pattern.value}`" if pattern.type == "str" else ""
 
 

@@ -4,14 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-from lark import Token, Transformer, v_args
+from lark import v_args
 from lark.tree import Meta
 
 from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
+from rvmon.timed.language.statement_builder import StatementBuilder
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 
@@ -30,18 +31,8 @@ _CTL = {
 
 
 @v_args(meta=True)
-class QueryBuilder(Transformer[Token, Any]):
+class QueryBuilder(StatementBuilder):
     """One method per rule; `place` maps offsets of the text to spans."""
-
-    def __init__(self, place: Callable[[int, int], Span]) -> None:
-        super().__init__()
-        self._place = place
-
-    def _span(self, meta: Meta) -> Span:
-        return self._place(0, 0) if meta.empty else self._place(meta.start_pos, meta.end_pos)
-
-    def _token_span(self, token: Token) -> Span:
-        return self._place(token.start_pos or 0, token.end_pos or 0)
 
     def path(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
         word, *bound, body = items

@@ -4,46 +4,53 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import assert_never
+from typing import Protocol, assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
-from rvmon.timed.language.foreign import type_reason
+from rvmon.timed.language.foreign import REAL_FUNCTIONS, type_reason
+from rvmon.timed.language.layout import MAX_VALUES, Extents, Value, values_of
 from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
-from rvmon.timed.language.symbols import clock_of, element_of, value_of
-from rvmon.timed.model.evaluate import apply_binary, apply_unary
+from rvmon.timed.language.operations import (
+    COMPARISONS,
+    MIRRORED,
+    SAMENESS,
+    binary,
+    compare_clock,
+    joined,
+    refuse_clocks,
+    unary,
+    whole_compare,
+)
+from rvmon.timed.language.symbols import clock_of, element_of, is_whole, value_of
 from rvmon.timed.model.expressions import (
     MAX_TIME,
     TRUE,
-    BinaryOperation,
     Choice,
-    ClockCompare,
-    ClockOp,
     Constant,
     Deadlock,
     Expression,
     InLocation,
     PathFormula,
-    UnaryOperation,
+    Slot,
+    Variable,
 )
-from rvmon.timed.model.guards import is_discrete
-from rvmon.timed.model.operators import BaseType, BinaryOp, UnaryOp
+from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error, refusal
 from rvmon.timed.model.scope import (
     AutomatonKey,
     AutomatonSymbol,
     ClockSymbol,
     ConstantSymbol,
+    FunctionSymbol,
+    RecordSymbol,
     ResolvedType,
     Scope,
     Symbol,
     TypeSymbol,
 )
-
-MAX_VALUES = 10_000
-"""The most values that a quantifier, a `select`, a parameter or an array may range over."""
 
 MAX_UNROLLED = 100_000
 """The most conditions that the quantifiers of a model may stand for together."""
@@ -54,16 +61,30 @@ INT16 = (-32768, 32767)
 INT32 = (-(1 << 31), (1 << 31) - 1)
 """What a constant without a range may be."""
 
-_CONNECTIVES = {BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLY, BinaryOp.EQ, BinaryOp.NE}
-_COMPARISONS = {BinaryOp.LT, BinaryOp.LE, BinaryOp.EQ, BinaryOp.NE, BinaryOp.GE, BinaryOp.GT}
-_MIRRORED = {
-    BinaryOp.LT: BinaryOp.GT,
-    BinaryOp.LE: BinaryOp.GE,
-    BinaryOp.GE: BinaryOp.LE,
-    BinaryOp.GT: BinaryOp.LT,
-    BinaryOp.EQ: BinaryOp.EQ,
-    BinaryOp.NE: BinaryOp.NE,
-}
+
+class Calls(Protocol):
+    """Functions that can be called (`functions.Functions`)."""
+
+    @property
+    def locals(self) -> Sequence[Variable]:
+        """The parameters and local variables; the first has slot −1."""
+        ...
+
+    def call(
+        self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Resolver
+    ) -> Expression:
+        """The value of a call."""
+        ...
+
+    def place(
+        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
+    ) -> Symbol:
+        """Make room for parameters or local variables."""
+        ...
+
+    def variable(self, slot: Slot) -> Variable:
+        """The variable of a slot, or the first of its array."""
+        ...
 
 
 @dataclass(slots=True)
@@ -71,11 +92,13 @@ class Resolver:
     """What expressions may refer to beside the names of their scope.
 
     Attributes:
+        functions: those that can be called.
         automata: by name and arguments; only queries can see them.
         open_ints: whether `int` without a range is allowed.
         unrolled: conditions that quantifiers stood for so far.
     """
 
+    functions: Calls
     automata: Mapping[AutomatonKey, AutomatonSymbol] = field(default_factory=dict)
     open_ints: bool = False
     unrolled: int = 0
@@ -91,6 +114,8 @@ class Resolver:
                 return Constant(value)
             case syntax.Name("deadlock", _) if self.automata and not scope.find("deadlock"):
                 return Deadlock()
+            case syntax.Call(name) if isinstance(function := scope.find(name), FunctionSymbol):
+                return self.functions.call(function, written, scope, self)
             case syntax.Call(name, (body,), span) if name in LINEAR_WORDS and self.automata:
                 return linear_of(name, self.expression(body, scope), span)
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
@@ -98,28 +123,30 @@ class Resolver:
                     return location
                 return value_of(self.symbol(written, scope), written.span)
             case syntax.Unary(op, operand, span):
-                return _unary(op, self.expression(operand, scope), span)
+                return unary(op, self.expression(operand, scope), span)
             case syntax.Binary(op, left, right, span):
-                if op in _COMPARISONS and (clocks := self._clock_compare(written, scope)):
+                if op in COMPARISONS and (clocks := self._clock_compare(written, scope)):
                     return clocks
+                if op in SAMENESS and (whole := self._whole_compare(written, scope)):
+                    return whole
                 first = self.expression(left, scope)
                 if first == Constant(0) and op is BinaryOp.AND:
                     return first  # what stands behind need not have a meaning then
-                return _binary(op, first, self.expression(right, scope), span)
+                return binary(op, first, self.expression(right, scope), span)
             case syntax.Conditional(condition, then, otherwise, _):
                 test = self.expression(condition, scope)
                 yes, no = self.expression(then, scope), self.expression(otherwise, scope)
                 if isinstance(test, Constant):
                     return yes if test.value else no
                 return Choice(test, yes, no)
-            case syntax.Quantified(universal, name, kind, body, span):
+            case syntax.Quantified(op, name, kind, body, span):
                 values = values_of(self.type(kind, scope), kind.span)
                 self._count(len(values), span)
                 parts = [
                     self.expression(body, scope.inner({name: ConstantSymbol(value)}))
                     for value in values
                 ]
-                return _joined(BinaryOp.AND if universal else BinaryOp.OR, parts, span)
+                return joined(op, parts, span)
             case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries speak of runs", span)
@@ -168,15 +195,44 @@ class Resolver:
             raise model_error("TA007", f"a bound of {units}", written.span, fix)
         return units
 
+    def extents(self, sizes: Sequence[syntax.Size], scope: Scope) -> tuple[range, ...]:
+        """The indices of each dimension: those below a number, or a type's values.
+
+        Raises:
+            ModelError: a size is not a constant above 0, or a type has too many values.
+        """
+        return tuple(self._extent(size, scope) for size in sizes)
+
+    def _extent(self, size: syntax.Size, scope: Scope) -> range:
+        if isinstance(size, syntax.TypeText):
+            return values_of(self.type(size, scope), size.span)
+        if isinstance(size, syntax.Name) and isinstance(
+            symbol := scope.find(size.name), TypeSymbol
+        ):
+            return values_of(symbol.type, size.span)
+        number = self.constant(size, scope)
+        if number < 1:
+            raise model_error("TA007", f"an array of {number} elements", size.span)
+        if number > MAX_VALUES:
+            raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", size.span)
+        return range(number)
+
     def type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
         """The type with its range evaluated.
 
         Raises:
             ModelError: the range is empty, missing, or not constant; the typedef does not exist.
         """
-        prefixes = {
-            "const": written.const, "broadcast": written.broadcast, "urgent": written.urgent
-        }  # fmt: skip
+        kind = self._plain_type(written, scope)
+        return replace(
+            kind,
+            const=kind.const or written.const,
+            broadcast=kind.broadcast or written.broadcast,
+            urgent=kind.urgent or written.urgent,
+        )
+
+    def _plain_type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
+        """A type without its prefixes."""
         if written.base is BaseType.NAMED:
             symbol = scope.find(written.name)
             if not isinstance(symbol, TypeSymbol):
@@ -185,24 +241,27 @@ class Resolver:
                 types = [n for n in scope.names() if isinstance(scope.find(n), TypeSymbol)]
                 fix = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
                 raise model_error("TA002", f"no type named `{written.name}`", written.span, fix)
-            base = symbol.type
-            return replace(
-                base,
-                const=base.const or written.const,
-                broadcast=base.broadcast or written.broadcast,
-                urgent=base.urgent or written.urgent,
-            )
+            return symbol.type
+        if written.base is BaseType.RECORD:
+            fields = {}
+            for part in written.fields:
+                kind = self.type(part.type, scope)
+                if part.name in fields:
+                    raise model_error("TA003", f"two fields named `{part.name}`", part.span)
+                sizes = self.extents(part.sizes, scope)
+                fields[part.name] = replace(kind, extents=(*sizes, *kind.extents))
+            return ResolvedType(BaseType.RECORD, fields=tuple(fields.items()))
         if written.base is not BaseType.INT:
-            return ResolvedType(written.base, 0, 1, **prefixes)
+            return ResolvedType(written.base, 0, 1)
         if written.low is None or written.high is None:
             if not (self.open_ints or written.const):
                 fix = "give its range: int[low, high]"
                 raise model_error("TA005", "an int without a range", written.span, fix)
-            return ResolvedType(BaseType.INT, *(INT32 if written.const else INT16), **prefixes)
+            return ResolvedType(BaseType.INT, *(INT32 if written.const else INT16))
         low, high = self.constant(written.low, scope), self.constant(written.high, scope)
         if low > high:
             raise model_error("TA007", f"the range [{low}, {high}] is empty", written.span)
-        return ResolvedType(BaseType.INT, low, high, **prefixes)
+        return ResolvedType(BaseType.INT, low, high)
 
     def symbol(self, written: syntax.Expression, scope: Scope) -> Symbol:
         """What a name, an element or a member stands for.
@@ -225,8 +284,14 @@ class Resolver:
                 return symbol
             case syntax.Index(base, index, span):
                 position = self.expression(index, scope)
-                _refuse_clocks(position, index.span)
+                refuse_clocks(position, index.span)
                 return element_of(self.symbol(base, scope), position, span)
+            case syntax.Member(base, name, span) if whole := self._record(base, scope):
+                fields = dict(whole.fields)
+                if name not in fields:
+                    fix = did_you_mean(name, list(fields))
+                    raise model_error("TA002", f"no field `{name}`", span, fix)
+                return fields[name]
             case syntax.Member(base, name, span):
                 automaton = self._automaton(base, scope)
                 if name in automaton.scope.symbols:
@@ -237,10 +302,11 @@ class Resolver:
             case syntax.Call(name, _, span):
                 if any(name == known for known, _ in self.automata):
                     raise _no_value(span)
-                fix = "write the value out, or use an array"
-                raise model_error(
-                    "TA016", f"functions such as `{name}` are not supported", span, fix
-                )
+                if name in REAL_FUNCTIONS:
+                    fix = "numbers are whole here: write it as a function over integers"
+                    raise model_error("TA016", f"`{name}` is not supported", span, fix)
+                names = [n for n in scope.names() if isinstance(scope.find(n), FunctionSymbol)]
+                raise model_error("TA002", f"no function `{name}`", span, did_you_mean(name, names))
             case _:
                 fix = "name a variable, a clock or a channel"
                 raise model_error("TA004", "this is no name", written.span, fix)
@@ -267,12 +333,43 @@ class Resolver:
             bound = self.expression(written.right, scope)
             return compare_clock(left, written.op, bound, written.span)
         if right is not None:
-            op = _MIRRORED[written.op]
+            op = MIRRORED[written.op]
             return compare_clock(right, op, self.expression(written.left, scope), written.span)
         return None
 
+    def _whole_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
+        """Records or arrays compared element by element."""
+        left, right = self._whole(written.left, scope), self._whole(written.right, scope)
+        if left is None or right is None:
+            return None
+        return whole_compare(written.op, left, right, written.span)
+
+    def _whole(self, written: syntax.Expression, scope: Scope) -> Symbol | None:
+        """The record or array that an expression names, if it names one."""
+        if not isinstance(written, syntax.Name | syntax.Index | syntax.Member):
+            return None
+        if self._location(written, scope) is not None:
+            return None
+        symbol = self.symbol(written, scope)
+        return symbol if is_whole(symbol) else None
+
+    def _record(self, written: syntax.Expression, scope: Scope) -> RecordSymbol | None:
+        """The record that an expression names, if it names one."""
+        match written:
+            case syntax.Name(name):
+                symbol = scope.find(name)
+            case syntax.Index(base, index, span) if inner := self._record(base, scope):
+                symbol = element_of(inner, self.expression(index, scope), span)
+            case syntax.Member(base, name) if inner := self._record(base, scope):
+                symbol = dict(inner.fields).get(name)
+            case syntax.Member(syntax.Name() | syntax.Call() as base, name) if self.automata:
+                symbol = self._automaton(base, scope).scope.symbols.get(name)
+            case _:
+                return None
+        return symbol if isinstance(symbol, RecordSymbol) else None
+
     def _location(self, written: syntax.Expression, scope: Scope) -> InLocation | None:
-        if not isinstance(written, syntax.Member):
+        if not isinstance(written, syntax.Member) or self._record(written.base, scope):
             return None
         automaton = self._automaton(written.base, scope)
         if written.name not in automaton.locations:
@@ -306,98 +403,6 @@ def _refuse_difference(resolver: Resolver, written: syntax.Binary, scope: Scope)
             raise model_error("TA008", "a difference or sum of clocks", written.span, fix)
 
 
-def compare_clock(clock: int, op: BinaryOp, bound: Expression, span: Span) -> Expression:
-    """A comparison of a clock as one or two bounds.
-
-    Raises:
-        ModelError: the bound is no number of units of time.
-    """
-    if not is_discrete(bound):
-        raise model_error("TA008", "a clock compared with clocks", span)
-    if isinstance(bound, Constant) and not 0 <= bound.value < MAX_TIME:
-        fix = f"clocks are compared with numbers from 0 to {MAX_TIME - 1:,}"
-        raise model_error("TA007", f"a clock compared with {bound.value}", span, fix)
-    match op:
-        case BinaryOp.EQ:
-            return BinaryOperation(
-                BinaryOp.AND,
-                ClockCompare(clock, ClockOp.GE, bound),
-                ClockCompare(clock, ClockOp.LE, bound),
-            )
-        case BinaryOp.NE:
-            return BinaryOperation(
-                BinaryOp.OR,
-                ClockCompare(clock, ClockOp.LT, bound),
-                ClockCompare(clock, ClockOp.GT, bound),
-            )
-        case _:
-            return ClockCompare(clock, ClockOp(op.value), bound)
-
-
-def _unary(op: UnaryOp, operand: Expression, span: Span) -> Expression:
-    if op is not UnaryOp.NOT:
-        _refuse_clocks(operand, span)
-    if isinstance(operand, Constant):
-        return Constant(apply_unary(op, operand.value))
-    return UnaryOperation(op, operand)
-
-
-def _refuse_clocks(operand: Expression, span: Span) -> None:
-    if not is_discrete(operand):
-        fix = "arithmetic is for numbers; join conditions by and, or, not, imply"
-        raise model_error("TA009", "a condition on clocks or runs is no number", span, fix)
-
-
-def _binary(op: BinaryOp, left: Expression, right: Expression, span: Span) -> Expression:
-    if op not in _CONNECTIVES:
-        _refuse_clocks(left, span)
-        _refuse_clocks(right, span)
-    match op, left, right:
-        case BinaryOp.DIV | BinaryOp.MOD, _, Constant(0):
-            raise model_error("TA007", "division by zero", span)
-        case _, Constant(a), Constant(b):
-            return Constant(apply_binary(op, a, b))
-        case BinaryOp.AND, Constant(value), other:
-            return truth(other) if value else Constant(0)
-        case BinaryOp.OR, Constant(value), other:
-            return TRUE if value else truth(other)
-        case BinaryOp.IMPLY, Constant(value), other:
-            return truth(other) if value else TRUE
-        case BinaryOp.IMPLY, other, Constant(0):
-            return UnaryOperation(UnaryOp.NOT, other)
-        case BinaryOp.DIV | BinaryOp.MOD, _, _:
-            return BinaryOperation(op, left, right, span)
-        case _:
-            return BinaryOperation(op, left, right)
-
-
 def _no_value(span: Span) -> ModelError:
     fix = f"name a location: {span.text}.location"
     return model_error("TA004", "an automaton is no value", span, fix)
-
-
-def _joined(op: BinaryOp, parts: Sequence[Expression], span: Span) -> Expression:
-    """Conditions joined as a balanced tree, which stays shallow however many there are."""
-    if len(parts) == 1:
-        return truth(parts[0])
-    half = len(parts) // 2
-    return _binary(op, _joined(op, parts[:half], span), _joined(op, parts[half:], span), span)
-
-
-def truth(expression: Expression) -> Expression:
-    """The expression, which counts as a truth value where it stands."""
-    return Constant(int(bool(expression.value))) if isinstance(expression, Constant) else expression
-
-
-def values_of(kind: ResolvedType, span: Span) -> range:
-    """All values of a finite type.
-
-    Raises:
-        ModelError: the type has none or too many.
-    """
-    if kind.base not in (BaseType.INT, BaseType.BOOL):
-        raise model_error("TA004", "only int and bool types can be enumerated", span)
-    if kind.high - kind.low >= MAX_VALUES:
-        fix = "give a small range: int[low, high]"
-        raise model_error("TA019", f"more than {MAX_VALUES:,} values", span, fix)
-    return range(kind.low, kind.high + 1)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import assert_never
 
 from rvmon.diagnostics import Span
-from rvmon.timed.model.evaluate import check_index
+from rvmon.timed.model.arithmetic import check_index
 from rvmon.timed.model.expressions import Constant, Expression, Lookup, Slot, VariableValue
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
@@ -15,6 +15,8 @@ from rvmon.timed.model.scope import (
     ClockSymbol,
     ConstantSymbol,
     ConstantValue,
+    FunctionSymbol,
+    RecordSymbol,
     Symbol,
     TypeSymbol,
     VariableSymbol,
@@ -32,13 +34,18 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
             return Constant(value)
         case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
             return VariableValue(replace(slot, span=span))
-        case ChosenSymbol(values, extent, index):
-            return Lookup(values, extent, index, span)
+        case ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
+            return Lookup(values, replace(slot, span=span))
         case ClockSymbol():
             fix = "a clock can only be compared with a number, or be set"
             raise model_error("TA009", "a clock has no value here", span, fix)
-        case VariableSymbol() | ConstantSymbol():
+        case VariableSymbol() | ConstantSymbol() | ChosenSymbol():
             raise model_error("TA004", "an array is no value", span, "give an index")
+        case RecordSymbol(fields):
+            fix = f"name a field, such as {span.text}.{fields[0][0]}"
+            raise model_error("TA004", "a record is no value", span, fix)
+        case FunctionSymbol():
+            raise model_error("TA004", "a function is no value", span, f"call it: {span.text}(…)")
         case ChannelSymbol() | TypeSymbol():
             fix = "channels stand in synchronisations, types in declarations"
             raise model_error("TA004", f"`{span.text}` is no value", span, fix)
@@ -55,7 +62,8 @@ def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
     match symbol:
         case ConstantSymbol(tuple() as values, (extent, *inner)):
             if not isinstance(index, Constant):
-                return ChosenSymbol(_flat(values, span), extent, index)
+                slot = Slot(0, (extent, *inner), (index,), span)
+                return ChosenSymbol(tuple(flat(values)), slot)
             check_index(index.value, extent, span)
             return ConstantSymbol(values[index.value - extent.start], tuple(inner))
         case VariableSymbol(slot):
@@ -64,17 +72,61 @@ def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
             return ClockSymbol(_deeper(slot, index, span))
         case ChannelSymbol(slot):
             return ChannelSymbol(_deeper(slot, index, span))
-        case ConstantSymbol() | TypeSymbol() | ChosenSymbol():
+        case ChosenSymbol(values, slot):
+            return ChosenSymbol(values, _deeper(slot, index, span))
+        case RecordSymbol(fields):
+            return RecordSymbol(tuple((name, element_of(s, index, span)) for name, s in fields))
+        case ConstantSymbol() | TypeSymbol() | FunctionSymbol():
             raise model_error("TA004", "this is no array", span)
         case _:
             assert_never(symbol)
 
 
-def _flat(values: tuple[ConstantValue, ...], span: Span) -> tuple[int, ...]:
-    numbers = tuple(value for value in values if isinstance(value, int))
-    if len(numbers) < len(values):
-        raise model_error("TA006", "this index of a nested array is not constant", span)
-    return numbers
+def flat(value: ConstantValue) -> list[int]:
+    """The numbers of a constant, those of the last index side by side."""
+    if isinstance(value, int):
+        return [value]
+    return [number for item in value for number in flat(item)]
+
+
+def is_whole(symbol: Symbol) -> bool:
+    """Whether a symbol is an array or record that holds numbers, not one of them."""
+    match symbol:
+        case RecordSymbol():
+            return True
+        case VariableSymbol(slot) | ChosenSymbol(_, slot):
+            return len(slot.indices) < len(slot.extents)
+        case ConstantSymbol(value):
+            return isinstance(value, tuple)
+        case _:
+            return False
+
+
+def is_alike(one: Symbol, other: Symbol) -> bool:
+    """Whether two arrays or records have the same parts."""
+    if isinstance(one, RecordSymbol) and isinstance(other, RecordSymbol):
+        return [name for name, _ in one.fields] == [name for name, _ in other.fields] and all(
+            is_alike(a, b) for (_, a), (_, b) in zip(one.fields, other.fields, strict=True)
+        )
+    records = isinstance(one, RecordSymbol) or isinstance(other, RecordSymbol)
+    return not records and len(leaves(one)) == len(leaves(other))
+
+
+def leaves(symbol: Symbol) -> list[Symbol]:
+    """The single things of an array or record, in order."""
+    match symbol:
+        case RecordSymbol(fields):
+            return [leaf for _, inner in fields for leaf in leaves(inner)]
+        case ConstantSymbol(tuple() as values, (_, *inner)):
+            return [leaf for v in values for leaf in leaves(ConstantSymbol(v, tuple(inner)))]
+        case (
+            VariableSymbol(slot) | ClockSymbol(slot) | ChannelSymbol(slot) | ChosenSymbol(_, slot)
+        ) if len(slot.indices) < len(slot.extents):
+            extent = slot.extents[len(slot.indices)]
+            deeper = (settle(replace(slot, indices=(*slot.indices, Constant(i)))) for i in extent)
+            return [leaf for one in deeper for leaf in leaves(replace(symbol, slot=one))]
+        case _:
+            return [symbol]
 
 
 def _deeper(slot: Slot, index: Expression, span: Span) -> Slot:

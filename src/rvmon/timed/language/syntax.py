@@ -49,7 +49,7 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """`name(arguments)`: an instance of a template; functions are not supported."""
+    """`name(arguments)`: a function's value, or in a query an instance of a template."""
 
     name: str
     arguments: tuple[Expression, ...]
@@ -87,9 +87,9 @@ class Conditional:
 
 @dataclass(frozen=True, slots=True)
 class Quantified:
-    """`forall (name : type) body` or `exists (…) …` over a finite type."""
+    """`forall (name : type) body`, `exists (…) …` or `sum (…) …`: a finite type's values joined."""
 
-    universal: bool
+    op: BinaryOp
     name: str
     type: TypeText
     body: Expression
@@ -178,6 +178,7 @@ class TypeText:
     Attributes:
         low, high: the range of an int; `None` if it has none.
         name: of the typedef, for `NAMED`.
+        fields: of a record.
         const, broadcast, urgent: the prefixes.
     """
 
@@ -186,6 +187,7 @@ class TypeText:
     low: Expression | None = None
     high: Expression | None = None
     name: str = ""
+    fields: tuple[Declaration, ...] = ()
     const: bool = False
     broadcast: bool = False
     urgent: bool = False
@@ -218,25 +220,97 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class TypeDefinition:
-    """`typedef type name`."""
+    """`typedef type name`, or that of an array."""
 
     name: str
     type: TypeText
+    sizes: tuple[Size, ...]
     span: Span
-
-
-Declared = Declaration | TypeDefinition
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a template; a `reference` stands for the thing itself."""
+    """A parameter of a template or function; a `reference` stands for the thing itself."""
 
     type: TypeText
     name: str
     sizes: tuple[Size, ...]
     reference: bool
     span: Span
+
+
+# Functions.
+
+
+@dataclass(frozen=True, slots=True)
+class UpdateText:
+    """`target = value`; `x += v` and `x++` are written out."""
+
+    target: Expression
+    value: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """`if (condition) then else otherwise`."""
+
+    condition: Expression
+    then: tuple[Statement, ...]
+    otherwise: tuple[Statement, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """`while (condition) body`; behind each round comes what a `for` does then."""
+
+    condition: Expression
+    body: tuple[Statement, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Each:
+    """`for (name : type) body`."""
+
+    name: str
+    type: TypeText
+    body: tuple[Statement, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnText:
+    """`return value`, or without a value."""
+
+    value: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Statements with names of their own."""
+
+    statements: tuple[Statement, ...]
+    span: Span
+
+
+Statement = UpdateText | Call | Branch | Loop | Each | ReturnText | Block | Declaration
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionText:
+    """`type name(parameters) { … }`; `type` is `None` for `void`."""
+
+    type: TypeText | None
+    name: str
+    parameters: tuple[Parameter, ...]
+    body: Block
+    span: Span
+
+
+Declared = Declaration | TypeDefinition | FunctionText
 
 
 # Automata.
@@ -262,15 +336,6 @@ class SyncText:
 
 
 @dataclass(frozen=True, slots=True)
-class UpdateText:
-    """`target = value`; `x += v` and `x++` are written out."""
-
-    target: Expression
-    value: Expression
-    span: Span
-
-
-@dataclass(frozen=True, slots=True)
 class Selection:
     """`name : type` of an edge: one edge for each value."""
 
@@ -281,7 +346,11 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class EdgeText:
-    """An edge of a template; `label` names the action for people and recordings."""
+    """An edge of a template; `label` names the action for people and recordings.
+
+    Attributes:
+        shares: of a branch: its weight, and that of all branches together with it.
+    """
 
     source: Name
     target: Name
@@ -289,9 +358,10 @@ class EdgeText:
     selections: tuple[Selection, ...] = ()
     guard: Expression | None = None
     sync: SyncText | None = None
-    updates: tuple[UpdateText, ...] = ()
+    updates: tuple[UpdateText | Call, ...] = ()
     weight: float = 1.0
     label: str = ""
+    shares: tuple[Expression, tuple[Expression, ...]] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from lark.tree import Meta
 
 from rvmon.timed.language import syntax
 from rvmon.timed.language.query_builder import QueryBuilder
+from rvmon.timed.language.statement_builder import is_rule
 from rvmon.timed.language.syntax import TypeText
 from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, UnaryOp
 from rvmon.timed.model.rules import model_error
@@ -25,13 +26,10 @@ LARGEST = (1 << 31) - 1
 class SyntaxBuilder(QueryBuilder):
     """One method per rule of the grammar; `place` maps offsets of the text to spans."""
 
-    def _name(self, token: Token) -> syntax.Name:
-        return syntax.Name(str(token), self._token_span(token))
-
     def _tuple(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
         return tuple(items)
 
-    instances = parameters = selections = update_list = arguments = _tuple
+    instances = parameters = selections = arguments = _tuple
 
     # The document.
 
@@ -50,7 +48,7 @@ class SyntaxBuilder(QueryBuilder):
         return (
             *header,
             unit,
-            _all(items, syntax.Declaration | syntax.TypeDefinition),
+            _all(items, syntax.Declared),
             _all(items, syntax.Template),
             _all(items, syntax.Instance),
             system,
@@ -70,7 +68,7 @@ class SyntaxBuilder(QueryBuilder):
 
     def system(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
         return (
-            _all(items, syntax.Declaration | syntax.TypeDefinition),
+            _all(items, syntax.Declared),
             _all(items, syntax.Instance),
             tuple(items[-1].children),
         )
@@ -92,13 +90,13 @@ class SyntaxBuilder(QueryBuilder):
         parameters: tuple[syntax.Parameter, ...] = ()
         if rest and isinstance(rest[0], tuple):
             parameters, *rest = rest
-        starts: list[syntax.Name] = [i.children[0] for i in rest if _is(i, "initial")]
+        starts: list[syntax.Name] = [i.children[0] for i in rest if is_rule(i, "initial")]
         for second in starts[1:]:
             raise model_error("TA003", "a second initial location", second.span)
         return syntax.Template(
             str(name),
             parameters,
-            _all(rest, syntax.Declaration | syntax.TypeDefinition),
+            _all(rest, syntax.Declared),
             _all(rest, syntax.LocationText),
             starts[0] if starts else None,
             _all(rest, syntax.EdgeText),
@@ -155,7 +153,7 @@ class SyntaxBuilder(QueryBuilder):
     # Declarations.
 
     def declarations(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.Declared, ...]:
-        return _all(items, syntax.Declaration | syntax.TypeDefinition)
+        return _all(items, syntax.Declared)
 
     def declaration(self, meta: Meta, items: Sequence[Any]) -> Tree[syntax.Declaration]:
         kind, *declarators = items
@@ -178,7 +176,9 @@ class SyntaxBuilder(QueryBuilder):
         return syntax.Values(tuple(items), self._span(meta))
 
     def typedef(self, meta: Meta, items: Sequence[Any]) -> syntax.TypeDefinition:
-        return syntax.TypeDefinition(str(items[1]), items[0], self._token_span(items[1]))
+        kind, name, *sizes = items
+        extents = tuple(size.children[0] for size in sizes)
+        return syntax.TypeDefinition(str(name), kind, extents, self._token_span(name))
 
     def prefix(self, meta: Meta, items: Sequence[Token]) -> str:
         return str(items[0])
@@ -191,6 +191,7 @@ class SyntaxBuilder(QueryBuilder):
             base.low,
             base.high,
             base.name,
+            base.fields,
             const="const" in prefixes,
             broadcast="broadcast" in prefixes,
             urgent="urgent" in prefixes,
@@ -209,12 +210,22 @@ class SyntaxBuilder(QueryBuilder):
     def channel_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
         return TypeText(BaseType.CHANNEL, self._span(meta))
 
+    def record_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        fields = _all(items, syntax.Declaration)
+        return TypeText(BaseType.RECORD, self._span(meta), fields=fields)
+
+    def scalar_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
+        # Which of its values is which makes no difference to any answer.
+        span = self._span(meta)
+        low, one = syntax.Number(0, span), syntax.Number(1, span)
+        return TypeText(BaseType.INT, span, low, syntax.Binary(BinaryOp.SUB, items[0], one, span))
+
     def named_type(self, meta: Meta, items: Sequence[Token]) -> TypeText:
         return TypeText(BaseType.NAMED, self._span(meta), name=str(items[0]))
 
     def parameter(self, meta: Meta, items: Sequence[Any]) -> syntax.Parameter:
         kind, *rest = items
-        reference = _is(rest[0], "reference")
+        reference = is_rule(rest[0], "reference")
         name, *sizes = rest[1:] if reference else rest
         return syntax.Parameter(
             kind,
@@ -226,27 +237,6 @@ class SyntaxBuilder(QueryBuilder):
 
     def selection(self, meta: Meta, items: Sequence[Any]) -> syntax.Selection:
         return syntax.Selection(str(items[0]), items[1], self._span(meta))
-
-    # Labels.
-
-    def sync(self, meta: Meta, items: Sequence[Any]) -> syntax.SyncText:
-        return syntax.SyncText(items[0], items[1] == "!", self._span(meta))
-
-    def updates(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
-        return tuple(items[0]) if items else ()
-
-    def assign(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
-        target, sign, value = items
-        span = self._span(meta)
-        if sign not in (":=", "="):
-            value = syntax.Binary(BinaryOp(sign[0]), target, value, span)
-        return syntax.UpdateText(target, value, span)
-
-    def step(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
-        target, sign = items if items[1] in ("++", "--") else reversed(items)
-        span = self._span(meta)
-        value = syntax.Binary(BinaryOp(sign[0]), target, syntax.Number(1, span), span)
-        return syntax.UpdateText(target, value, span)
 
     # Expressions.
 
@@ -268,6 +258,12 @@ class SyntaxBuilder(QueryBuilder):
     def negation(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
         return syntax.Unary(UnaryOp.NOT, items[0], self._span(meta))
 
+    def invert(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
+        return syntax.Unary(UnaryOp.INVERT, items[-1], self._span(meta))
+
+    def positive(self, meta: Meta, items: Sequence[Any]) -> Any:
+        return items[-1]
+
     def negative(self, meta: Meta, items: Sequence[Any]) -> syntax.Unary:
         return syntax.Unary(UnaryOp.NEGATE, items[-1], self._span(meta))
 
@@ -276,7 +272,8 @@ class SyntaxBuilder(QueryBuilder):
 
     def quantified(self, meta: Meta, items: Sequence[Any]) -> syntax.Quantified:
         word, name, kind, body = items
-        return syntax.Quantified(word == "forall", str(name), kind, body, self._span(meta))
+        op = {"forall": BinaryOp.AND, "exists": BinaryOp.OR, "sum": BinaryOp.ADD}[word]
+        return syntax.Quantified(op, str(name), kind, body, self._span(meta))
 
     def number(self, meta: Meta, items: Sequence[Token]) -> syntax.Number:
         return syntax.Number(self._whole(items[0]), self._span(meta))
@@ -304,13 +301,9 @@ class SyntaxBuilder(QueryBuilder):
         return syntax.Call(str(items[0]), items[1], self._span(meta))
 
 
-def _is(item: object, rule: str) -> bool:
-    return isinstance(item, Tree) and item.data == rule
-
-
 def _all(items: Sequence[Any], kind: Any) -> tuple[Any, ...]:
     """The items of a kind; the declarators of one declaration stand in a tree of their own."""
     flat: list[Any] = []
     for item in items:
-        flat += item.children if _is(item, "declaration") else [item]
+        flat += item.children if is_rule(item, "declaration") else [item]
     return tuple(item for item in flat if isinstance(item, kind))

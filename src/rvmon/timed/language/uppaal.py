@@ -3,8 +3,8 @@
 Read: declarations, templates with parameters, locations (invariant, urgent, committed), edges
 (select, guard, synchronisation, assignment), instances, the system line, queries. Rates of
 locations without invariant (`exponentialrate`), colours, coordinates and test code do not change
-which runs there are: they are passed over. Refused, with place and reason: branch points,
-functions, stop-watches, and what `ta.lark` has no rule for. A query that cannot be read is a
+which runs there are: they are passed over. Refused, with place and reason: stop-watches, and what
+`ta.lark` has no rule for. A query that cannot be read, or that names what is not there, is a
 warning, and left out.
 
 A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
@@ -16,16 +16,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
-from rvmon.diagnostics import Diagnostic, Severity, Source
+from rvmon.diagnostics import Diagnostic, Source
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
 from rvmon.timed.language.declare import Findings
 from rvmon.timed.language.parse import parse_part
 from rvmon.timed.language.xml_tree import Element, read_xml
 from rvmon.timed.model.operators import LocationKind
-from rvmon.timed.model.rules import finding, model_error
+from rvmon.timed.model.rules import finding, left_out, model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _UNIT = re.compile(r"^[ \t]*//[ \t]*unit[ \t]+([1-9]\d{0,9})[ \t]+(\w+)[ \t]*$", re.MULTILINE)
@@ -104,10 +105,6 @@ def _template(element: Element, findings: Findings) -> syntax.Template:
     names = {
         place.attributes.get("id", ""): _location_name(place) for place in element.all("location")
     }
-    for branch in element.all("branchpoint"):
-        fix = "make one edge for each branch, with its probability as weight"
-        message = "branch points (probabilities) are not supported"
-        findings.add(finding("TA016", message, branch.span(), fix))
     locations = tuple(_location(place, findings) for place in element.all("location"))
     return syntax.Template(
         _text(name).strip(),
@@ -115,7 +112,7 @@ def _template(element: Element, findings: Findings) -> syntax.Template:
         _part(element.first("declaration"), "declarations", findings, ()),
         locations,
         _reference(element.first("init"), names),
-        tuple(_edge(edge, names, findings) for edge in element.all("transition")),
+        tuple(_edges(element, names, findings)),
         span,
     )
 
@@ -132,7 +129,7 @@ def _location(element: Element, findings: Findings) -> syntax.LocationText:
     labels = _labels(element)
     name = element.first("name")
     span = element.span() if name is None else name.place(0, len(name.text))
-    invariant = _part(labels.get("invariant"), "expression", findings, None)
+    invariant = _part(labels.get("invariant"), "conditions", findings, None)
     return syntax.LocationText(_location_name(element), kind, invariant, span)
 
 
@@ -148,6 +145,33 @@ def _reference(element: Element | None, names: Mapping[str, str]) -> syntax.Name
     return syntax.Name(names.get(reference, reference), element.span())
 
 
+def _edges(
+    template: Element, names: Mapping[str, str], findings: Findings
+) -> Iterator[syntax.EdgeText]:
+    """The edges; one to a branch point is one for each of its branches."""
+    branches: dict[str, list[tuple[syntax.EdgeText, syntax.Expression]]] = {
+        point.attributes.get("id", ""): [] for point in template.all("branchpoint")
+    }
+    entering: list[tuple[str, syntax.EdgeText]] = []
+    for element in template.all("transition"):
+        edge = _edge(element, names, findings)
+        source, target = (element.first(end) for end in ("source", "target"))
+        start = "" if source is None else source.attributes.get("ref", "")
+        end = "" if target is None else target.attributes.get("ref", "")
+        if start in branches:
+            weight = _part(_labels(element).get("probability"), "conditions", findings, None)
+            branches[start].append((edge, weight or syntax.Number(1, edge.span)))
+        elif end in branches:
+            entering.append((end, edge))
+        else:
+            yield edge
+    for point, edge in entering:
+        every = tuple(weight for _, weight in branches[point])
+        for branch, weight in branches[point]:
+            updates = (*edge.updates, *branch.updates)
+            yield replace(edge, target=branch.target, updates=updates, shares=(weight, every))
+
+
 def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syntax.EdgeText:
     labels = _labels(element)
     nowhere = syntax.Name("", element.span())
@@ -157,15 +181,12 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
         message, fix = f"weight {weight[1]}", "a weight is a share: above 0, at most 1"
         findings.add(finding("TA017", message, labels["comments"].span(), fix))
         weight = None
-    if "probability" in labels:
-        message = "probabilities of branches are not supported"
-        findings.add(finding("TA016", message, labels["probability"].span()))
     return syntax.EdgeText(
         _reference(element.first("source"), names) or nowhere,
         _reference(element.first("target"), names) or nowhere,
         element.span(),
         _part(labels.get("select"), "selections", findings, ()),
-        _part(labels.get("guard"), "expression", findings, None),
+        _part(labels.get("guard"), "conditions", findings, None),
         _part(labels.get("synchronisation"), "sync", findings, None),
         _part(labels.get("assignment"), "updates", findings, ()),
         float(weight[1]) if weight else 1.0,
@@ -175,7 +196,7 @@ def _edge(element: Element, names: Mapping[str, str], findings: Findings) -> syn
 
 def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.QueryText]:
     queries = root.first("queries")
-    for number, element in enumerate([] if queries is None else queries.all("query"), start=1):
+    for element in [] if queries is None else queries.all("query"):
         formula = element.first("formula")
         if formula is None or not formula.text.strip():
             continue
@@ -185,11 +206,7 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
         try:
             read = parse_part(formula.text, "query", formula.place)
         except ModelError as error:
-            why = "; ".join(diagnostic.message for diagnostic in error.diagnostics)
-            span = error.diagnostics[0].spans[0].span if error.diagnostics[0].spans else None
-            message = f"query {number} is left out: {why}"
-            fix = error.diagnostics[0].help or "E<>, A[], A<>, E[] and --> are understood"
-            warnings.append(finding("TA020", message, span, fix, severity=Severity.WARNING))
+            warnings.append(left_out(formula.text, error.diagnostics[0]))
             continue
         length = len(formula.text.rstrip())
         text = formula.text.strip()

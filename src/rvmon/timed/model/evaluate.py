@@ -1,4 +1,4 @@
-"""Values of expressions: constants folded when a model is read, closures when it is explored."""
+"""Expressions and statements as closures, for the rules that need no speed."""
 
 from __future__ import annotations
 
@@ -6,19 +6,36 @@ from collections.abc import Callable, Sequence
 from typing import assert_never
 
 from rvmon.diagnostics import Span
+from rvmon.timed.model.arithmetic import (
+    OPERATIONS,
+    check_index,
+    check_shift,
+    check_time,
+    fitting,
+)
 from rvmon.timed.model.expressions import (
+    MOST_ROUNDS,
+    Assignment,
     BinaryOperation,
     Choice,
     ClockCompare,
     Constant,
     Deadlock,
     Expression,
+    If,
     InLocation,
+    Invoke,
     Lookup,
+    Missing,
     PathFormula,
+    Perform,
+    Reset,
+    Return,
     Slot,
+    Statement,
     UnaryOperation,
     VariableValue,
+    While,
 )
 from rvmon.timed.model.operators import BinaryOp, UnaryOp
 from rvmon.timed.model.rules import model_error
@@ -30,49 +47,6 @@ Values = Sequence[int]
 """The value of each variable."""
 
 Evaluator = Callable[[Locations, Values], int]
-
-
-def apply_unary(op: UnaryOp, value: int) -> int:
-    """The value of an operator on one operand."""
-    match op:
-        case UnaryOp.NOT:
-            return int(not value)
-        case UnaryOp.NEGATE:
-            return -value
-        case _:
-            assert_never(op)
-
-
-def apply_binary(op: BinaryOp, left: int, right: int) -> int:
-    """The value of an operator on two operands; division truncates, as in C.
-
-    >>> apply_binary(BinaryOp.DIV, -7, 2), apply_binary(BinaryOp.MOD, -7, 2)
-    (-3, -1)
-    """
-    return _BINARY[op](left, right)
-
-
-def _divide(left: int, right: int) -> int:
-    quotient = abs(left) // abs(right)
-    return quotient if (left < 0) == (right < 0) else -quotient
-
-
-_BINARY: dict[BinaryOp, Callable[[int, int], int]] = {
-    BinaryOp.AND: lambda a, b: int(bool(a) and bool(b)),
-    BinaryOp.OR: lambda a, b: int(bool(a) or bool(b)),
-    BinaryOp.IMPLY: lambda a, b: int(not a or bool(b)),
-    BinaryOp.LT: lambda a, b: int(a < b),
-    BinaryOp.LE: lambda a, b: int(a <= b),
-    BinaryOp.EQ: lambda a, b: int(a == b),
-    BinaryOp.NE: lambda a, b: int(a != b),
-    BinaryOp.GE: lambda a, b: int(a >= b),
-    BinaryOp.GT: lambda a, b: int(a > b),
-    BinaryOp.ADD: lambda a, b: a + b,
-    BinaryOp.SUB: lambda a, b: a - b,
-    BinaryOp.MUL: lambda a, b: a * b,
-    BinaryOp.DIV: _divide,
-    BinaryOp.MOD: lambda a, b: a - b * _divide(a, b),
-}
 
 
 def evaluator(expression: Expression) -> Evaluator:
@@ -89,8 +63,11 @@ def evaluator(expression: Expression) -> Evaluator:
         case VariableValue(slot):
             element = slot_evaluator(slot)
             return lambda locations, values: values[element(locations, values)]
-        case Lookup(table, extent, index, span):
-            return _lookup(table, extent, evaluator(index), span)
+        case Lookup(table, slot):
+            place = slot_evaluator(slot)
+            return lambda locations, values: table[place(locations, values)]
+        case Invoke():
+            return caller(expression)
         case InLocation(automaton, location):
             return lambda locations, _values: int(locations[automaton] == location)
         case UnaryOperation(op, operand):
@@ -110,23 +87,14 @@ def evaluator(expression: Expression) -> Evaluator:
             assert_never(expression)
 
 
-def _lookup(
-    table: tuple[int, ...], extent: range, index: Evaluator, span: Span | None
-) -> Evaluator:
-    def element(locations: Locations, values: Values) -> int:
-        position = index(locations, values)
-        check_index(position, extent, span)
-        return table[position - extent.start]
-
-    return element
-
-
 def _unary_evaluator(op: UnaryOp, operand: Evaluator) -> Evaluator:
     match op:
         case UnaryOp.NOT:
             return lambda locations, values: int(not operand(locations, values))
         case UnaryOp.NEGATE:
             return lambda locations, values: -operand(locations, values)
+        case UnaryOp.INVERT:
+            return lambda locations, values: ~operand(locations, values)
         case _:
             assert_never(op)
 
@@ -173,7 +141,7 @@ def _binary_evaluator(
         case BinaryOp.IMPLY:
             return lambda ls, vs: int(not left(ls, vs) or bool(right(ls, vs)))
         case BinaryOp.DIV | BinaryOp.MOD:
-            divide = _BINARY[op]
+            divide = OPERATIONS[op]
 
             def quotient(ls: Locations, vs: Values) -> int:
                 divisor = right(ls, vs)
@@ -183,8 +151,16 @@ def _binary_evaluator(
                 return divide(left(ls, vs), divisor)
 
             return quotient
+        case BinaryOp.SHIFT_LEFT | BinaryOp.SHIFT_RIGHT:
+            shift = OPERATIONS[op]
+
+            def shifted(ls: Locations, vs: Values) -> int:
+                number = left(ls, vs)
+                return shift(number, check_shift(right(ls, vs), span))
+
+            return shifted
         case _:
-            function = _BINARY[op]
+            function = OPERATIONS[op]
             return lambda ls, vs: function(left(ls, vs), right(ls, vs))
 
 
@@ -205,11 +181,119 @@ def slot_evaluator(slot: Slot) -> Evaluator:
     return element
 
 
-def check_index(position: int, extent: range, span: Span | None) -> None:
-    """Refuse an index outside its array."""
-    if position not in extent:
-        fix = (
-            f"the indices are {extent.start} to {extent.stop - 1}: "
-            "guard the edge, or narrow the index's type"
-        )
-        raise model_error("TA007", f"index {position} is outside the array", span, fix)
+class Frame(list[int]):
+    """The values of all variables, behind them room for functions, and the clocks that are set."""
+
+    def __init__(self, values: Values, room: int) -> None:
+        super().__init__([*values, *[0] * room])
+        self.clocks: dict[int, int] = {}
+        self.rounds = 0
+        self._variables = len(values)
+
+    def variables(self) -> tuple[int, ...]:
+        """The values of the variables alone."""
+        return tuple(self[: self._variables])
+
+
+Runner = Callable[[Locations, Frame], int | None]
+"""Runs statements; gives the value if they return one."""
+
+
+def runner(statements: Sequence[Statement]) -> Runner:
+    """Make a function that runs statements one behind the other."""
+    steps = [_step(statement) for statement in statements]
+
+    def run(locations: Locations, frame: Frame) -> int | None:
+        for step in steps:
+            value = step(locations, frame)
+            if value is not None:
+                return value
+        return None
+
+    return run
+
+
+def caller(call: Invoke) -> Callable[[Locations, Values], int]:
+    """Make a function that gives the value of a call."""
+    function = call.function
+    arguments = [evaluator(argument) for argument in call.arguments]
+    body: list[Runner] = []
+
+    def value(locations: Locations, values: Values) -> int:
+        frame = values if isinstance(values, Frame) else Frame(values, function.room)
+        if not body:
+            body.append(runner(function.body))
+        given = [argument(locations, frame) for argument in arguments]
+        for (slot, variable), number in zip(function.parameters, given, strict=True):
+            frame[slot] = fitting(number, variable, call.span)
+        result = body[0](locations, frame)
+        assert result is not None  # noqa: S101 - every way through a body ends with a value
+        return fitting(result, function.result[1], call.span)
+
+    return value
+
+
+def _step(statement: Statement) -> Runner:
+    match statement:
+        case Assignment():
+            return _assigner(statement)
+        case Reset(clock, written, span):
+            value = evaluator(written)
+
+            def set_clock(locations: Locations, frame: Frame) -> None:
+                frame.clocks[clock] = check_time(value(locations, frame), span)
+
+            return set_clock
+        case Perform(call):
+            perform = caller(call)
+
+            def do(locations: Locations, frame: Frame) -> None:
+                perform(locations, frame)
+
+            return do
+        case If(condition, then, otherwise):
+            test, yes, no = evaluator(condition), runner(then), runner(otherwise)
+            return lambda locations, frame: (
+                yes(locations, frame) if test(locations, frame) else no(locations, frame)
+            )
+        case While():
+            return _repeater(statement)
+        case Return(written):
+            return evaluator(written)
+        case Missing(name, span):
+
+            def miss(_locations: Locations, _frame: Frame) -> int:
+                fix = "end every way through it with `return`"
+                raise model_error("TA007", f"`{name}` ends without a value", span, fix)
+
+            return miss
+        case _:
+            assert_never(statement)
+
+
+def _assigner(statement: Assignment) -> Runner:
+    slot, variable, span = statement.slot, statement.variable, statement.slot.span
+    index, value = slot_evaluator(slot), evaluator(statement.value)
+
+    def assign(locations: Locations, frame: Frame) -> None:
+        place = index(locations, frame)
+        frame[place] = fitting(value(locations, frame), variable, span)
+
+    return assign
+
+
+def _repeater(statement: While) -> Runner:
+    test, body, span = evaluator(statement.condition), runner(statement.body), statement.span
+
+    def repeat(locations: Locations, frame: Frame) -> int | None:
+        while test(locations, frame):
+            frame.rounds += 1
+            if frame.rounds > MOST_ROUNDS:
+                message = f"loops go round more than {MOST_ROUNDS:,} times in one step"
+                raise model_error("TA019", message, span, "let them end sooner")
+            value = body(locations, frame)
+            if value is not None:
+                return value
+        return None
+
+    return repeat

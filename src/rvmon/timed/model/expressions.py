@@ -1,7 +1,13 @@
-"""Expressions over the variables of a network; clocks and locations occur as propositions."""
+"""Expressions over the variables of a network, and statements that change variables and clocks.
+
+Clocks and locations occur as propositions. No function calls itself, so each has places of its own
+for its parameters and local variables: slots below 0, which count from the end of the values while
+it runs.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -49,11 +55,18 @@ class VariableValue:
 
 @dataclass(frozen=True, slots=True)
 class Lookup:
-    """An element of a constant array, chosen by the variables; `extent` are its indices."""
+    """An element of a constant array, chosen by the variables; the slot counts from 0."""
 
     values: tuple[int, ...]
-    extent: range
-    index: Expression
+    slot: Slot
+
+
+@dataclass(frozen=True, slots=True)
+class Invoke:
+    """The value of a function, which runs when it is asked for."""
+
+    function: Function
+    arguments: tuple[Expression, ...]
     span: Span | None = field(default=None, compare=False)
 
 
@@ -134,6 +147,7 @@ Expression = (
     Constant
     | VariableValue
     | Lookup
+    | Invoke
     | UnaryOperation
     | BinaryOperation
     | Choice
@@ -142,3 +156,128 @@ Expression = (
     | Deadlock
     | PathFormula
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """An integer in `[low, high]`; a bool is one in `[0, 1]`."""
+
+    name: str
+    low: int
+    high: int
+    initial: int
+    is_bool: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """`slot = value`; the value must lie in the range of the variable, or of the array's first."""
+
+    slot: Slot
+    value: Expression
+    variable: Variable
+
+
+@dataclass(frozen=True, slots=True)
+class Reset:
+    """`clock = value`, a number of units of time that is not negative."""
+
+    clock: int
+    value: Expression
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Perform:
+    """A function called for what it does."""
+
+    call: Invoke
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """Statements for each truth of a condition."""
+
+    condition: Expression
+    then: tuple[Statement, ...]
+    otherwise: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    """Statements repeated as long as a condition holds, `MOST_ROUNDS` times at most."""
+
+    condition: Expression
+    body: tuple[Statement, ...]
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    """The end of a function, with its value; that of a `void` one is 0."""
+
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """The end of a body that should have returned a value: a run that comes here has no meaning."""
+
+    function: str
+    span: Span | None = field(default=None, compare=False)
+
+
+Statement = Assignment | Reset | Perform | If | While | Return | Missing
+
+MOST_ROUNDS = 1_000_000
+"""Rounds that the loops of one computation may go together."""
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function with all that it refers to resolved.
+
+    Attributes:
+        name: for people.
+        parameters: the slots of the parameters that are passed by value, with their ranges.
+        result: where its value is put, with its range.
+        body: ends with `Return` or `Missing` on every way.
+        room: slots below 0 that it and what it calls may use.
+        changes: whether it sets a variable that is not its own, or a clock.
+    """
+
+    name: str
+    parameters: tuple[tuple[int, Variable], ...]
+    result: tuple[int, Variable]
+    body: tuple[Statement, ...]
+    room: int
+    changes: bool
+
+
+def statements_in(statements: Sequence[Statement]) -> Iterator[Statement]:
+    """Statements and all inside them."""
+    for statement in statements:
+        yield statement
+        match statement:
+            case If(_, then, otherwise):
+                yield from statements_in(then)
+                yield from statements_in(otherwise)
+            case While(_, body):
+                yield from statements_in(body)
+            case _:
+                pass
+
+
+def expressions_of(statement: Statement) -> tuple[Expression, ...]:
+    """The expressions that a statement itself evaluates."""
+    match statement:
+        case Assignment(slot, value):
+            return (*slot.indices, value)
+        case Reset(_, value) | Return(value):
+            return (value,)
+        case Perform(call):
+            return (call,)
+        case If(condition) | While(condition):
+            return (condition,)
+        case Missing():
+            return ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rvmon.diagnostics import Span
 from rvmon.timed.model.evaluate import chained
@@ -15,8 +15,15 @@ from rvmon.timed.model.expressions import (
     Constant,
     Deadlock,
     Expression,
+    Invoke,
+    Lookup,
     PathFormula,
+    Reset,
+    Statement,
     UnaryOperation,
+    VariableValue,
+    expressions_of,
+    statements_in,
 )
 from rvmon.timed.model.network import Guard
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
@@ -57,6 +64,10 @@ def parts_of(expression: Expression) -> Iterator[Expression]:
                 waiting += (otherwise, then, condition)
             case PathFormula(_, body, _, left):
                 waiting += (body, left)
+            case VariableValue(slot) | Lookup(_, slot):
+                waiting += slot.indices
+            case Invoke(_, arguments):
+                waiting += arguments
             case _:
                 pass
 
@@ -65,6 +76,29 @@ def is_discrete(expression: Expression) -> bool:
     """Whether locations and variables alone give the expression a value."""
     of_runs = ClockCompare | Deadlock | PathFormula
     return not any(isinstance(part, of_runs) for part in parts_of(expression))
+
+
+def resets_in(updates: Sequence[Statement]) -> Iterator[Reset]:
+    """All statements that set clocks among some, and in the functions that they call."""
+    for statement in statements_in(updates):
+        if isinstance(statement, Reset):
+            yield statement
+        for part in (p for e in expressions_of(statement) for p in parts_of(e)):
+            if isinstance(part, Invoke) and part.function.changes:
+                yield from resets_in(part.function.body)
+
+
+def refuse_changes(expression: Expression, span: Span) -> None:
+    """Refuse a condition or number that changes variables when it is asked for.
+
+    Raises:
+        ModelError: it calls a function that does.
+    """
+    for part in parts_of(expression):
+        if isinstance(part, Invoke) and part.function.changes:
+            message = f"`{part.function.name}` changes variables or clocks"
+            fix = "call it in an update; conditions are only looked at"
+            raise model_error("TA009", message, span, fix)
 
 
 def is_linear(expression: Expression) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.timed.model.expressions import TRUE, ClockCompare, Expression, Slot
+from rvmon.timed.model.expressions import TRUE, ClockCompare, Expression, Slot, Statement, Variable
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp
 from rvmon.timed.model.scope import Names
 
@@ -19,17 +19,6 @@ class Clock:
     """A clock; all start at 0 and run at the rate of time."""
 
     name: str
-
-
-@dataclass(frozen=True, slots=True)
-class Variable:
-    """An integer in `[low, high]`; a bool is one in `[0, 1]`."""
-
-    name: str
-    low: int
-    high: int
-    initial: int
-    is_bool: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,26 +39,6 @@ class Sync:
 
     slot: Slot
     sends: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment:
-    """`slot = value`; the value must lie in the variable's range."""
-
-    slot: Slot
-    value: Expression
-
-
-@dataclass(frozen=True, slots=True)
-class Reset:
-    """`clock = value`, a number of units of time that is not negative."""
-
-    clock: int
-    value: Expression
-    span: Span | None = field(default=None, compare=False)
-
-
-Update = Assignment | Reset
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +74,7 @@ class Edge:
     target: int
     guard: Guard
     sync: Sync | None
-    updates: tuple[Update, ...]
+    updates: tuple[Statement, ...]
     weight: float
     label: str
     text: str
@@ -203,3 +172,8 @@ class Network:
     signals: tuple[Signal, ...]
     warnings: tuple[Diagnostic, ...] = field(compare=False)
     names: Names = field(compare=False, repr=False)
+
+    @property
+    def locals(self) -> tuple[Variable, ...]:
+        """Parameters and local variables of functions; the last stands in slot −1."""
+        return tuple(reversed(self.names.functions.locals))

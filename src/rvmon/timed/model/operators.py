@@ -10,6 +10,7 @@ class UnaryOp(StrEnum):
 
     NOT = "not"
     NEGATE = "-"
+    INVERT = "~"
 
 
 class BinaryOp(StrEnum):
@@ -29,6 +30,13 @@ class BinaryOp(StrEnum):
     MUL = "*"
     DIV = "/"
     MOD = "%"
+    BIT_AND = "&"
+    BIT_OR = "|"
+    BIT_XOR = "^"
+    SHIFT_LEFT = "<<"
+    SHIFT_RIGHT = ">>"
+    MINIMUM = "<?"
+    MAXIMUM = ">?"
 
 
 class PathOp(StrEnum):
@@ -55,6 +63,7 @@ class BaseType(StrEnum):
     BOOL = "bool"
     CLOCK = "clock"
     CHANNEL = "chan"
+    RECORD = "struct"
     NAMED = "typedef"
 
 

@@ -4,9 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.timed.model.expressions import BinaryOperation, ClockCompare, Constant, Expression
-from rvmon.timed.model.network import Automaton, Edge, Guard, Location, Network, Reset, Update
+from rvmon.timed.model.expressions import (
+    BinaryOperation,
+    ClockCompare,
+    Constant,
+    Expression,
+    Reset,
+    Statement,
+)
+from rvmon.timed.model.guards import resets_in
+from rvmon.timed.model.network import Automaton, Edge, Guard, Location, Network
 from rvmon.timed.model.operators import BinaryOp
+from rvmon.timed.model.rules import model_error
 
 
 def finer(network: Network, factor: int) -> Network:
@@ -39,10 +48,13 @@ def _edge(edge: Edge, factor: int) -> Edge:
     return replace(edge, guard=_guard(edge.guard, factor), updates=updates)
 
 
-def _update(update: Update, factor: int) -> Update:
-    return (
-        replace(update, value=_times(update.value, factor)) if isinstance(update, Reset) else update
-    )
+def _update(update: Statement, factor: int) -> Statement:
+    if isinstance(update, Reset):
+        return replace(update, value=_times(update.value, factor))
+    if any(reset.value != Constant(0) for reset in resets_in([update])):
+        fix = "set clocks in the updates of edges, not in functions"
+        raise model_error("TA016", "a function sets a clock to a number of units", None, fix)
+    return update
 
 
 def _guard(guard: Guard, factor: int) -> Guard:

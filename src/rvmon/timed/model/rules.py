@@ -20,9 +20,8 @@ RULES = {
     "TA009": "clock-in-wrong-place",
     "TA010": "channel-without-partner",
     "TA011": "clock-guard-on-urgent-channel",
-    "TA012": "clock-guard-on-broadcast-receiver",
     "TA013": "no-initial-location",
-    "TA014": "time-lock-at-start",
+    "TA014": "no-beginning",
     "TA015": "wrong-arguments",
     "TA016": "not-supported",
     "TA017": "bad-weight",
@@ -48,6 +47,14 @@ def finding(
     """Make a diagnostic of one of the `RULES`; `others` are further places that matter."""
     places = () if span is None else (Label(span),)
     return Diagnostic(code, RULES[code], severity, message, (*places, *others), fix)
+
+
+def left_out(query: str, found: Diagnostic) -> Diagnostic:
+    """The warning that a query of a model is not asked, for the reason that a finding gives."""
+    message = f"the query `{' '.join(query.split())}` is left out: {found.message}"
+    fix = found.help or "E<>, A[], A<>, E[] and --> are understood"
+    span = found.spans[0].span if found.spans else None
+    return finding("TA020", message, span, fix, severity=Severity.WARNING)
 
 
 def model_error(

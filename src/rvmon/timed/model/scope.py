@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from rvmon.diagnostics import Span
-from rvmon.timed.model.expressions import Expression, Slot
+from rvmon.timed.model.expressions import Slot
 from rvmon.timed.model.operators import BaseType
 
 ConstantValue = int | tuple["ConstantValue", ...]
@@ -15,11 +16,18 @@ ConstantValue = int | tuple["ConstantValue", ...]
 
 @dataclass(frozen=True, slots=True)
 class ResolvedType:
-    """A type with its constants evaluated; an int always has a range."""
+    """A type with its constants evaluated; an int always has a range.
+
+    Attributes:
+        extents: the indices of each dimension, if it is that of an array.
+        fields: of a record, in their order.
+    """
 
     base: BaseType
     low: int = 0
     high: int = 1
+    extents: tuple[range, ...] = ()
+    fields: tuple[tuple[str, ResolvedType], ...] = ()
     const: bool = False
     broadcast: bool = False
     urgent: bool = False
@@ -67,14 +75,37 @@ class TypeSymbol:
 
 @dataclass(frozen=True, slots=True)
 class ChosenSymbol:
-    """An element of a constant array, chosen by the variables; `extent` are its indices."""
+    """An element of a constant array, chosen by the variables; the slot counts from 0."""
 
     values: tuple[int, ...]
-    extent: range
-    index: Expression
+    slot: Slot
 
 
-Symbol = ConstantSymbol | ChosenSymbol | VariableSymbol | ClockSymbol | ChannelSymbol | TypeSymbol
+@dataclass(frozen=True, slots=True)
+class RecordSymbol:
+    """A record, or an array of them: each field as if it were declared by itself."""
+
+    fields: tuple[tuple[str, Symbol], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FunctionSymbol:
+    """A function as written (`syntax.FunctionText`), and the names that it can see."""
+
+    written: Any
+    scope: Scope
+
+
+Symbol = (
+    ConstantSymbol
+    | ChosenSymbol
+    | VariableSymbol
+    | ClockSymbol
+    | ChannelSymbol
+    | TypeSymbol
+    | RecordSymbol
+    | FunctionSymbol
+)
 
 
 @dataclass(slots=True)
@@ -141,7 +172,12 @@ AutomatonKey = tuple[str, tuple[int, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """All that a query on a network may refer to."""
+    """All that a query on a network may refer to.
+
+    Attributes:
+        functions: those that were called (`language.functions.Functions`).
+    """
 
     top: Scope
     automata: Mapping[AutomatonKey, AutomatonSymbol]
+    functions: Any

@@ -77,12 +77,14 @@ typedef struct {
 } step;
 
 /* Where moves start and where the one at hand leads. */
-typedef struct {
+typedef struct walk {
     int32_t *places, *values, *target, *changed;
     bound *source, *zone;
     int32_t *resets; /* clock, value */
     int32_t reset_count;
     int32_t *chosen, *group, *first, *pick;
+    int32_t *skipped, *skip, skipped_count; /* edges whose guard fails, and at which of its atoms */
+    int32_t variant; /* among the ways in which the same edges move together */
     uint8_t *committed;
     bool delays;
     uint32_t ordinal;
@@ -90,7 +92,7 @@ typedef struct {
 
 typedef struct {
     const caller *from;
-    const int32_t *plan, *variables, *automata, *locations, *edges, *atoms, *updates, *code;
+    const int32_t *plan, *variables, *automata, *locations, *edges, *atoms, *code;
     const double *costs;
     int32_t kind, policy, automaton_count, variable_count, edge_count, inside_count, goal_count;
     int32_t dim, entries, timer;
@@ -99,6 +101,8 @@ typedef struct {
     uint32_t words;
     search_state state;
     bool failed;
+    struct walk *sets; /* what a program may change */
+    int32_t rounds;    /* of its loops */
     uint64_t bytes, peak, work, visited, stored;
     field *fields;
     /* discrete states */
@@ -123,7 +127,7 @@ typedef struct {
     walk out, look; /* the second looks for deadlocks while the first goes over moves */
     federation alive, dead, rest;
     uint32_t from_node, link, found;
-    int32_t *step_edges, step_edge_count, *failed_edges; /* of a move that failed, or is found again */
+    int32_t *step_edges, step_edge_count, step_variant, *failed_edges; /* of a move that failed, or is found again */
     uint32_t wanted;
     numbers crossings, last_crossings; /* at hand; of the end that was found */
     numbers path;

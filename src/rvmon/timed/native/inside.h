@@ -18,7 +18,7 @@ static int piece_of(const engine *h, uint32_t n)
 }
 
 /* Whether a discrete state has a piece: those whose condition holds, or one that is everything. */
-static bool has_piece(engine *h, int k, const int32_t *places, const int32_t *values)
+static bool has_piece(engine *h, int k, const int32_t *places, int32_t *values)
 {
     int i;
     for (i = 0; i < h->inside_count; i++) {
@@ -34,7 +34,7 @@ static bool has_piece(engine *h, int k, const int32_t *places, const int32_t *va
 enum { AS_IS, UNTIL, SINCE };
 
 static bool cut_piece(engine *h, bound *z, int k, int how, const int32_t *places,
-                      const int32_t *values)
+                      int32_t *values)
 {
     const int32_t *piece = piece_at(h, k);
     int32_t i;
@@ -59,7 +59,7 @@ static bool cut_piece(engine *h, bound *z, int k, int how, const int32_t *places
 /* What time makes of a zone that leaves piece k for piece m: with the last instant of the one, or
  * with the first of the other, either of which may be missing. */
 static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since,
-                  const int32_t *places, const int32_t *values)
+                  const int32_t *places, int32_t *values)
 {
     copy_zone(h, to, z);
     delay(to, h->dim);
@@ -76,7 +76,7 @@ static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since
 
 /* Keep a state whose time counts; found if the bound is over there, or just met while time goes on. */
 static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool delays,
-                      const int32_t *places, const int32_t *values)
+                      const int32_t *places, int32_t *values)
 {
     const bound due = 2 * (bound)h->plan[HEAD_BOUND];
     const uint32_t n = keep(h, state, NONE, z, places);
@@ -173,7 +173,7 @@ static void succeed(engine *h, uint32_t state, const bound *z)
 
 /* The invariant, a piece and, if time may pass, all delays in it; false if nothing is left. */
 static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const int32_t *places,
-                            const int32_t *values)
+                            int32_t *values)
 {
     if (piece_at(h, k)[ROW_ATOMS] == 0) {
         return settle(h, z, places, values, delays);
@@ -189,7 +189,7 @@ static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const int32
 }
 
 /* A zone just reached, in each piece with the delays that stay in it. */
-static void enter(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+static void enter(engine *h, const bound *z, const int32_t *places, int32_t *values)
 {
     const bool delays = may_delay(h, places, values);
     const bool counts = (h->kind == SEEK_LATE) || (h->kind == SEEK_LATE_AFTER);

@@ -24,7 +24,7 @@ static uint32_t flags_of(const engine *h, uint32_t n)
 
 /* A zone inside a piece, as a successor of the node at hand. */
 static void succeed_in(engine *h, bound *z, int k, bool delays, uint32_t flags,
-                       const int32_t *places, const int32_t *values)
+                       const int32_t *places, int32_t *values)
 {
     const uint32_t before = h->successor_count;
     uint32_t *at;
@@ -41,7 +41,7 @@ static void succeed_in(engine *h, bound *z, int k, bool delays, uint32_t flags,
 }
 
 /* A zone behind a move, or at the start, in all pieces that the automaton goes on to. */
-static void enter_way(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t *values)
 {
     const bool delays = may_delay(h, places, values);
     const int32_t *way = (h->from_node == NONE) ? NULL : way_of(h, piece_of(h, h->from_node));

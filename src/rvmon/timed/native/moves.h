@@ -10,7 +10,7 @@
 
 typedef bool (*sink)(engine *h, walk *w, const int32_t *edges, int n);
 
-static bool able(engine *h, const int32_t *edge, const int32_t *places, const int32_t *values)
+static bool able(engine *h, const int32_t *edge, const int32_t *places, int32_t *values)
 {
     return holds(h, edge[EDGE_GUARD], places, values) && !h->failed;
 }
@@ -24,7 +24,7 @@ static bool could_meet(const int32_t *sender, const int32_t *receiver)
 }
 
 static bool same_channel(engine *h, const int32_t *one, const int32_t *other,
-                         const int32_t *places, const int32_t *values)
+                         const int32_t *places, int32_t *values)
 {
     if ((one[EDGE_STOP] - one[EDGE_FIRST] == 1) && (other[EDGE_STOP] - other[EDGE_FIRST] == 1)) {
         return true;
@@ -40,7 +40,7 @@ static bool is_sender(const int32_t *edge)
 }
 
 static bool urgent_edge_waits(engine *h, const int32_t *edge, const int32_t *places,
-                              const int32_t *values)
+                              int32_t *values)
 {
     int b;
     if (((edge[EDGE_FLAGS] & FLAG_URGENT) == 0) || !is_sender(edge)
@@ -65,7 +65,7 @@ static bool urgent_edge_waits(engine *h, const int32_t *edge, const int32_t *pla
 }
 
 /* Whether time may pass: nothing is committed or urgent. */
-static bool may_delay(engine *h, const int32_t *places, const int32_t *values)
+static bool may_delay(engine *h, const int32_t *places, int32_t *values)
 {
     int a;
     for (a = 0; a < h->automaton_count; a++) {
@@ -94,38 +94,11 @@ static bool apply(engine *h, walk *w, const int32_t *edges, int n)
     w->reset_count = 0;
     for (k = 0; k < n; k++) {
         const int32_t *edge = edge_at(h, edges[k]);
-        const int32_t *update = h->updates + (ptrdiff_t)edge[EDGE_UPDATE] * UPDATE_SIZE;
-        int32_t i;
-        for (i = 0; i < edge[EDGE_UPDATES]; i++, update += UPDATE_SIZE) {
-            int64_t x = evaluate(h, update[UPDATE_VALUE], w->places, w->changed);
-            int64_t slot = 0;
-            if ((update[UPDATE_OFFSET] >= 0) && !h->failed) {
-                slot = evaluate(h, update[UPDATE_OFFSET], w->places, w->changed);
-            }
-            if (h->failed) {
-                return false;
-            }
-            if (update[UPDATE_CLOCK]) {
-                int j = 0;
-                if (!is_time(h, x)) {
-                    return false;
-                }
-                while ((j < w->reset_count) && (w->resets[2 * j] != update[UPDATE_FIRST])) {
-                    j++;
-                }
-                w->reset_count += (j == w->reset_count);
-                w->resets[2 * j] = update[UPDATE_FIRST];
-                w->resets[2 * j + 1] = (int32_t)x;
-            } else if (within(slot, 0, update[UPDATE_COUNT])) {
-                const int32_t at = update[UPDATE_FIRST] + (int32_t)slot;
-                const int32_t *variable = h->variables + (ptrdiff_t)at * 4;
-                x = variable[3] ? (x != 0) : x;
-                h->failed = (x < variable[0]) || (x > variable[1]);
-                w->changed[at] = h->failed ? w->changed[at] : (int32_t)x;
-            } else {
-                h->failed = true;
-            }
-            if (h->failed) {
+        if (edge[EDGE_UPDATE] >= 0) {
+            h->sets = w;
+            (void)evaluate(h, edge[EDGE_UPDATE], w->places, w->changed);
+            h->sets = NULL;
+            if (h->failed || !runs(h)) {
                 return false;
             }
         }
@@ -134,6 +107,7 @@ static bool apply(engine *h, walk *w, const int32_t *edges, int n)
     return true;
 }
 
+/* The guards of edges that move together, and that of none that is skipped for its clocks. */
 static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges, int n)
 {
     int k;
@@ -143,14 +117,23 @@ static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges,
             return false;
         }
     }
+    for (k = 0; k < w->skipped_count; k++) {
+        const int32_t atom = edge_at(h, w->skipped[k])[EDGE_ATOM] + w->skip[k];
+        int x;
+        int y;
+        bound b;
+        if (!atom_at(h, h->atoms + (ptrdiff_t)atom * ATOM_SIZE, w->places, w->values, &x, &y, &b)
+            || !constrain(z, h->dim, y, x, 1 - b)) {
+            return false;
+        }
+    }
     return true;
 }
 
-/* A sender and one edge of each automaton that can receive, in all ways. */
-static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink take)
+/* The edges that may receive, as groups of one automaton each; how many groups. */
+static int receivers(engine *h, walk *w, int32_t sender)
 {
     const int32_t *s = edge_at(h, sender);
-    bool ok = !committed || w->committed[s[EDGE_AUTOMATON]];
     int groups = 0;
     int n = 0;
     int a;
@@ -166,27 +149,75 @@ static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink t
             }
         }
         if (n > start) {
-            ok = ok || w->committed[a];
             w->pick[groups] = 0;
             w->first[groups++] = start;
             w->first[groups] = n;
         }
     }
-    while (ok) {
-        int g;
-        w->chosen[0] = sender;
-        for (g = 0; g < groups; g++) {
-            w->chosen[1 + g] = w->group[w->first[g] + w->pick[g]];
+    return groups;
+}
+
+/* How many ways a group has to take part: each of its edges, and none if all can be kept back by
+ * clocks. */
+static int ways(const engine *h, const walk *w, int g)
+{
+    int k;
+    for (k = w->first[g]; k < w->first[g + 1]; k++) {
+        if (edge_at(h, w->group[k])[EDGE_ATOMS] == 0) {
+            return w->first[g + 1] - w->first[g];
         }
-        if (h->failed || !take(h, w, w->chosen, 1 + groups)) {
+    }
+    return w->first[g + 1] - w->first[g] + 1;
+}
+
+/* One move for each choice of the atoms that keep back what is skipped. */
+static bool each_variant(engine *h, walk *w, int n, sink take)
+{
+    int i = 0;
+    w->variant = 0;
+    (void)memset(w->skip, 0, (size_t)w->skipped_count * sizeof *w->skip);
+    while (i >= 0) {
+        if (h->failed || !take(h, w, w->chosen, n)) {
+            return false;
+        }
+        w->variant++;
+        i = w->skipped_count - 1;
+        while ((i >= 0) && (++w->skip[i] == edge_at(h, w->skipped[i])[EDGE_ATOMS])) {
+            w->skip[i--] = 0;
+        }
+    }
+    w->skipped_count = 0;
+    w->variant = 0;
+    return true;
+}
+
+/* A sender and one edge of each automaton that can receive, in all ways. */
+static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink take)
+{
+    const int groups = receivers(h, w, sender);
+    int g = 0;
+    while ((g >= 0) && !h->failed) {
+        bool ok = !committed || w->committed[edge_at(h, sender)[EDGE_AUTOMATON]];
+        int n = 0;
+        w->skipped_count = 0;
+        w->chosen[n++] = sender;
+        for (g = 0; g < groups; g++) {
+            int k = w->first[g] + w->pick[g];
+            if (k < w->first[g + 1]) {
+                w->chosen[n++] = w->group[k];
+                ok = ok || w->committed[edge_at(h, w->group[k])[EDGE_AUTOMATON]];
+                continue;
+            }
+            for (k = w->first[g]; k < w->first[g + 1]; k++) {
+                w->skipped[w->skipped_count++] = w->group[k];
+            }
+        }
+        if (ok && !each_variant(h, w, n, take)) {
             return false;
         }
         g = groups - 1;
-        while ((g >= 0) && (++w->pick[g] == w->first[g + 1] - w->first[g])) {
+        while ((g >= 0) && (++w->pick[g] == ways(h, w, g))) {
             w->pick[g--] = 0;
-        }
-        if (g < 0) {
-            break;
         }
     }
     return !h->failed;
@@ -228,6 +259,8 @@ static bool each_move(engine *h, walk *w, sink take)
     bool committed = false;
     int pass;
     int a;
+    w->skipped_count = 0;
+    w->variant = 0;
     for (a = 0; a < h->automaton_count; a++) {
         w->committed[a] = place_of(h, w->places, a)[LOC_KIND] == KIND_COMMITTED;
         committed = committed || w->committed[a];

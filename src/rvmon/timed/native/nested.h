@@ -303,7 +303,7 @@ static void solve(engine *h)
     }
 }
 
-static bool in_nested(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t *values)
 {
     federation sought = {0, 0, NULL};
     uint32_t *at;

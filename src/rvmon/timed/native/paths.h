@@ -89,6 +89,7 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     w->ordinal = 0;
     h->wanted = link;
     h->step_edge_count = 0;
+    h->step_variant = 0;
     h->crossings.count = 0;
     if ((before >= 0) && ((h->kind == SEEK_STAY) || (h->kind == SEEK_STAY_AFTER))) {
         (void)each_stand(h, zone_of(h, from), before, h->delays[h->nodes[from].state] != 0, 0,
@@ -97,7 +98,7 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     } else {
         (void)each_move(h, w, match);
     }
-    tell(h, STEP_MOVE, piece, 0, h->step_edge_count);
+    tell(h, STEP_MOVE, piece, h->step_variant, h->step_edge_count);
     return steps;
 }
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 const uint8_t plan_widths[SECTIONS] = {
-    4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, UPDATE_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
+    4, 3, LOC_SIZE, EDGE_SIZE, ATOM_SIZE, LIMIT_SIZE, 1, 1, ROW_SIZE, ROW_SIZE,
     LIMIT_SIZE, TREE_SIZE, ROW_SIZE,
     WAY_SIZE, 1,
 };
@@ -21,10 +21,16 @@ static const struct {
     [OP_LOOKUP] = {2, 1, 0},  [OP_PLACE] = {2, 0, 1},  [OP_NOT] = {0, 1, 0},
     [OP_NEGATE] = {0, 1, 0},  [OP_TRUTH] = {0, 1, 0},  [OP_AND] = {1, 1, -1},
     [OP_OR] = {1, 1, -1},     [OP_IMPLY] = {1, 1, -1}, [OP_UNLESS] = {1, 1, -1},
-    [OP_GO] = {1, 1, 0},      [OP_LT] = {0, 2, -1},    [OP_LE] = {0, 2, -1},
+    [OP_GO] = {1, 0, 0},      [OP_LT] = {0, 2, -1},    [OP_LE] = {0, 2, -1},
     [OP_EQ] = {0, 2, -1},     [OP_NE] = {0, 2, -1},    [OP_GE] = {0, 2, -1},
     [OP_GT] = {0, 2, -1},     [OP_ADD] = {0, 2, -1},   [OP_SUB] = {0, 2, -1},
     [OP_MUL] = {0, 2, -1},    [OP_DIV] = {0, 2, -1},   [OP_MOD] = {0, 2, -1},
+    [OP_BIT_AND] = {0, 2, -1}, [OP_BIT_OR] = {0, 2, -1}, [OP_BIT_XOR] = {0, 2, -1},
+    [OP_LEFT] = {0, 2, -1},   [OP_RIGHT] = {0, 2, -1}, [OP_LEAST] = {0, 2, -1},
+    [OP_MOST] = {0, 2, -1},   [OP_INVERT] = {0, 1, 0}, [OP_SET] = {1, 1, -1},
+    [OP_STORE] = {2, 2, -2},  [OP_CLOCK] = {1, 1, -1}, [OP_CALL] = {1, 0, 1},
+    [OP_DROP] = {0, 1, -1},   [OP_HEAD] = {0, 0, 0},   [OP_BACK] = {1, 0, 0},
+    [OP_FAIL] = {0, 0, 1},
 };
 
 enum { UNSEEN = -1, NO_WAY = -2 };
@@ -32,7 +38,8 @@ enum { UNSEEN = -1, NO_WAY = -2 };
 typedef struct {
     const int32_t *plan;
     int16_t *depth;   /* of the stack, where jumps lead */
-    uint8_t *starts;  /* where programs begin */
+    uint8_t *starts;  /* where programs begin: one more than how deep they call others */
+    int32_t begin;    /* of the program at hand */
 } checker;
 
 static bool within(int64_t first, int64_t count, int64_t all)
@@ -78,12 +85,16 @@ static bool operands_fit(const checker *c, int32_t op, const int32_t *operand)
 {
     switch (op) {
     case OP_VARIABLE:
+    case OP_SET:
         return within(operand[0], 1, rows(c, AT_VARIABLES));
+    case OP_CLOCK:
+        return within((int64_t)operand[0] - 1, 1, c->plan[HEAD_CLOCKS]);
     case OP_INDEX:
         return (operand[1] >= 0) && ((int64_t)operand[0] + operand[1] <= INT32_MAX);
     case OP_ROW:
         return operand[0] >= 0;
     case OP_ELEMENT:
+    case OP_STORE:
         return within(operand[0], operand[1], rows(c, AT_VARIABLES));
     case OP_LOOKUP:
         return within(operand[0], operand[1], rows(c, AT_TABLE));
@@ -107,6 +118,29 @@ static bool jumps(checker *c, int32_t from, int32_t to, int depth)
     return c->depth[to] == depth;
 }
 
+/* A call goes to a program before this one, so that none calls itself; a loop goes back to where it
+ * begins, with nothing on the stack. */
+static bool flows(checker *c, int32_t op, int32_t at, int32_t to, int depth)
+{
+    if (op == OP_HEAD) {
+        c->depth[at] = 0;
+        return depth == 0;
+    }
+    if (op == OP_BACK) {
+        return (depth == 0) && (to >= c->begin) && (to < at) && (c->depth[to] == 0)
+               && (plan_rows(c->plan, AT_CODE)[to] == OP_HEAD);
+    }
+    if (op == OP_CALL) {
+        if ((to < 0) || (to >= c->begin) || (c->starts[to] == 0) || (c->starts[to] > MOST_NEST)) {
+            return false;
+        }
+        if (c->starts[c->begin] <= c->starts[to]) {
+            c->starts[c->begin] = (uint8_t)(c->starts[to] + 1);
+        }
+    }
+    return true;
+}
+
 /* All programs, one behind the other. */
 static bool programs_fit(checker *c)
 {
@@ -123,6 +157,7 @@ static bool programs_fit(checker *c)
                 return false;
             }
             c->starts[at] = 1;
+            c->begin = at;
             depth = 0;
             begins = false;
         } else if (c->depth[at] != UNSEEN) {
@@ -133,7 +168,8 @@ static bool programs_fit(checker *c)
         }
         if ((op < 0) || (op >= OPS) || (depth < shapes[op].needs)
             || !within(at, 1 + shapes[op].operands, count)
-            || !operands_fit(c, op, code + at + 1)) {
+            || !operands_fit(c, op, code + at + 1)
+            || !flows(c, op, at, (shapes[op].operands > 0) ? code[at + 1] : 0, depth)) {
             return false;
         }
         for (i = 1; i <= shapes[op].operands; i++) { /* no jump leads between these */
@@ -151,7 +187,7 @@ static bool programs_fit(checker *c)
             && !jumps(c, at + 1, code[at + 1], (op == OP_UNLESS) ? depth - 1 : depth)) {
             return false;
         }
-        depth = (op == OP_GO) ? NO_WAY : depth + shapes[op].change;
+        depth = ((op == OP_GO) || (op == OP_BACK)) ? NO_WAY : depth + shapes[op].change;
         if (depth > STACK) {
             return false;
         }
@@ -202,24 +238,6 @@ static bool atoms_fit(const checker *c)
     return true;
 }
 
-static bool updates_fit(const checker *c)
-{
-    const int32_t *row = plan_rows(c->plan, AT_UPDATES);
-    int32_t i;
-    for (i = 0; i < rows(c, AT_UPDATES); i++, row += UPDATE_SIZE) {
-        const bool fits = row[UPDATE_CLOCK]
-                              ? (row[UPDATE_FIRST] >= 1)
-                                    && (row[UPDATE_FIRST] <= c->plan[HEAD_CLOCKS])
-                              : within(row[UPDATE_FIRST], row[UPDATE_COUNT], rows(c, AT_VARIABLES))
-                                    && (row[UPDATE_COUNT] > 0);
-        if (!fits || !is_program_or_none(c, row[UPDATE_OFFSET])
-            || !is_program(c, row[UPDATE_VALUE])) {
-            return false;
-        }
-    }
-    return true;
-}
-
 static bool edges_fit(const checker *c, const int32_t *row, int32_t count, int32_t automaton)
 {
     const int32_t places = plan_rows(c->plan, AT_AUTOMATA)[3 * automaton + 1];
@@ -228,7 +246,7 @@ static bool edges_fit(const checker *c, const int32_t *row, int32_t count, int32
         if ((row[EDGE_AUTOMATON] != automaton) || !within(row[EDGE_TARGET], 1, places)
             || !is_program_or_none(c, row[EDGE_GUARD])
             || !within(row[EDGE_ATOM], row[EDGE_ATOMS], rows(c, AT_ATOMS))
-            || !within(row[EDGE_UPDATE], row[EDGE_UPDATES], rows(c, AT_UPDATES))
+            || !is_program_or_none(c, row[EDGE_UPDATE])
             || !is_program_or_none(c, row[EDGE_CHANNEL]) || (row[EDGE_FIRST] < 0)
             || (row[EDGE_STOP] < row[EDGE_FIRST])) {
             return false;
@@ -332,7 +350,8 @@ static bool head_fits(const int32_t *plan)
         || (plan[HEAD_POLICY] >= POLICIES) || ((plan[HEAD_POLICY] != POLICY_SHORTEST) && !plain)
         || (plan[HEAD_CLOCKS] < 0) || (plan[HEAD_CLOCKS] > MOST_CLOCKS) || (plan[HEAD_TIMER] < 0)
         || (plan[HEAD_TIMER] > 1) || (plan[HEAD_BOUND] < 0)
-        || (plan[HEAD_BOUND] == INT32_MAX) || (plan_count(plan, AT_AUTOMATA) < 1)
+        || (plan[HEAD_BOUND] == INT32_MAX) || (plan[HEAD_LOCALS] < 0)
+        || (plan[HEAD_LOCALS] > plan_count(plan, AT_VARIABLES)) || (plan_count(plan, AT_AUTOMATA) < 1)
         || ((late || (plan[HEAD_POLICY] == POLICY_FASTEST)) && (plan[HEAD_TIMER] == 0))
         || (plan_count(plan, AT_TREE) > MOST_TREE_ROWS)
         || (plan_count(plan, AT_INSIDE) > MOST_PIECES)
@@ -350,14 +369,14 @@ static bool head_fits(const int32_t *plan)
 static bool parts_fit(checker *c)
 {
     return programs_fit(c) && limits_fit(c, AT_LIMITS) && limits_fit(c, AT_EXTRA) && atoms_fit(c)
-           && updates_fit(c) && alternatives_fit(c, AT_GOAL) && alternatives_fit(c, AT_INSIDE)
+           && alternatives_fit(c, AT_GOAL) && alternatives_fit(c, AT_INSIDE)
            && alternatives_fit(c, AT_PIECES) && places_fit(c) && tree_fits(c)
            && ways_fit(c);
 }
 
 plan_state plan_check(const int32_t *plan, size_t count)
 {
-    checker c = {plan, NULL, NULL};
+    checker c = {plan, NULL, NULL, 0};
     plan_state state = PLAN_NO_MEMORY;
     size_t size;
     if (!sections_fit(plan, count) || !head_fits(plan)) {

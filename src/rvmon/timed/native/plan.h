@@ -22,6 +22,7 @@ enum {
     HEAD_LEVELLED, /* whether lower and upper bounds count alike */
     HEAD_BOUND,   /* of a late response; 1 where a run has to let time pass on */
     HEAD_SETS,    /* of acceptance */
+    HEAD_LOCALS,  /* how many of the variables, the last, belong to functions */
     HEAD_SECTIONS
 };
 
@@ -39,8 +40,6 @@ enum {
     AT_LOCATIONS, /* as below */
     AT_EDGES,     /* as below, sorted by location */
     AT_ATOMS,     /* clock, op, program or -1, number */
-    AT_UPDATES,   /* whether it sets a clock, program for an offset or -1, first slot or clock,
-                     number of slots, program for the value */
     AT_LIMITS,    /* clock, whether of lower bounds, the largest number */
     AT_CODE,
     AT_TABLE,     /* constant arrays */
@@ -57,13 +56,13 @@ enum {
 enum { LOC_KIND, LOC_INVARIANT, LOC_ATOM, LOC_ATOMS, LOC_LIMIT, LOC_LIMITS, LOC_EDGE, LOC_EDGES,
        LOC_SIZE };
 enum { KIND_NORMAL, KIND_URGENT, KIND_COMMITTED };
-enum { EDGE_AUTOMATON, EDGE_TARGET, EDGE_GUARD, EDGE_ATOM, EDGE_ATOMS, EDGE_UPDATE, EDGE_UPDATES,
+enum { EDGE_AUTOMATON, EDGE_TARGET, EDGE_GUARD, EDGE_ATOM, EDGE_ATOMS,
+       EDGE_UPDATE,  /* program or -1 */
        EDGE_CHANNEL, /* program or -1 */
        EDGE_FIRST, EDGE_STOP, /* the channels that it may be */
        EDGE_FLAGS, EDGE_SIZE };
 enum { FLAG_SENDS = 1, FLAG_BROADCAST = 2, FLAG_URGENT = 4 };
 enum { ROW_CONDITION, ROW_ATOM, ROW_ATOMS, ROW_SIZE };
-enum { UPDATE_CLOCK, UPDATE_OFFSET, UPDATE_FIRST, UPDATE_COUNT, UPDATE_VALUE, UPDATE_SIZE };
 enum { ATOM_CLOCK, ATOM_OP, ATOM_CODE, ATOM_NUMBER, ATOM_SIZE };
 enum { LIMIT_CLOCK, LIMIT_LOWER, LIMIT_NUMBER, LIMIT_SIZE };
 /* Whether runs start there, the sets of acceptance that it belongs to, its arcs. */
@@ -86,6 +85,16 @@ enum {
     OP_UNLESS,   /* where to go on if it is false */
     OP_GO,
     OP_LT, OP_LE, OP_EQ, OP_NE, OP_GE, OP_GT, OP_ADD, OP_SUB, OP_MUL, OP_DIV, OP_MOD,
+    OP_BIT_AND, OP_BIT_OR, OP_BIT_XOR, OP_LEFT, OP_RIGHT, OP_LEAST, OP_MOST,
+    OP_INVERT,
+    OP_SET,      /* a variable: it takes the value, if that is in its range */
+    OP_STORE,    /* first slot, number: the variable at an offset takes the value on top of it */
+    OP_CLOCK,    /* a clock: it is set */
+    OP_CALL,     /* a program before this one: its value */
+    OP_DROP,
+    OP_HEAD,     /* where a loop begins */
+    OP_BACK,     /* where the loop begins */
+    OP_FAIL,     /* there is no value */
     OPS
 };
 
@@ -94,6 +103,8 @@ enum {
 #define MOST_PIECES 4000
 #define MOST_SETS 28
 #define STACK 256
+#define MOST_NEST 60        /* calls in calls */
+#define MOST_ROUNDS 1000000 /* of the loops of one computation */
 
 extern const uint8_t plan_widths[SECTIONS];
 

@@ -1,4 +1,5 @@
-/* Programs of a plan, and the bounds of its atoms. Overflow, a bad index and division by zero fail. */
+/* Programs of a plan, and the bounds of its atoms. Overflow, a bad index, a value out of range,
+ * division by zero, a shift by no number of bits and a loop without end fail. */
 #ifndef RVMON_ZONES_PROGRAMS_H
 #define RVMON_ZONES_PROGRAMS_H
 
@@ -70,6 +71,29 @@ static bool combine(int32_t op, int64_t a, int64_t b, int64_t *to)
         return subtracted(a, b, to);
     case OP_MUL:
         return multiplied(a, b, to);
+    case OP_BIT_AND:
+        *to = a & b;
+        return true;
+    case OP_BIT_OR:
+        *to = a | b;
+        return true;
+    case OP_BIT_XOR:
+        *to = a ^ b;
+        return true;
+    case OP_LEFT:
+        return (b >= 0) && (b < 32) && multiplied(a, (int64_t)1 << b, to);
+    case OP_RIGHT: /* rounds down */
+        if ((b < 0) || (b >= 32)) {
+            return false;
+        }
+        *to = (a >= 0) ? a >> b : ~(~a >> b);
+        return true;
+    case OP_LEAST:
+        *to = (a < b) ? a : b;
+        return true;
+    case OP_MOST:
+        *to = (a > b) ? a : b;
+        return true;
     default:
         if ((b == 0) || ((a == INT64_MIN) && (b == -1))) {
             return false;
@@ -79,7 +103,38 @@ static bool combine(int32_t op, int64_t a, int64_t b, int64_t *to)
     }
 }
 
-static int64_t evaluate(engine *h, int32_t at, const int32_t *places, const int32_t *values)
+static bool is_time(engine *h, int64_t number);
+
+/* Give a variable a value, if its range has it. */
+static bool set_variable(const engine *h, int32_t *values, int64_t at, int64_t x)
+{
+    const int32_t *variable = h->variables + (ptrdiff_t)at * 4;
+    const int64_t fit = (variable[3] != 0) ? (x != 0) : x;
+    if ((fit < variable[0]) || (fit > variable[1])) {
+        return false;
+    }
+    values[at] = (int32_t)fit;
+    return true;
+}
+
+/* Note that a clock is set. */
+static bool set_clock(engine *h, int32_t clock, int64_t x)
+{
+    walk *w = h->sets;
+    int j = 0;
+    if ((w == NULL) || !is_time(h, x)) {
+        return false;
+    }
+    while ((j < w->reset_count) && (w->resets[2 * j] != clock)) {
+        j++;
+    }
+    w->reset_count += (j == w->reset_count);
+    w->resets[2 * j] = clock;
+    w->resets[2 * j + 1] = (int32_t)x;
+    return true;
+}
+
+static int64_t compute(engine *h, int32_t at, const int32_t *places, int32_t *values)
 {
     const int32_t *code = h->code;
     int64_t stack[STACK + 1];
@@ -143,7 +198,37 @@ static int64_t evaluate(engine *h, int32_t at, const int32_t *places, const int3
             s--;
             break;
         case OP_GO:
+        case OP_BACK:
             at = code[at];
+            break;
+        case OP_INVERT:
+            *s = ~*s;
+            break;
+        case OP_SET:
+            good = set_variable(h, values, code[at++], *s--);
+            break;
+        case OP_STORE:
+            good = within(s[-1], 0, code[at + 1])
+                   && set_variable(h, values, code[at] + s[-1], s[0]);
+            at += 2;
+            s -= 2;
+            break;
+        case OP_CLOCK:
+            good = set_clock(h, code[at++], *s--) || !runs(h);
+            break;
+        case OP_CALL:
+            *++s = compute(h, code[at++], places, values);
+            good = !h->failed;
+            break;
+        case OP_DROP:
+            s--;
+            break;
+        case OP_HEAD:
+            good = h->rounds++ < MOST_ROUNDS;
+            break;
+        case OP_FAIL:
+            s++;
+            good = false;
             break;
         default:
             good = combine(op, s[-1], s[0], &s[-1]);
@@ -156,7 +241,13 @@ static int64_t evaluate(engine *h, int32_t at, const int32_t *places, const int3
     }
 }
 
-static bool holds(engine *h, int32_t program, const int32_t *places, const int32_t *values)
+static int64_t evaluate(engine *h, int32_t at, const int32_t *places, int32_t *values)
+{
+    h->rounds = 0;
+    return compute(h, at, places, values);
+}
+
+static bool holds(engine *h, int32_t program, const int32_t *places, int32_t *values)
 {
     return (program < 0) || (evaluate(h, program, places, values) != 0);
 }
@@ -176,7 +267,7 @@ static bool is_time(engine *h, int64_t number)
 }
 
 /* The entry and the bound of an atom; false if its number is no time. */
-static bool atom_at(engine *h, const int32_t *atom, const int32_t *places, const int32_t *values,
+static bool atom_at(engine *h, const int32_t *atom, const int32_t *places, int32_t *values,
                     int *x, int *y, bound *b)
 {
     const int64_t number = (atom[ATOM_CODE] < 0) ? atom[ATOM_NUMBER]
@@ -197,7 +288,7 @@ static bool atom_at(engine *h, const int32_t *atom, const int32_t *places, const
 }
 
 static bool cut_atoms(engine *h, bound *z, int32_t first, int32_t count, const int32_t *places,
-                      const int32_t *values)
+                      int32_t *values)
 {
     const int32_t *atom = h->atoms + (ptrdiff_t)first * ATOM_SIZE;
     int32_t k;
@@ -214,7 +305,7 @@ static bool cut_atoms(engine *h, bound *z, int32_t first, int32_t count, const i
 
 /* Cut a zone by an alternative of a formula; false if they do not meet in this discrete state. */
 static bool cut_row(engine *h, bound *z, const int32_t *row, const int32_t *places,
-                    const int32_t *values)
+                    int32_t *values)
 {
     return holds(h, row[ROW_CONDITION], places, values) && !h->failed
            && cut_atoms(h, z, row[ROW_ATOM], row[ROW_ATOMS], places, values);
@@ -230,7 +321,7 @@ static const int32_t *edge_at(const engine *h, int32_t e)
     return h->edges + (ptrdiff_t)e * EDGE_SIZE;
 }
 
-static bool invariant_data_holds(engine *h, const int32_t *places, const int32_t *values)
+static bool invariant_data_holds(engine *h, const int32_t *places, int32_t *values)
 {
     int a;
     for (a = 0; a < h->automaton_count; a++) {
@@ -242,7 +333,7 @@ static bool invariant_data_holds(engine *h, const int32_t *places, const int32_t
 }
 
 /* The tightest upper bound of each clock that an invariant bounds; how many, -1 if it failed. */
-static int invariant_of(engine *h, const int32_t *places, const int32_t *values)
+static int invariant_of(engine *h, const int32_t *places, int32_t *values)
 {
     int n = 0;
     int a;
@@ -272,7 +363,7 @@ static int invariant_of(engine *h, const int32_t *places, const int32_t *values)
     return n;
 }
 
-static bool cut_invariant(engine *h, bound *z, const int32_t *places, const int32_t *values)
+static bool cut_invariant(engine *h, bound *z, const int32_t *places, int32_t *values)
 {
     const int n = invariant_of(h, places, values);
     int i;
@@ -285,7 +376,7 @@ static bool cut_invariant(engine *h, bound *z, const int32_t *places, const int3
 }
 
 /* The invariant and, if time may pass, all delays; false if nothing is left. */
-static bool settle(engine *h, bound *z, const int32_t *places, const int32_t *values, bool delays)
+static bool settle(engine *h, bound *z, const int32_t *places, int32_t *values, bool delays)
 {
     if (delays) {
         const int n = invariant_of(h, places, values);

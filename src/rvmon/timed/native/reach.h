@@ -150,7 +150,7 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
 }
 
 /* The part of a zone from which no edge can ever be taken, as `dead`; false if that failed. */
-static bool find_dead(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+static bool find_dead(engine *h, const bound *z, const int32_t *places, int32_t *values)
 {
     walk *w = &h->look;
     uint32_t k;
@@ -180,7 +180,7 @@ static double price_of(const engine *h, const bound *z)
 
 /* The parts of a zone in some alternatives, as `parts`; true if there are any, even all of it. */
 static bool in_rows(engine *h, const bound *z, int section, const int32_t *places,
-                    const int32_t *values)
+                    int32_t *values)
 {
     const int32_t *row = plan_rows(h->plan, section);
     int32_t k;
@@ -207,7 +207,7 @@ static bool in_rows(engine *h, const bound *z, int section, const int32_t *place
 }
 
 /* The same of the dead parts, else of those that are not. */
-static bool in_dead(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+static bool in_dead(engine *h, const bound *z, const int32_t *places, int32_t *values)
 {
     const int sections[2] = {AT_INSIDE, AT_GOAL};
     bool some[2] = {false, false};
@@ -251,10 +251,10 @@ static bool in_dead(engine *h, const bound *z, const int32_t *places, const int3
     return false;
 }
 
-static bool in_nested(engine *h, const bound *z, const int32_t *places, const int32_t *values);
+static bool in_nested(engine *h, const bound *z, const int32_t *places, int32_t *values);
 
 /* Whether some of a zone is sought; which, as `parts`. */
-static bool is_goal(engine *h, const bound *z, const int32_t *places, const int32_t *values)
+static bool is_goal(engine *h, const bound *z, const int32_t *places, int32_t *values)
 {
     h->parts.count = 0;
     if (h->kind == SEEK_DEADLOCK) {

@@ -17,10 +17,10 @@ static double cost_of(const engine *h, const bound *z, const int32_t *edges, int
     return cost;
 }
 
-static void enter_way(engine *h, const bound *z, const int32_t *places, const int32_t *values);
+static void enter_way(engine *h, const bound *z, const int32_t *places, int32_t *values);
 
 /* A zone just reached in a state whose data the invariants allow. */
-static void arrive(engine *h, bound *z, const int32_t *places, const int32_t *values,
+static void arrive(engine *h, bound *z, const int32_t *places, int32_t *values,
                    const int32_t *edges, int count)
 {
     uint32_t *at;
@@ -106,6 +106,7 @@ static bool match(engine *h, walk *w, const int32_t *edges, int n)
     if (w->ordinal++ != h->wanted) {
         return true;
     }
+    h->step_variant = w->variant;
     (void)memcpy(h->step_edges, edges, (size_t)n * sizeof *edges);
     h->step_edge_count = n;
     return false;

@@ -41,7 +41,7 @@ static bool lay_out(engine *h)
 static void make_walk(engine *h, walk *w)
 {
     const size_t places = (size_t)h->automaton_count;
-    const size_t values = (size_t)h->variable_count;
+    const size_t values = (size_t)plan_count(h->plan, AT_VARIABLES);
     w->places = block(h, places, sizeof *w->places);
     w->values = block(h, values, sizeof *w->values);
     w->target = block(h, places, sizeof *w->target);
@@ -54,11 +54,13 @@ static void make_walk(engine *h, walk *w)
     w->first = block(h, places, sizeof *w->first);
     w->pick = block(h, places, sizeof *w->pick);
     w->committed = block(h, places, sizeof *w->committed);
+    w->skipped = block(h, (size_t)h->edge_count, sizeof *w->skipped);
+    w->skip = block(h, (size_t)h->edge_count, sizeof *w->skip);
 }
 
 static void free_walk(walk *w)
 {
-    void *all[12];
+    void *all[14];
     size_t i;
     all[0] = w->places;
     all[1] = w->values;
@@ -72,6 +74,8 @@ static void free_walk(walk *w)
     all[9] = w->first;
     all[10] = w->pick;
     all[11] = w->committed;
+    all[12] = w->skipped;
+    all[13] = w->skip;
     for (i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]);
     }
@@ -92,9 +96,8 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     h->locations = plan_rows(plan, AT_LOCATIONS);
     h->edges = plan_rows(plan, AT_EDGES);
     h->atoms = plan_rows(plan, AT_ATOMS);
-    h->updates = plan_rows(plan, AT_UPDATES);
     h->code = plan_rows(plan, AT_CODE);
-    h->variable_count = plan_count(plan, AT_VARIABLES);
+    h->variable_count = plan_count(plan, AT_VARIABLES) - plan[HEAD_LOCALS];
     h->automaton_count = plan_count(plan, AT_AUTOMATA);
     h->edge_count = plan_count(plan, AT_EDGES);
     h->goal_count = plan_count(plan, AT_GOAL);

@@ -10,13 +10,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
-from rvmon.timed.model.evaluate import evaluator, slot_evaluator
+from rvmon.errors import ModelError
+from rvmon.timed.model.evaluate import Frame, evaluator, runner, slot_evaluator
 from rvmon.timed.model.expressions import (
     TRUE,
     ClockCompare,
     ClockOp,
 )
-from rvmon.timed.model.network import Edge, Guard, Network, Reset
+from rvmon.timed.model.network import Edge, Guard, Network
 from rvmon.timed.model.operators import LocationKind
 from rvmon.timed.runs.run import Action, Run
 
@@ -183,6 +184,7 @@ def _receivers(network: Network, now: Configuration, sender: int, channel: int) 
         index
         for index, edge in _ready_edges(network, now)
         if index != sender
+        and all(compares(now, compare) for compare in edge.guard.clocks)
         and edge.sync is not None
         and not edge.sync.sends
         and channel_index(now, edge) == channel
@@ -211,17 +213,14 @@ def _check_synchronisation(network: Network, now: Configuration, action: Action)
 
 
 def _update(network: Network, now: Configuration, action: Action) -> Configuration:
-    locations, values, clocks = list(now.locations), list(now.values), list(now.clocks)
+    locations, clocks = list(now.locations), list(now.clocks)
+    frame = Frame(now.values, len(network.locals))
     for automaton, edge in action.edges:
         locations[automaton] = edge.target
-        for update in edge.updates:
-            value = evaluator(update.value)(now.locations, values)
-            if isinstance(update, Reset):
-                clocks[update.clock] = Fraction(value)
-                continue
-            index = slot_evaluator(update.slot)(now.locations, values)
-            variable = network.variables[index]
-            values[index] = int(bool(value)) if variable.is_bool else value
-            if not variable.low <= values[index] <= variable.high:
-                raise InvalidRunError(f"{variable.name} leaves its range")
-    return Configuration(tuple(locations), tuple(values), tuple(clocks))
+        try:
+            runner(edge.updates)(now.locations, frame)
+        except ModelError as error:
+            raise InvalidRunError(str(error)) from error
+    for clock, value in frame.clocks.items():
+        clocks[clock] = Fraction(value)
+    return Configuration(tuple(locations), frame.variables(), tuple(clocks))

@@ -18,8 +18,8 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete
-from rvmon.timed.model.network import Assignment, Edge, Network, Reset
+from rvmon.timed.model.guards import is_discrete, resets_in
+from rvmon.timed.model.network import Edge, Network
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.search.linear import WayState
@@ -56,9 +56,8 @@ class Plan:
 
     def __init__(self, network: Network, sought: Sought) -> None:
         self._network = network
-        self._programs = Programs()
+        self._programs = Programs(len(network.variables) + len(network.locals))
         self._atoms: list[int] = []
-        self._updates: list[int] = []
         self._limits: list[int] = []
         self._tree: list[int] = []
         self._pieces: list[int] = []
@@ -68,7 +67,7 @@ class Plan:
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             due = (ClockCompare(timer, ClockOp.LE, Constant(sought.bound)),)
         self._sets = [
-            {u.clock for edge in a.edges for u in edge.updates if isinstance(u, Reset)}
+            {reset.clock for edge in a.edges for reset in resets_in(edge.updates)}
             for a in network.automata
         ]
         # What a query compares clocks with, by automaton and location, or with None everywhere.
@@ -83,13 +82,13 @@ class Plan:
             self._grow(sought.nested)
         automata, locations, edges = self._automata()
         self._refuse_too_large(len(self.inside))
+        variables = (*network.variables, *network.locals)
         sections = [
-            (4, [x for v in network.variables for x in (v.low, v.high, v.initial, v.is_bool)]),
+            (4, [x for v in variables for x in (v.low, v.high, v.initial, v.is_bool)]),
             (3, automata),
             (8, locations),
-            (11, edges),
+            (10, edges),
             (4, self._atoms),
-            (5, self._updates),
             (3, self._limits),
             (1, self._programs.code),
             (1, self._programs.table),
@@ -104,7 +103,7 @@ class Plan:
         late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
         head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer, sought.is_levelled]
         sets = 0 if sought.ways is None else sought.ways.sets
-        self.numbers = _packed([*head, int(late or 0), sets], sections)
+        self.numbers = _packed([*head, int(late or 0), sets, len(network.locals)], sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
 
@@ -140,10 +139,7 @@ class Plan:
     def _edge(self, automaton: int, edge: Edge) -> list[int]:
         row = [automaton, edge.target, self._data(edge.guard.data)]
         row += self._compares(edge.guard.clocks)
-        first = len(self._updates) // 5
-        for update in edge.updates:
-            self._updates += self._update(update)
-        row += [first, len(self._updates) // 5 - first]
+        row.append(self._programs.add_updates(edge.updates) if edge.updates else -1)
         if edge.sync is None:
             return [*row, -1, 0, 0, 0]
         slot = edge.sync.slot
@@ -151,13 +147,6 @@ class Plan:
         flags = edge.sync.sends | channel.broadcast << 1 | channel.urgent << 2
         last = slot.first + prod(map(len, slot.extents))
         return [*row, self._programs.add_index(slot), slot.first, last, flags]
-
-    def _update(self, update: Assignment | Reset) -> list[int]:
-        if isinstance(update, Reset):
-            return [1, -1, update.clock + 1, 1, self._programs.add(update.value)]
-        slot = update.slot
-        offset, size = self._programs.add_offset(slot), prod(map(len, slot.extents))
-        return [0, offset, slot.first, size, self._programs.add(update.value)]
 
     def _data(self, expression: Expression) -> int:
         return -1 if expression == TRUE else self._programs.add(expression)

@@ -187,7 +187,7 @@ class _Paths:
             match _Step(kind):
                 case _Step.MOVE:
                     edges = [self._plan.edges[edge] for edge in numbers[at - count : at]]
-                    step = self._move(state, edges, here, behind)
+                    step = self._move(state, edges, number, here, behind)
                 case _Step.CROSSING:
                     there = self._constraint(self._plan.inside, behind, state)
                     leave = here if number else _rounded(here, uppers=True)
@@ -202,10 +202,16 @@ class _Paths:
         return state, steps
 
     def _move(
-        self, state: State, edges: list[tuple[int, int]], leave: Constraint, behind: int
+        self,
+        state: State,
+        edges: list[tuple[int, int]],
+        variant: int,
+        leave: Constraint,
+        behind: int,
     ) -> PathStep:
         for move in self._space.moves(state):
-            if [(edge.automaton, edge.number) for edge in move.edges] == edges:
+            same = [(edge.automaton, edge.number) for edge in move.edges] == edges
+            if same and move.variant == variant:
                 if move.failure is not None:
                     raise move.failure
                 enter = self._constraint(self._plan.inside, behind, move.target)

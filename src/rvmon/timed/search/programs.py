@@ -1,18 +1,34 @@
-"""Expressions as programs of the native search: bytecode for a stack of 64-bit integers."""
+"""Expressions and updates as programs of the native search: bytecode for a stack of integers."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from typing import assert_never
+
 from rvmon.timed.model.expressions import (
+    Assignment,
     BinaryOperation,
     Choice,
     Constant,
     Expression,
+    Function,
+    If,
     InLocation,
+    Invoke,
     Lookup,
+    Missing,
+    Perform,
+    Reset,
+    Return,
     Slot,
+    Statement,
     UnaryOperation,
     VariableValue,
+    While,
+    expressions_of,
+    statements_in,
 )
+from rvmon.timed.model.guards import parts_of
 from rvmon.timed.model.operators import BinaryOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 
@@ -32,7 +48,16 @@ _BINARY = {
     BinaryOp.MUL: 24,
     BinaryOp.DIV: 25,
     BinaryOp.MOD: 26,
+    BinaryOp.BIT_AND: 27,
+    BinaryOp.BIT_OR: 28,
+    BinaryOp.BIT_XOR: 29,
+    BinaryOp.SHIFT_LEFT: 30,
+    BinaryOp.SHIFT_RIGHT: 31,
+    BinaryOp.MINIMUM: 32,
+    BinaryOp.MAXIMUM: 33,
 }
+INVERT, SET, STORE, CLOCK, CALL, DROP, HEAD, BACK, FAIL = range(34, 43)
+_UNARY = {UnaryOp.NOT: NOT, UnaryOp.NEGATE: NEGATE, UnaryOp.INVERT: INVERT}
 STACK = 256
 _HALF = 1 << 31
 
@@ -45,9 +70,13 @@ class Programs:
         table: the constant arrays that they look into.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, slots: int) -> None:
+        """Begin with none; `slots` are all variables with those of functions."""
         self.code: list[int] = []
         self.table: list[int] = []
+        self._slots = slots
+        self._starts: dict[int, int] = {}
+        self._ends: list[int] = []
 
     def add(self, expression: Expression) -> int:
         """Add a program that gives an expression's value; where it begins.
@@ -55,18 +84,109 @@ class Programs:
         Raises:
             ModelError: it is nested too deeply.
         """
+        self._add_called([expression])
         return self._finished(len(self.code), self._emit(expression))
 
-    def add_offset(self, slot: Slot) -> int:
-        """Add a program that gives the offset of a slot from its array's first; -1 if it is 0."""
-        return self._finished(len(self.code), self._offset(slot)) if slot.extents else -1
+    def add_updates(self, updates: Sequence[Statement]) -> int:
+        """Add a program that makes all updates of an edge; where it begins.
+
+        Raises:
+            ModelError: an expression is nested too deeply, or calls are.
+        """
+        self._add_called(e for s in statements_in(updates) for e in expressions_of(s))
+        start = len(self.code)
+        depth, _ = self._statements(updates)
+        self.code += [CONST, 0]
+        return self._finished(start, max(depth, 1))
 
     def add_index(self, slot: Slot) -> int:
         """Add a program that gives the number of a slot."""
+        self._add_called(slot.indices)
         start = len(self.code)
         depth = self._offset(slot)
         self.code += [CONST, slot.first, _BINARY[BinaryOp.ADD]]
         return self._finished(start, 1 + depth)
+
+    def _add_called(self, expressions: Iterable[Expression]) -> None:
+        """Add the functions that expressions call, which must stand before them."""
+        parts = (part for expression in expressions for part in parts_of(expression))
+        for part in parts:
+            if isinstance(part, Invoke) and id(part.function) not in self._starts:
+                self._add_function(part.function)
+
+    def _add_function(self, function: Function) -> None:
+        body = function.body
+        self._add_called(e for s in statements_in(body) for e in expressions_of(s))
+        start = len(self.code)
+        waiting, self._ends = self._ends, []
+        depth, _ = self._statements(body)
+        for hole in self._ends:
+            self.code[hole] = len(self.code)
+        self._ends = waiting
+        slot, _ = function.result
+        self.code += [SET, self._place(slot), VARIABLE, self._place(slot)]
+        self._starts[id(function)] = self._finished(start, depth)
+
+    def _place(self, slot: int) -> int:
+        """The number of a slot in the plan: those of functions stand behind all others."""
+        return slot if slot >= 0 else self._slots + slot
+
+    def _statements(self, statements: Sequence[Statement]) -> tuple[int, bool]:
+        """Emit statements; the depth of the stack that they need, and whether runs go on behind."""
+        depth = 1
+        for statement in statements:
+            more, goes_on = self._statement(statement)
+            depth = max(depth, more)
+            if not goes_on:
+                return depth, False
+        return depth, True
+
+    def _statement(self, statement: Statement) -> tuple[int, bool]:
+        code = self.code
+        match statement:
+            case Assignment(Slot(first, ()), value):
+                depth = self._emit(value)
+                code += [SET, self._place(first)]
+            case Assignment(slot, value):
+                depth = max(self._offset(slot), 1 + self._emit(value))
+                code += [STORE, self._place(slot.first), _size(slot)]
+            case Reset(clock, value):
+                depth = self._emit(value)
+                code += [CLOCK, clock + 1]
+            case Perform(call):
+                depth = self._emit(call)
+                code.append(DROP)
+            case If(condition, then, otherwise):
+                first = self._emit(condition)
+                to_otherwise = self._hole(UNLESS)
+                second, after_then = self._statements(then)
+                to_end = self._hole(GO) if after_then else None
+                code[to_otherwise] = len(code)
+                third, after_otherwise = self._statements(otherwise)
+                if to_end is not None:
+                    code[to_end] = len(code)
+                return max(first, second, third), after_then or after_otherwise
+            case While(condition, body):
+                head = len(code)
+                code.append(HEAD)
+                first = self._emit(condition)
+                to_end = self._hole(UNLESS)
+                second, after_body = self._statements(body)
+                if after_body:
+                    code += [BACK, head]
+                code[to_end] = len(code)
+                depth = max(first, second)
+            case Return(value):
+                depth = self._emit(value)
+                self._ends.append(self._hole(GO))
+                return depth, False
+            case Missing():
+                code.append(FAIL)
+                self._ends.append(self._hole(GO))
+                return 1, False
+            case _:
+                assert_never(statement)
+        return depth, True
 
     def _finished(self, start: int, depth: int) -> int:
         if depth > STACK:
@@ -104,23 +224,29 @@ class Programs:
             case Constant(value):
                 return self._constant(value)
             case VariableValue(Slot(first, ())):
-                code += [VARIABLE, first]
+                code += [VARIABLE, self._place(first)]
                 return 1
             case VariableValue(slot):
                 depth = self._offset(slot)
-                code += [ELEMENT, slot.first, _size(slot)]
+                code += [ELEMENT, self._place(slot.first), _size(slot)]
                 return depth
-            case Lookup(values, extent, index, _):
-                depth = self._emit(index)
-                code += [INDEX, extent.start, len(extent), LOOKUP, len(self.table), len(values)]
+            case Lookup(values, slot):
+                depth = self._offset(slot)
+                code += [LOOKUP, len(self.table), len(values)]
                 self.table += values
                 return depth
+            case Invoke(function, arguments):
+                depths = [place + self._emit(argument) for place, argument in enumerate(arguments)]
+                for place, _ in reversed(function.parameters):
+                    code += [SET, self._place(place)]
+                code += [CALL, self._starts[id(function)]]
+                return max(1, *depths) if depths else 1
             case InLocation(automaton, location):
                 code += [PLACE, automaton, location]
                 return 1
             case UnaryOperation(op, operand):
                 depth = self._emit(operand)
-                code.append(NOT if op is UnaryOp.NOT else NEGATE)
+                code.append(_UNARY[op])
                 return depth
             case BinaryOperation(op, left, right) if op in _JUMPS:
                 first = self._emit(left)

@@ -19,11 +19,13 @@ from rvmon.timed.model.expressions import (
     Constant,
     Expression,
     InLocation,
+    Invoke,
     Lookup,
+    Reset,
     UnaryOperation,
     VariableValue,
 )
-from rvmon.timed.model.network import Automaton, Network, Reset
+from rvmon.timed.model.network import Automaton, Edge, Network
 from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
 
@@ -70,6 +72,8 @@ def location_bounds(
     kept: list[tuple[int, int, list[int]]] = []
     for edge in automaton.edges:
         _note(edge.guard.clocks, lower[edge.source], upper[edge.source], network)
+        if _is_kept_back(edge, network):  # who is kept back, counts the other way round
+            _note(edge.guard.clocks, upper[edge.source], lower[edge.source], network)
         resets = {update.clock for update in edge.updates if isinstance(update, Reset)}
         kept.append((edge.source, edge.target, [c for c in range(clocks) if c not in resets]))
     changed = True
@@ -82,6 +86,12 @@ def location_bounds(
                         table[source][clock] = table[target][clock]
                         changed = True
     return [ClockBounds(tuple(low), tuple(high)) for low, high in zip(lower, upper, strict=True)]
+
+
+def _is_kept_back(edge: Edge, network: Network) -> bool:
+    """Whether an edge has no part in a move because its guard on clocks fails."""
+    sync = edge.sync
+    return sync is not None and not sync.sends and network.channels[sync.slot.first].broadcast
 
 
 def compared_bounds(network: Network, compares: Iterable[ClockCompare]) -> ClockBounds:
@@ -107,15 +117,24 @@ def value_range(expression: Expression, network: Network) -> tuple[int, int]:
         case Constant(value):
             return value, value
         case VariableValue(slot):
-            variables = network.variables[slot.first : slot.first + prod(map(len, slot.extents))]
+            first, table = slot.first, network.variables
+            if first < 0:
+                first, table = first + len(network.locals), network.locals
+            variables = table[first : first + prod(map(len, slot.extents))]
             return min(v.low for v in variables), max(v.high for v in variables)
-        case Lookup(values, _, _):
+        case Lookup(values, _):
             return min(values), max(values)
+        case Invoke(function):
+            _, result = function.result
+            return result.low, result.high
         case Choice(_, then, otherwise):
             return _hull(value_range(then, network), value_range(otherwise, network))
         case UnaryOperation(UnaryOp.NEGATE, operand):
             low, high = value_range(operand, network)
             return -high, -low
+        case UnaryOperation(UnaryOp.INVERT, operand):
+            low, high = value_range(operand, network)
+            return -high - 1, -low - 1
         case BinaryOperation(op, left, right):
             return _binary_range(op, value_range(left, network), value_range(right, network))
         case InLocation() | UnaryOperation():
@@ -133,9 +152,17 @@ def _binary_range(op: BinaryOp, left: tuple[int, int], right: tuple[int, int]) -
         case BinaryOp.MUL:
             products = [a * b for a in left for b in right]
             return min(products), max(products)
-        case BinaryOp.DIV | BinaryOp.MOD:
+        case BinaryOp.DIV | BinaryOp.MOD | BinaryOp.SHIFT_RIGHT:
             limit = max(map(abs, left))
             return -limit, limit
+        case BinaryOp.MINIMUM | BinaryOp.MAXIMUM:
+            return _hull(left, right)
+        case BinaryOp.SHIFT_LEFT:
+            limit = max(map(abs, left)) << min(31, max(0, right[1]))
+            return -limit, limit
+        case BinaryOp.BIT_AND | BinaryOp.BIT_OR | BinaryOp.BIT_XOR:
+            limit = (1 << max(abs(n).bit_length() for n in (*left, *right))) - 1
+            return -limit - 1, limit
         case _:
             return 0, 1
 

@@ -7,17 +7,22 @@ from dataclasses import dataclass
 from math import prod
 
 from rvmon.diagnostics import Span
-from rvmon.timed.model.evaluate import Evaluator, Locations, Values, evaluator, slot_evaluator
-from rvmon.timed.model.expressions import MAX_TIME, TRUE, ClockCompare, ClockOp, Constant
-from rvmon.timed.model.network import Assignment, Edge, Guard, Network, Reset, Update, Variable
-from rvmon.timed.model.rules import model_error
+from rvmon.timed.model.arithmetic import check_time
+from rvmon.timed.model.evaluate import (
+    Evaluator,
+    Locations,
+    Runner,
+    Values,
+    evaluator,
+    runner,
+    slot_evaluator,
+)
+from rvmon.timed.model.expressions import TRUE, ClockCompare, ClockOp, Constant
+from rvmon.timed.model.network import Edge, Guard, Network
 from rvmon.timed.zones.dbm import Atom, bound_of
 
 AtomMaker = Callable[[Locations, Values], list[Atom]]
 """The clock bounds of a guard or invariant, given the variables."""
-
-Updater = Callable[[Locations, list[int], dict[int, int]], None]
-"""Changes variables in place, and notes the clocks that are set."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +37,7 @@ class CompiledEdge:
         atoms: its clock bounds.
         channel: gives the index of the channel; `None` without synchronisation.
         channels: all channels that it may be; one unless the variables choose.
-        updates: in order.
+        updates: runs them; `None` if there are none.
     """
 
     automaton: int
@@ -42,7 +47,7 @@ class CompiledEdge:
     atoms: AtomMaker
     channel: Evaluator | None
     channels: range
-    updates: tuple[Updater, ...]
+    updates: Runner | None
 
 
 def compile_edge(network: Network, automaton: int, number: int) -> CompiledEdge:
@@ -61,7 +66,7 @@ def compile_edge(network: Network, automaton: int, number: int) -> CompiledEdge:
         atoms_of(edge.guard.clocks, edge.span),
         channel,
         channels,
-        tuple(_updater(update, network.variables) for update in edge.updates),
+        runner(edge.updates) if edge.updates else None,
     )
 
 
@@ -96,42 +101,3 @@ def atom_of(compare: ClockCompare, number: int) -> Atom:
     if compare.op in (ClockOp.LT, ClockOp.LE):
         return 0, clock, bound_of(number, strict)
     return clock, 0, bound_of(-number, strict)
-
-
-def check_time(number: int, span: Span | None) -> int:
-    """Refuse a number that no clock can be compared with or set to."""
-    if not 0 <= number < MAX_TIME:
-        fix = f"keep it from 0 to {MAX_TIME - 1:,}, or choose a larger unit of time"
-        raise model_error("TA007", f"{number} is no time for a clock", span, fix)
-    return number
-
-
-def _updater(update: Update, variables: Sequence[Variable]) -> Updater:
-    value = evaluator(update.value)
-    if isinstance(update, Reset):
-        clock, span = update.clock, update.span
-
-        def set_clock(locations: Locations, values: list[int], clocks: dict[int, int]) -> None:
-            clocks[clock] = check_time(value(locations, values), span)
-
-        return set_clock
-    return _assigner(update, value, slot_evaluator(update.slot), variables)
-
-
-def _assigner(
-    update: Assignment, value: Evaluator, slot: Evaluator, variables: Sequence[Variable]
-) -> Updater:
-    span = update.slot.span
-
-    def assign(locations: Locations, values: list[int], _clocks: dict[int, int]) -> None:
-        index = slot(locations, values)
-        variable, new = variables[index], value(locations, values)
-        if variable.is_bool:
-            new = int(bool(new))
-        if not variable.low <= new <= variable.high:
-            limits = f"[{variable.low}, {variable.high}]"
-            message = f"`{variable.name}` is set to {new}, outside {limits}"
-            raise model_error("TA007", message, span, "guard the edge, or widen the range")
-        values[index] = new
-
-    return assign

@@ -32,6 +32,12 @@ def bound_of(number: int, strict: bool) -> float:
     return number - STRICT if strict else float(number)
 
 
+def negated(atom: Atom) -> Atom:
+    """What holds where a bound does not."""
+    x, y, bound = atom
+    return y, x, -bound - STRICT
+
+
 def zero(dim: int) -> Zone:
     """The zone in which every clock is 0."""
     return [0.0] * (dim * dim)

@@ -59,11 +59,10 @@ def is_time_bounded(state: State) -> bool:
 
 
 def check_start(network: Network) -> None:
-    """Refuse a network in which time stops before anything can happen.
+    """Refuse a network that has no initial state.
 
     Raises:
-        ModelError: the initial state breaks an invariant, or no edge can ever be taken from it
-            though time may not pass for ever.
+        ModelError: an invariant forbids it.
     """
     places = [a.locations[a.initial] for a in network.automata]
     spans = [place.span for place in places if place.span is not None]
@@ -74,9 +73,4 @@ def check_start(network: Network) -> None:
     if state is None or not settle_in(state, zone, steps.dim):
         message = "an invariant of the initial locations is false at time 0"
         fix = "weaken it, or start elsewhere"
-        raise model_error("TA014", message, span, fix, others=others)
-    beginning = zero(steps.dim)
-    if is_time_bounded(state) and Deadlocks(steps.space).dead(state, normalise(beginning)):
-        message = "time stops in the initial state: no edge can ever be taken, nor time pass on"
-        fix = "weaken the invariant, or the guards of the edges from here"
         raise model_error("TA014", message, span, fix, others=others)

@@ -93,6 +93,7 @@ class Move:
         guard: clock bounds that must hold before.
         resets: clocks that are set and their values; clocks count from 1.
         target: the state behind.
+        variant: among the ways in which the same edges move together.
         failure: what is wrong with its updates; raised only if the step can be taken.
     """
 
@@ -100,4 +101,5 @@ class Move:
     guard: tuple[Atom, ...]
     resets: tuple[tuple[int, float], ...]
     target: State
+    variant: int = 0
     failure: ModelError | None = None

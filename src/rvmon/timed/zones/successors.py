@@ -2,7 +2,8 @@
 
 The rules: all guards are read before the step; the sender's update comes first, then the receivers'
 in the order of the automata; while some location is committed, only steps in which a committed
-location is left are taken; a broadcast takes along every automaton that can receive.
+location is left are taken; a broadcast takes along every automaton that can receive, which clocks
+may decide.
 """
 
 from __future__ import annotations
@@ -12,11 +13,12 @@ from itertools import product
 from math import inf
 
 from rvmon.errors import ModelError
-from rvmon.timed.model.evaluate import Evaluator
+from rvmon.timed.model.evaluate import Evaluator, Frame
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import LocationKind
 from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
 from rvmon.timed.zones.compile import AtomMaker, CompiledEdge, atoms_of, compile_edge, data_of
+from rvmon.timed.zones.dbm import Atom, negated
 from rvmon.timed.zones.discrete import Broadcast, Candidate, Move, State, Vector
 
 
@@ -85,31 +87,38 @@ class Space:
         if state.moves is None:
             state.moves = [
                 move
-                for edges, target in _enabled(state)
-                if (move := self._move(state, edges, target)) is not None
+                for edges, target, kept_back in _enabled(state)
+                for variant, without in enumerate(product(*kept_back))
+                if (move := self._move(state, edges, target, variant, without)) is not None
             ]
         return state.moves
 
     def _move(
-        self, state: State, edges: tuple[CompiledEdge, ...], target: tuple[int, ...]
+        self,
+        state: State,
+        edges: tuple[CompiledEdge, ...],
+        target: tuple[int, ...],
+        variant: int,
+        without: tuple[Atom, ...],
     ) -> Move | None:
         locations, values = state.vector.locations, state.values
         guard = tuple(atom for edge in edges for atom in edge.atoms(locations, values))
+        guard += without
         clocks: dict[int, int] = {}
         if any(edge.updates for edge in edges):
-            changed = list(values)
+            frame = Frame(values, len(self.network.locals))
             try:
                 for edge in edges:
-                    for update in edge.updates:
-                        update(locations, changed, clocks)
+                    if edge.updates is not None:
+                        edge.updates(locations, frame)
             except ModelError as error:
-                return Move(edges, guard, (), state, error)
-            values = tuple(changed)
+                return Move(edges, guard, (), state, variant, error)
+            values, clocks = frame.variables(), frame.clocks
         behind = self.state(target, values)
         if behind is None:
             return None
         resets = tuple((clock + 1, float(value)) for clock, value in clocks.items())
-        return Move(edges, guard, resets, behind)
+        return Move(edges, guard, resets, behind, variant)
 
     def _new_vector(self, locations: tuple[int, ...]) -> Vector:
         automata = self.network.automata
@@ -246,28 +255,42 @@ def _meet(
     return sender.channel(locations, values) == receiver.channel(locations, values)
 
 
-def _enabled(state: State) -> Iterator[tuple[tuple[CompiledEdge, ...], tuple[int, ...]]]:
-    """Edges that move together from a state, and the locations behind."""
+Enabled = tuple[tuple[CompiledEdge, ...], tuple[int, ...], list[list[Atom]]]
+"""Edges that move together, the locations behind, and for each edge that must be kept back what
+does so: any of these bounds."""
+
+
+def _enabled(state: State) -> Iterator[Enabled]:
+    """What may move from a state, whatever the clocks say."""
     vector, values = state.vector, state.values
     for candidate in vector.candidates:
         if _is_enabled(candidate, vector, values):
-            yield candidate.edges, candidate.target
+            yield candidate.edges, candidate.target, []
     locations = vector.locations
     for broadcast in vector.broadcasts:
         sender = broadcast.sender
         if sender.data is not None and not sender.data(locations, values):
             continue
-        groups = []
+        groups: list[list[CompiledEdge | None]] = []
         for group in broadcast.receivers:
-            able = [
+            able: list[CompiledEdge | None] = [
                 edge
                 for edge in group
                 if (edge.data is None or edge.data(locations, values))
                 and _meet(sender, edge, locations, values)
             ]
-            if able:
-                groups.append(able)
+            if all(edge is not None and edge.edge.guard.clocks for edge in able):
+                able.append(None)
+            groups.append(able)
         for chosen in product(*groups):
-            edges = (sender, *chosen)
-            if not vector.committed or any(e.automaton in vector.committed for e in edges):
-                yield edges, _behind(locations, edges)
+            edges = (sender, *(edge for edge in chosen if edge is not None))
+            if vector.committed and not any(e.automaton in vector.committed for e in edges):
+                continue
+            kept_back = [
+                [negated(atom) for atom in edge.atoms(locations, values)]
+                for group, one in zip(groups, chosen, strict=True)
+                if one is None
+                for edge in group
+                if edge is not None
+            ]
+            yield edges, _behind(locations, edges), kept_back

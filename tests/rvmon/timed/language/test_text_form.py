@@ -173,7 +173,7 @@ A = "automaton A { location a start a } "
         ("const int N[2] = {1, 2}, M = N[2] " + A, "TA007"),
         ("clock x, y automaton A { location a start a edge a -> a when x < y }", "TA008"),
         ("clock x, y automaton A { location a start a edge a -> a when x - y < 3 }", "TA008"),
-        ("clock x automaton A { location a invariant x >= 1 start a }", "TA009"),
+        ("clock x automaton A { location a invariant x >= 1 start a }", "TA014"),
         ("clock x automaton A { location a start a edge a -> a when x < 1 or x > 2 }", "TA009"),
         ("clock x int[0,1] v automaton A { location a start a edge a -> a do v = x }", "TA009"),
         (
@@ -181,14 +181,9 @@ A = "automaton A { location a start a } "
             "automaton A { location a start a edge a -> a when x > 1 on c! edge a -> a on c? }",
             "TA011",
         ),
-        (
-            "clock x broadcast chan c "
-            "automaton A { location a start a edge a -> a on c! edge a -> a when x > 1 on c? }",
-            "TA012",
-        ),
         ("automaton A { location a }", "TA013"),
         ("automaton T(const int[0,1] i) { location a start a } B = T(1, 2) system B", "TA015"),
-        ("automaton A { location a start a edge a -> a when f(1) }", "TA016"),
+        ("automaton A { location a start a edge a -> a when f(1) }", "TA002"),
         ("automaton A { location a start a edge a -> a weight 0.0 }", "TA017"),
         ("int[0,1] v[1000000] " + A, "TA019"),
         (A + "query: A<> (E<> A.a)  query: true -->[<=3] (A.a --> A.a)", "TA001"),

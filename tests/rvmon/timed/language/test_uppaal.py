@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 from rvmon.errors import ModelError
+from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import load_network, loads_network
+from rvmon.timed.runs.simulate import estimate
 from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"
@@ -124,8 +126,7 @@ def test_unit_weight_and_label_come_from_comments():
         (wrap(ONE + edge(guard="x -")), ("TA001", "")),
         (wrap(ONE.replace('ref="a"', 'ref="b"')), ("TA002", "<init")),
         (wrap('<location id="a"/>'), ("TA013", "T")),
-        (wrap(ONE + '<branchpoint id="b"/>'), ("TA016", "<branchpoint")),
-        (wrap(ONE, declaration="int f() { return 1; }"), ("TA016", "(")),
+        (wrap(ONE, declaration="hybrid clock x;"), ("TA016", ";")),
         (wrap(ONE, declaration="clock x, y;") .replace(
             "</location>", "<label kind='invariant'>x' == 0</label></location>"), ("TA016", "'")),
         (wrap(ONE + edge(guard="x - y &lt; 3"), declaration="clock x, y;"),
@@ -202,3 +203,38 @@ def test_deep_and_huge_files_are_refused():
         loads_network("<nta>" + "<a>" * 1000 + "</a>" * 1000 + "</nta>")
     with pytest.raises(ModelError, match="more than"):
         loads_network("<nta>" + " " * 2_000_001 + "</nta>")
+
+
+def branching(*weights):
+    """A model in which an edge leads to a branch point, and from there to one location each."""
+    places = "".join(
+        f'<location id="p{i}"><name>p{i}</name></location>' for i in range(len(weights))
+    )
+    branches = "".join(
+        f'<transition><source ref="b"/><target ref="p{i}"/>'
+        f'<label kind="probability">{weight}</label><label kind="assignment">v = v + {i}</label>'
+        "</transition>"
+        for i, weight in enumerate(weights)
+    )
+    return wrap(
+        f'<location id="a"><name>a</name></location>{places}<branchpoint id="b"/><init ref="a"/>'
+        '<transition><source ref="a"/><target ref="b"/><label kind="guard">x &gt;= 2</label>'
+        f'<label kind="assignment">v = 3</label></transition>{branches}',
+        declaration="clock x; int[0,9] v; const int N = 4;",
+    )
+
+
+def test_a_branch_point_is_a_choice_with_weights():
+    """One edge for each branch: guard of the edge, updates of both, its share of the weights."""
+    network = loads_network(branching("N - 3", 3, 0))
+    assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
+    assert verify(network, "E<> T.p1 and v == 4 and x == 2").holds
+    assert not verify(network, "E<> (T.p0 and v != 3) or T.p2 or (not T.a and x < 2)").holds
+    share = estimate(network, query_on(network, "E<>[<=100] T.p1"), runs=2000, seed=1).share
+    assert 0.7 < share < 0.8
+
+
+@pytest.mark.parametrize("weights", [(0, 0), (2, -1)])
+def test_weights_that_share_nothing_are_refused(weights):
+    """A share needs a sum above 0."""
+    assert finding(branching(*weights))[0] == "TA017"

@@ -108,15 +108,28 @@ def test_a_deadlock_in_part_of_a_zone_is_found():
     [
         "clock x automaton A { location a invariant x < 0 start a }",
         "int[0,1] v automaton A { location a invariant v == 1 start a }",
-        "clock x automaton A { location a invariant x < 3 start a edge a -> a when x > 3 }",
-        "automaton A { urgent location a start a }",
     ],
 )
 def test_a_model_that_cannot_start_is_refused(text):
-    """A time-lock at the start is a finding with place and fix, not an answer."""
+    """A model without any run is a finding with place and fix, not an answer."""
     with pytest.raises(ModelError) as caught:
         verify(loads_network(text), "E<> A.a")
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TA014"
     assert diagnostic.spans
     assert diagnostic.help
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "clock x automaton A { location a invariant x < 3 start a edge a -> a when x > 3 }",
+        "automaton A { urgent location a start a }",
+    ],
+)
+def test_a_time_lock_at_the_start_is_an_answer(text):
+    """Time stops where the run begins: there is that one run, and it is told."""
+    network = loads_network(text)
+    assert verify(network, "E<> deadlock").run.ending is Ending.TIME_LOCK
+    assert not verify(network, "A[] not deadlock").holds
+    assert verify(network, "E[] A.a").holds

@@ -1,0 +1,133 @@
+"""The parser's tree to the types of `syntax`: functions, statements and the labels of edges."""
+
+# ruff: noqa: ARG002, D102 - the methods are the grammar's rules, called with one signature
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from lark import Token, Transformer, Tree, v_args
+from lark.tree import Meta
+
+from rvmon.diagnostics import Span
+from rvmon.timed.language import syntax
+from rvmon.timed.model.operators import BinaryOp
+
+
+@v_args(meta=True)
+class StatementBuilder(Transformer[Token, Any]):
+    """One method per rule of the grammar; `place` maps offsets of the text to spans."""
+
+    def __init__(self, place: Callable[[int, int], Span]) -> None:
+        super().__init__()
+        self._place = place
+
+    def _span(self, meta: Meta) -> Span:
+        return self._place(0, 0) if meta.empty else self._place(meta.start_pos, meta.end_pos)
+
+    def _token_span(self, token: Token) -> Span:
+        return self._place(token.start_pos or 0, token.end_pos or 0)
+
+    def _name(self, token: Token) -> syntax.Name:
+        return syntax.Name(str(token), self._token_span(token))
+
+    # Functions.
+
+    def function(self, meta: Meta, items: Sequence[Any]) -> syntax.FunctionText:
+        *kind, name, parameters, body = items
+        result = kind[0] if kind else None
+        return syntax.FunctionText(result, str(name), parameters, body, self._token_span(name))
+
+    def block(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
+        return syntax.Block(_statements(items), self._span(meta))
+
+    def perform(self, meta: Meta, items: Sequence[Any]) -> Any:
+        return items[0]
+
+    def nothing(self, meta: Meta, items: Sequence[Any]) -> tuple[()]:
+        return ()
+
+    def branch(self, meta: Meta, items: Sequence[Any]) -> syntax.Branch:
+        condition, then, *otherwise = items
+        return syntax.Branch(
+            condition, _statements([then]), _statements(otherwise), self._span(meta)
+        )
+
+    def loop(self, meta: Meta, items: Sequence[Any]) -> syntax.Loop:
+        return syntax.Loop(items[0], _statements(items[1:]), self._span(meta))
+
+    def loop_behind(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
+        span, body = self._span(meta), _statements(items[:1])
+        return syntax.Block((*body, syntax.Loop(items[1], body, span)), span)
+
+    def counting(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
+        span = self._span(meta)
+        place = next(i for i, one in enumerate(items) if not isinstance(one, tuple))
+        body = _statements([items[-1], *items[place + 1 : -1]])
+        loop = syntax.Loop(items[place], body, span)
+        return syntax.Block((*_statements(items[:place]), loop), span)
+
+    def each(self, meta: Meta, items: Sequence[Any]) -> syntax.Each:
+        name, kind, body = items
+        return syntax.Each(str(name), kind, _statements([body]), self._span(meta))
+
+    def return_(self, meta: Meta, items: Sequence[Any]) -> syntax.ReturnText:
+        return syntax.ReturnText(items[0] if items else None, self._span(meta))
+
+    # Labels.
+
+    def conditions(self, meta: Meta, items: Sequence[Any]) -> Any:
+        joined, *rest = items
+        for one in rest:
+            joined = syntax.Binary(BinaryOp.AND, joined, one, self._span(meta))
+        return joined
+
+    def sync(self, meta: Meta, items: Sequence[Any]) -> syntax.SyncText:
+        return syntax.SyncText(items[0], items[1] == "!", self._span(meta))
+
+    def updates(self, meta: Meta, items: Sequence[Any]) -> tuple[syntax.UpdateText, ...]:
+        return tuple(items[0]) if items else ()
+
+    def update_list(self, meta: Meta, items: Sequence[Any]) -> tuple[Any, ...]:
+        return _statements(items)
+
+    def call_update(self, meta: Meta, items: Sequence[Any]) -> syntax.Call:
+        return syntax.Call(str(items[0]), items[1], self._span(meta))
+
+    def assign(self, meta: Meta, items: Sequence[Any]) -> Any:
+        target, sign, value = items
+        span = self._span(meta)
+        before: tuple[syntax.Statement, ...] = ()
+        if isinstance(value, tuple):  # a = b = c: first b is set, then a to what b has then
+            before, value = value, value[-1].target
+        elif isinstance(value, syntax.UpdateText):
+            before, value = (value,), value.target
+        if sign not in (":=", "="):
+            value = syntax.Binary(BinaryOp(sign[:-1]), target, value, span)
+        update = syntax.UpdateText(target, value, span)
+        return (*before, update) if before else update
+
+    def step(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
+        target, sign = items if items[1] in ("++", "--") else reversed(items)
+        span = self._span(meta)
+        value = syntax.Binary(BinaryOp(sign[0]), target, syntax.Number(1, span), span)
+        return syntax.UpdateText(target, value, span)
+
+
+def _statements(items: Sequence[Any]) -> tuple[syntax.Statement, ...]:
+    """Statements one behind the other; updates and declarators stand in lists of their own."""
+    flat: list[syntax.Statement] = []
+    for item in items:
+        if is_rule(item, "declaration"):
+            flat += item.children
+        elif isinstance(item, tuple):
+            flat += item
+        else:
+            flat.append(item)
+    return tuple(flat)
+
+
+def is_rule(item: object, rule: str) -> bool:
+    """Whether something is what a rule left as a tree."""
+    return isinstance(item, Tree) and item.data == rule
