@@ -12,6 +12,7 @@ from lark.tree import Meta
 
 from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
+from rvmon.timed.language.document import SignalText
 from rvmon.timed.language.statement_builder import StatementBuilder, is_rule
 from rvmon.timed.language.syntax import TypeText
 from rvmon.timed.model.operators import BaseType, BinaryOp, LocationKind, PathOp, UnaryOp
@@ -66,7 +67,7 @@ class SyntaxBuilder(StatementBuilder):
             _all(items, syntax.Instance),
             system,
             _all(items, syntax.QueryText),
-            _all(items, syntax.SignalText),
+            _all(items, SignalText),
         )
 
     def unit(self, meta: Meta, items: Sequence[Token]) -> Tree[int]:
@@ -93,8 +94,8 @@ class SyntaxBuilder(StatementBuilder):
         text = formula.span.text
         return syntax.QueryText(str(identifier), remark, text, formula, self._span(meta))
 
-    def signal_item(self, meta: Meta, items: Sequence[Any]) -> syntax.SignalText:
-        return syntax.SignalText(str(items[0]), items[1], self._token_span(items[0]))
+    def signal_item(self, meta: Meta, items: Sequence[Any]) -> SignalText:
+        return SignalText(str(items[0]), items[1], self._token_span(items[0]))
 
     # Automata.
 
