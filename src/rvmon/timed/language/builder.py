@@ -7,6 +7,7 @@ from typing import Any
 
 from rvmon.diagnostics import Source, Span
 from rvmon.timed.language import syntax
+from rvmon.timed.language.document import Document
 from rvmon.timed.language.elaborate import elaborate
 from rvmon.timed.language.parse import parse_part
 from rvmon.timed.model.network import Network
@@ -155,7 +156,7 @@ class NetworkBuilder:
             for one in self.automata
         )
         return elaborate(
-            syntax.Document(
+            Document(
                 Source(self.name, ""),
                 self.name,
                 self.title,

@@ -11,6 +11,7 @@ from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
 from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.declare import Findings, Parts, declare
+from rvmon.timed.language.document import Document, SignalText
 from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import processes_of
 from rvmon.timed.language.layout import refuse_double
@@ -18,7 +19,6 @@ from rvmon.timed.language.linear import assuming
 from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.parse import parse_query
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.language.syntax import SignalText
 from rvmon.timed.model.expressions import Expression
 from rvmon.timed.model.guards import is_discrete, refuse_changes
 from rvmon.timed.model.network import (
@@ -42,7 +42,7 @@ MOST_RUNS = 10_000_000
 """The most runs that a query may ask to simulate."""
 
 
-def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = None) -> Network:
+def elaborate(document: Document, constants: Mapping[str, int] | None = None) -> Network:
     """Make the network that a model describes.
 
     Raises:
@@ -98,8 +98,8 @@ def elaborate(document: syntax.Document, constants: Mapping[str, int] | None = N
 
 
 def _with_constants(
-    document: syntax.Document, constants: Mapping[str, int], findings: Findings
-) -> syntax.Document:
+    document: Document, constants: Mapping[str, int], findings: Findings
+) -> Document:
     known = {
         item.name
         for item in document.declarations

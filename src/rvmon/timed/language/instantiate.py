@@ -9,6 +9,7 @@ from itertools import product
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
 from rvmon.timed.language.declare import Findings, check_range
+from rvmon.timed.language.document import Document
 from rvmon.timed.language.layout import MAX_VALUES, count_of, refuse_double, values_of
 from rvmon.timed.language.resolve import Resolver
 from rvmon.timed.language.symbols import leaves
@@ -39,7 +40,7 @@ class Process:
 
 
 def processes_of(
-    document: syntax.Document, top: Scope, resolver: Resolver, findings: Findings
+    document: Document, top: Scope, resolver: Resolver, findings: Findings
 ) -> list[Process]:
     """All processes of the system, in its order; what is wrong goes to `findings`."""
     families: dict[str, Family] = {}

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import prod
-from typing import Protocol
+from typing import Any, Protocol
 
 from rvmon.diagnostics import Label, Span
 from rvmon.timed.language import syntax
-from rvmon.timed.model.expressions import Variable
+from rvmon.timed.model.expressions import Expression, Slot, Variable
 from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
     ConstantSymbol,
     ConstantValue,
+    FunctionSymbol,
     RecordSymbol,
     ResolvedType,
     Scope,
@@ -164,3 +165,28 @@ def refuse_double(name: str, span: Span, scope: Scope) -> None:
     if name in scope.places:
         first = Label(scope.places[name], "first declared here")
         raise model_error("TA003", f"two things named `{name}`", span, "rename one", others=[first])
+
+
+class Calls(Protocol):
+    """Functions that can be called (`functions.Functions`)."""
+
+    @property
+    def locals(self) -> Sequence[Variable]:
+        """The parameters and local variables; the first has slot −1."""
+        ...
+
+    def call(
+        self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Any
+    ) -> Expression:
+        """The value of a call."""
+        ...
+
+    def place(
+        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
+    ) -> Symbol:
+        """Make room for parameters or local variables."""
+        ...
+
+    def variable(self, slot: Slot) -> Variable:
+        """The variable of a slot, or the first of its array."""
+        ...

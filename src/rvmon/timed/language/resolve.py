@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol, assert_never
+from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
 from rvmon.timed.language.foreign import REAL_FUNCTIONS, type_reason
-from rvmon.timed.language.layout import MAX_VALUES, Extents, Value, values_of
+from rvmon.timed.language.layout import MAX_VALUES, Calls, values_of
 from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
 from rvmon.timed.language.operations import (
     COMPARISONS,
@@ -34,8 +34,6 @@ from rvmon.timed.model.expressions import (
     Expression,
     InLocation,
     PathFormula,
-    Slot,
-    Variable,
 )
 from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error, refusal
@@ -60,31 +58,6 @@ INT16 = (-32768, 32767)
 
 INT32 = (-(1 << 31), (1 << 31) - 1)
 """What a constant without a range may be."""
-
-
-class Calls(Protocol):
-    """Functions that can be called (`functions.Functions`)."""
-
-    @property
-    def locals(self) -> Sequence[Variable]:
-        """The parameters and local variables; the first has slot −1."""
-        ...
-
-    def call(
-        self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Resolver
-    ) -> Expression:
-        """The value of a call."""
-        ...
-
-    def place(
-        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
-    ) -> Symbol:
-        """Make room for parameters or local variables."""
-        ...
-
-    def variable(self, slot: Slot) -> Variable:
-        """The variable of a slot, or the first of its array."""
-        ...
 
 
 @dataclass(slots=True)

@@ -11,6 +11,7 @@ from lark import Token, Tree, v_args
 from lark.tree import Meta
 
 from rvmon.timed.language import syntax
+from rvmon.timed.language.document import SignalText
 from rvmon.timed.language.query_builder import QueryBuilder
 from rvmon.timed.language.statement_builder import is_rule
 from rvmon.timed.language.syntax import TypeText
@@ -53,7 +54,7 @@ class SyntaxBuilder(QueryBuilder):
             _all(items, syntax.Instance),
             system,
             _all(items, syntax.QueryText),
-            _all(items, syntax.SignalText),
+            _all(items, SignalText),
         )
 
     def unit(self, meta: Meta, items: Sequence[Token]) -> Tree[int]:
@@ -80,8 +81,8 @@ class SyntaxBuilder(QueryBuilder):
         text = formula.span.text
         return syntax.QueryText(str(identifier), remark, text, formula, self._span(meta))
 
-    def signal_item(self, meta: Meta, items: Sequence[Any]) -> syntax.SignalText:
-        return syntax.SignalText(str(items[0]), items[1], self._token_span(items[0]))
+    def signal_item(self, meta: Meta, items: Sequence[Any]) -> SignalText:
+        return SignalText(str(items[0]), items[1], self._token_span(items[0]))
 
     # Automata.
 

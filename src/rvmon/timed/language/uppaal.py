@@ -23,6 +23,7 @@ from rvmon.diagnostics import Diagnostic, Source
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
 from rvmon.timed.language.declare import Findings
+from rvmon.timed.language.document import Document
 from rvmon.timed.language.parse import parse_part
 from rvmon.timed.language.xml_tree import Element, read_xml
 from rvmon.timed.model.operators import LocationKind
@@ -38,7 +39,7 @@ _QUERY = re.compile(r"\s*query[ \t]+([A-Za-z_]\w*)[ \t]*(?:\n|$)")
 _LABEL = re.compile(r"^[ \t]*as[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
-def read_uppaal(source: Source) -> tuple[syntax.Document, list[Diagnostic]]:
+def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
     """Read a model in UPPAAL's XML.
 
     Returns:
@@ -59,7 +60,7 @@ def read_uppaal(source: Source) -> tuple[syntax.Document, list[Diagnostic]]:
     findings.raise_errors()
     text = _text(root.first("declaration"))
     name, unit = _NAME.search(text), _UNIT.search(text)
-    document = syntax.Document(
+    document = Document(
         source,
         name[1] if name else "model",
         (name[2] or "") if name else "",
