@@ -7,18 +7,16 @@ from typing import assert_never
 
 from rvmon.diagnostics.diagnostic import Diagnostic
 from rvmon.diagnostics.span import Span
-from rvmon.spec.check.choices import either, spread
-from rvmon.spec.check.comparisons import alone, closed_interval, compared, ticks_of
+from rvmon.spec.check.choices import spread
+from rvmon.spec.check.comparisons import closed_interval, compared, ticks_of
 from rvmon.spec.check.functions import applied
 from rvmon.spec.check.quantities import arithmetic
+from rvmon.spec.check.read_as import formula_of, number_of
 from rvmon.spec.check.table import Table, close_name, close_unit
 from rvmon.spec.check.values import (
     EVERYWHERE,
-    Age,
-    AmountOf,
     Chosen,
     Closure,
-    Extreme,
     Now,
     Quantity,
     Scope,
@@ -28,15 +26,11 @@ from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.formula import (
     Binary,
     BoundAtom,
-    Compare,
-    CompareOp,
     Constant,
     EventAtom,
     FieldValue,
     Formula,
     Interval,
-    Literal,
-    SignalAtom,
     SignalValue,
     Unary,
     UnaryOp,
@@ -74,46 +68,6 @@ from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
 NOW = "now"
 """What is said of the time since the first instant; a name that is declared goes before."""
-
-
-def formula_of(value: Value, span: Span) -> Formula:
-    """The value as a formula.
-
-    Raises:
-        Refusal: it is a number or label.
-    """
-    match value:
-        case Quantity(node=SignalValue(name=name), truth=True):
-            return SignalAtom(name, span)
-        case Quantity(node=node, truth=True) if node is not None:
-            return Compare(CompareOp.EQ, node, Literal(True), span)
-        case Quantity(labels=labels):
-            raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
-        case Age() | Now() | AmountOf() | Extreme():
-            raise Refusal(alone(value, span))
-        case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
-            return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
-        case _:
-            return value
-
-
-def number_of(value: Value, span: Span) -> Quantity:
-    """The value as a number.
-
-    Raises:
-        Refusal: it is a formula or label.
-    """
-    match value:
-        case Quantity(truth=False, labels=()):
-            return value
-        case Quantity(truth=False):
-            raise Refusal(rules.label_use(span))
-        case Age() | Now() | AmountOf() | Extreme():
-            raise Refusal(alone(value, span))
-        case Chosen():
-            raise Refusal(rules.choice_alone(span))
-        case _:
-            raise Refusal(rules.needs_number(span))
 
 
 class Checker:
