@@ -161,7 +161,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     parser = Parser(
         prog="rvmon",
         usage="rvmon [--version] COMMAND ...",
-        description="\n".join(["Temporal requirements in, verdicts about robots out.", *listed]),
+        description="\n".join(listed),
         epilog="example: rvmon run examples/base.rv examples/base.csv",
         add_help=False,
     )
