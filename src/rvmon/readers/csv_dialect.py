@@ -117,6 +117,8 @@ def dialect_of(head: bytes) -> Dialect:
     lines = head.decode(encoding, "replace").splitlines()
     if len(head) == _LOOKED_AT:
         lines = lines[:-1]
+    if lines and not is_wide and {"t", "t_ns"} & {*_cells(lines[0], ",")}:
+        return PLAIN  # a header, however ragged what stands below it looks
     above, separators = 0, _SEPARATORS
     if lines and (said := _SEPARATOR_SAID.fullmatch(lines[0])):
         above, separators = 1, (said[1],)
