@@ -234,7 +234,7 @@ def test_what_points_down_is_no_height_and_no_climbing(tmp_path, capsys):
             packet = link.local_position_ned_encode(n, 0, 0, -n, 0, 0, -1.0).pack(link)
             file.write((1_000_000 + n * 1_000).to_bytes(8, "big") + packet)
     text = "spec s\nsignal climb_rate : real [m/s]\nsignal speed_z : real [m/s]\n"
-    text += "requirement R\n always climb_rate < 2 m/s and speed_z < 2 m/s\n"
+    text += "requirement R\n always (climb_rate < 2 m/s and speed_z < 2 m/s)\n"
     (tmp_path / "a.rv").write_text(text)
     assert main(["bind", str(tmp_path / "a.rv"), str(tmp_path / "a.tlog")]) == 1
     told = capsys.readouterr()
