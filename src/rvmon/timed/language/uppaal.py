@@ -31,6 +31,7 @@ from rvmon.timed.model.rules import finding, left_out, model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _UNIT = re.compile(r"^[ \t]*//[ \t]*unit[ \t]+([1-9]\d{0,9})[ \t]+(\w+)[ \t]*$", re.MULTILINE)
+_NOT = re.compile(r"\bnot\b")
 _NAME = re.compile(
     r"^[ \t]*//[ \t]*network[ \t]+(\w+)(?:[ \t]+\"([^\"\n]*)\")?[ \t]*$", re.MULTILINE
 )
@@ -83,7 +84,12 @@ def _part(element: Element | None, start: str, findings: Findings, default: Any)
     """The text of an element, read by a rule of the grammar; `default` if there is none."""
     if element is None or not element.text.strip():
         return default
-    return findings.attempt(lambda: parse_part(element.text, start, element.place), default)
+    return findings.attempt(lambda: _parsed(element, start), default)
+
+
+def _parsed(element: Element, start: str) -> Any:
+    """What a text says. UPPAAL's `not` binds as its `!` does, tighter than a comparison."""
+    return parse_part(_NOT.sub("!  ", element.text), start, element.place)
 
 
 def _system(
@@ -205,7 +211,7 @@ def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[syntax.Query
         named = _QUERY.match(comment)
         remark = " ".join((comment[named.end() :] if named else comment).split())
         try:
-            read = parse_part(formula.text, "query", formula.place)
+            read = _parsed(formula, "query")
         except ModelError as error:
             warnings.append(left_out(formula.text, error.diagnostics[0]))
             continue

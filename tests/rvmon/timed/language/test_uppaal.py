@@ -1,6 +1,7 @@
 """UPPAAL's XML: textbook models load unchanged, what is not supported is refused with its place."""
 
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 import pytest
 
@@ -78,6 +79,19 @@ def test_names_ids_and_comments():
     assert network.automata[0].locations[0].name == "id7"
     assert network.queries[0].text == "A[] T.id7 && x >= 0"
     assert network.queries[0].remark == "so so"
+
+
+def test_not_binds_as_tight_as_its_sign():
+    """`not x == 1` is `(not x) == 1`, and `not a && b` is `(not a) && b`, as in UPPAAL."""
+    texts = ("A[] not n == 1", "E<> not n == 1", "A[] not n && n == 2", "A[] (not n) == 0")
+    queries = "".join(f"<query><formula>{escape(text)}</formula></query>" for text in texts)
+    network = loads_network(wrap(ONE, declaration="int n = 2;", queries=queries))
+    assert [verify(network, query).holds for query in network.queries] == [
+        False,
+        False,
+        False,
+        True,
+    ]
 
 
 def test_old_and_new_ways_to_write_instances():
