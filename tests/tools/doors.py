@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -288,7 +288,8 @@ def _polars(content: Content) -> Any:
 def bare(report: Report) -> tuple[object, ...]:
     """Verdicts, records without reasons, and input health.
 
-    Of what no requirement reads the core does not tell that it went stale.
+    Of what no requirement reads the core does not tell that it went stale. The hint that unknown
+    values alternate with known ones is of rows, before those of equal stamps are merged.
     """
     attempts = [
         (
@@ -297,7 +298,11 @@ def bare(report: Report) -> tuple[object, ...]:
         )
         for one in report.attempts
     ]
-    told = [one for one in report.health if one.kind is not HealthKind.STALE or one.requirements]
+    told = [
+        replace(one, remark="") if one.kind is HealthKind.NAN else one
+        for one in report.health
+        if one.kind is not HealthKind.STALE or one.requirements
+    ]
     return dict(report.verdicts), attempts, told, report.origin, report.end, dict(report.counts)
 
 

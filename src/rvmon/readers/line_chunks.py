@@ -32,17 +32,21 @@ def bounded_lines(text: TextIO) -> Iterator[str]:
 
 
 def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:
-    r"""A file in pieces of whole lines; the last line may lack its end."""
-    rest = b""
-    while piece := file.read(size):
+    r"""A file in pieces of whole lines; the last line may lack its end.
+
+    What follows a line that is too long is not read: who reads the line refuses it.
+    """
+    parts: list[bytes] = []
+    length = 0
+    while length <= LONGEST_LINE and (piece := file.read(size)):
         whole, newline, tail = piece.rpartition(b"\n")
         if newline:
-            yield rest + whole + newline
-            rest = tail
-        else:
-            rest += piece
-    if rest:
-        yield rest
+            yield b"".join([*parts, whole, newline])
+            parts, length = [], 0
+        parts.append(tail)
+        length += len(tail)
+    if length:
+        yield b"".join(parts)
 
 
 def is_short_of_memory() -> bool:

@@ -50,7 +50,7 @@ def stamps_of(text: str) -> Stamps:
     >>> stamps_of("stamp:ms")
     Stamps(column='stamp', unit='ms', is_stated=True, pattern='')
     >>> stamps_of("t_ns")
-    Stamps(column='t_ns', unit='ns', is_stated=False)
+    Stamps(column='t_ns', unit='ns', is_stated=False, pattern='')
     """
     column, pattern, rest = text.partition(":%")
     if pattern:
