@@ -184,7 +184,9 @@ def at_most(megabytes: int | None) -> Iterator[None]:
     try:
         with _limited(megabytes):
             yield
-    except MemoryError:
+    except (MemoryError, ImportError) as error:
+        if isinstance(error, ImportError) and "failed to map segment" not in str(error):
+            raise  # else there is no room for a library
         limit = "" if megabytes is None else f", of {megabytes:,} MB: raise --max-memory"
         raise RvmonError(f"the memory is not enough{limit}") from None
 

@@ -97,7 +97,7 @@ def test_a_command_takes_no_more_memory_than_it_may(folder, jobs):
     words = ("--max-memory", "512", "--jobs", jobs, "door.rv", "run.jsonl", "big.jsonl")
     done = rvmon(folder, "run", *words, stdout=subprocess.PIPE)
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"error: the memory is not enough, of 512 MB: raise --max-memory\n"
+    assert done.stderr == b"error: the memory is not enough, of 768 MB: raise --max-memory\n"
     done = rvmon(folder, "run", "--max-memory", "5", "door.rv", "run.jsonl")
     assert done.returncode == 2
     assert b"at least 512 MB" in done.stderr
@@ -112,9 +112,9 @@ def test_a_parquet_file_that_needs_more_memory_is_not_called_damaged(folder):
     for name, label in (("big", "a" * 300_000_000), ("small", "b")):
         columns = {"t": [0.0, 1.0], "l": pa.array([label, "b"], pa.large_string())}
         pq.write_table(pa.table(columns), folder / f"{name}.parquet", compression="zstd")
-    words = ("run", "--max-memory", "512", "said.rv")
+    words = ("run", "--max-memory", "768", "said.rv")
     done = rvmon(folder, *words, "big.parquet", stdout=subprocess.PIPE)
-    assert done.stderr == b"error: the memory is not enough, of 512 MB: raise --max-memory\n"
+    assert done.stderr == b"error: the memory is not enough, of 768 MB: raise --max-memory\n"
     assert done.returncode == 2
     done = rvmon(folder, *words, "small.parquet", stdout=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (0, b"")
