@@ -97,7 +97,7 @@ def test_a_command_takes_no_more_memory_than_it_may(folder, jobs):
     words = ("--max-memory", "512", "--jobs", jobs, "door.rv", "run.jsonl", "big.jsonl")
     done = rvmon(folder, "run", *words, stdout=subprocess.PIPE)
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"error: the memory is not enough, of 768 MB: raise --max-memory\n"
+    assert done.stderr == b"error: the memory is not enough, of 512 MB: raise --max-memory\n"
     done = rvmon(folder, "run", "--max-memory", "5", "door.rv", "run.jsonl")
     assert done.returncode == 2
     assert b"at least 512 MB" in done.stderr
