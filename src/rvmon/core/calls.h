@@ -144,6 +144,7 @@ double function_of_reals(int32_t op, const double *x); /* not finite: unknown */
 void mark(run *r, int32_t name);
 uint8_t remember(history *h, int64_t t, const rv_number *value);
 void come_to_birth(run *r, int32_t local, bool known);
+void be_born(run *r, int32_t local);
 void set_stale(run *r, int32_t local, int64_t t);
 void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
 void apply_update(run *r, int64_t t, const incoming *in);
@@ -225,6 +226,7 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
 void forget(run *r);
 void go_stale(run *r, int64_t t, int32_t perishable);
 void mark_absent(run *r, bool event, int32_t local);
+void have_no_source(run *r, bool event, int32_t local);
 
 /* ---- outages.c: names that may have said anything */
 void begin_unlost(run *r);

@@ -169,10 +169,7 @@ bool home_reserve(home *h, int32_t attempts)
 
 void home_mark_absent(home *h, bool event, int32_t local)
 {
-    mark_absent(h->root, event, local);
-    while (!event && (h->root->births[local] < h->root->part->signals[local].births)) {
-        come_to_birth(h->root, local, true); /* what is not there for good is lost, not to come */
-    }
+    have_no_source(h->root, event, local);
     if (event && (h->part->plan->each != 0) && (local == h->part->plan->each_event)) {
         h->root->opens_at = -LIMIT; /* whatever occurs is unknown, from the first position on */
     }

@@ -83,7 +83,7 @@ void replay(run *r)
     r->over = false;
     for (i = 0; i < p->signals.count + p->events.count; i++) {
         if (has_no_source(h->root, i)) {
-            mark_absent(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
+            have_no_source(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
         }
     }
     while (first < h->given) {

@@ -81,9 +81,7 @@ static uint8_t at_least_unknown(uint8_t truth)
 static void lose_signal(run *r, int32_t local, int64_t t)
 {
     const signal_plan *s = &r->part->signals[local];
-    while (r->births[local] < s->births) {
-        come_to_birth(r, local, true);
-    }
+    be_born(r, local);
     if (s->perishable >= 0) {
         timers_set(&r->wake, r->part->plan->timers + s->perishable, NEVER);
     }

@@ -128,6 +128,14 @@ void come_to_birth(run *r, int32_t local, bool known)
     }
 }
 
+/* What was lost of a signal, or never comes, is no value to come: it has been there. */
+void be_born(run *r, int32_t local)
+{
+    while (r->births[local] < r->part->signals[local].births) {
+        come_to_birth(r, local, true);
+    }
+}
+
 /* Have a signal become stale so long after an update at `t`. */
 void set_stale(run *r, int32_t local, int64_t t)
 {
@@ -286,5 +294,14 @@ void mark_absent(run *r, bool event, int32_t local)
     }
     for (i = 0; i < needs.count; i++) {
         r->momentary[atoms[i]]--;
+    }
+}
+
+/* Take it, before the first position, that a name has no source. */
+void have_no_source(run *r, bool event, int32_t local)
+{
+    mark_absent(r, event, local);
+    if (!event) {
+        be_born(r, local);
     }
 }

@@ -175,3 +175,18 @@ def test_a_value_that_occurs_after_the_last_tick_of_a_clock_tells_nothing():
     monitor.step_ns(0, {"y": 0})
     monitor.step_ns(3, {"g": {"k": 0}})
     assert monitor.finish_ns().verdicts["R"] == "I"
+
+
+@pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 10 ns\n"])
+@pytest.mark.parametrize("form", ["c", "c rows", "c+interrupt"])
+@pytest.mark.parametrize("before", [(), (Sample(0, {}),)])
+def test_an_instance_that_looks_back_knows_what_has_no_source(time, form, before):
+    """Its trigger is unknown then, as in one that begins afresh: it must not seem never to come."""
+    text = (
+        f"{time}signal ready : bool\nevent order(id: int)\n"
+        "requirement R1\n  upon ready and order\n"
+        "  then once[0 s, 10 ns] (within 10 ns ready)\n  for each k in order.id\n"
+    )
+    actions = (*before, Sample(10, {"order": {"id": 7}}))
+    case = Case(rvmon.loads(text).checked, actions, None, names=frozenset({"order"}))
+    assert disagreements(case, Maker(form)) == []
