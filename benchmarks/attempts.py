@@ -10,10 +10,10 @@ from pathlib import Path
 
 from benchmarks.contenders import OURS
 from benchmarks.peers.client import Peer, PeerError
+from rvmon.monitor.compiled.costs import compile_report
 
 import rvmon
 from rvmon.monitor import compile_spec
-from rvmon.monitor.compiled.costs import compile_report
 
 SPEC = """spec open
 time held

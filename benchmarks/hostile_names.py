@@ -277,9 +277,8 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "explain": ["explain", spec, ids[0], "--runs", "10"],
         "why": ["why", spec, trace, ids[0] if "#" not in ids[0] else "x"],
         "init": ["init", trace, "-o", "-"],
-        "compile, costs": ["compile", spec, "--to", "costs"],
-        "compile, dot": ["compile", spec, "--to", "dot"],
-        "compile, hoa": ["compile", spec, "--to", "hoa"],
+        "export, dot": ["export", spec, "--to", "dot"],
+        "export, hoa": ["export", spec, "--to", "hoa"],
         "verify": ["verify", model],
         "verify, json": ["verify", model, "--format", "json"],
         "verify, query": ["verify", model, "--query", ids[0]],
@@ -293,7 +292,7 @@ def through_commands(names: Names, folder: Path) -> Iterator[tuple[str, bool]]:
         "conform, labels": ["conform", model, trace, "--observe", ids[0]],
         "conform, time": ["conform", model, trace, "--time", ids[0]],
         "run, json": [*run, "--format", "json"],
-        "compile, json": ["compile", spec, "--to", "json"],
+        "export, json": ["export", spec, "--to", "json"],
     }
     texts = {name: _printed(lambda given=given: command(given)) for name, given in words.items()}
     for name, text in texts.items():
@@ -312,7 +311,7 @@ def _holds(name: str, text: str, ids: Names) -> bool:
     match name.partition(",")[0]:
         case "run":
             return list(document["requirements"]) == list(ids)
-        case "compile":
+        case "export":
             return [one["requirement"] for one in document] == list(ids)
     return True
 

@@ -22,6 +22,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from benchmarks.ours import scaled
+from rvmon.monitor.compiled.costs import compile_report
 from tests.tools.core_forms import ByRows, Stepped
 from tests.tools.drive import drive
 from tests.tools.generate_ltl import random_mtl
@@ -34,7 +35,6 @@ from rvmon.formula.factory import Factory
 from rvmon.formula.lower import lower
 from rvmon.formula.state import FALSE, TRUE, Elapsed, State, StateOp
 from rvmon.monitor import compile_spec
-from rvmon.monitor.compiled.costs import compile_report
 from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
 from rvmon.spec.print.printer import format_formula

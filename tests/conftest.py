@@ -60,12 +60,6 @@ def chromium() -> str:
 
 
 @pytest.fixture
-def graphviz() -> str:
-    """Path of the program that lays out graphs."""
-    return _program("dot")
-
-
-@pytest.fixture
 def cortex_m() -> None:
     """C can be compiled for a Cortex-M, and run there."""
     _program("arm-none-eabi-gcc")

@@ -53,7 +53,7 @@ def main(spec_path, recording):
         sys.exit("needs gcc-arm-none-eabi, libnewlib-arm-none-eabi and qemu-system-arm")
     spec = rvmon.load(spec_path)
     with tempfile.TemporaryDirectory() as made:
-        run(f"{sys.executable} -m rvmon compile {spec_path} --to c -o {made}")
+        run(f"{sys.executable} -m rvmon export {spec_path} --to c -o {made}")
         (plan,) = Path(made).glob("*_plan.c")
         rows = "\n".join(
             header(plan.stem.removesuffix("_plan"), spec, [*spec.recording(recording)])

@@ -24,7 +24,7 @@ def _run(*command, told=""):
 def test_the_node_says_what_rvmon_says(gcc, tmp_path):
     """On each verdict of the recording; deadlines pass by the timer."""
     node = EXAMPLES / "ros2_node" / "node.cpp"
-    main(["compile", str(EXAMPLES / "base.rv"), "--to", "c", "-o", str(tmp_path)])
+    main(["export", str(EXAMPLES / "base.rv"), "--to", "c", "-o", str(tmp_path)])
     for name in re.findall(r"<(\w+/.+)>", node.read_text()):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text('#include "rclcpp_stub.hpp"\n')

@@ -8,7 +8,7 @@ from pathlib import Path
 from random import Random
 
 from rvmon.errors import ModelError
-from rvmon.export.network_file import network_dot
+from rvmon.export.network_dot import network_dot
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.search.problem import Budget

@@ -46,7 +46,7 @@ GROUPS = {
     "models, and elsewhere": {
         "verify": "model-check a network of timed automata",
         "conform": "whether recordings are runs of such a network",
-        "compile": "a specification as C that runs alone, or as automata",
+        "export": "C that runs alone, automata, models for UPPAAL",
     },
 }
 """What each command is for, as `rvmon --help` lists them."""

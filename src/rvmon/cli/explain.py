@@ -11,7 +11,6 @@ from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_const, add_max_memory, constants_of
 from rvmon.cli.output import say
 from rvmon.errors import RvmonError
-from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.monitor.compiled.specification import CompiledSpec
@@ -35,8 +34,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)"
     )
     add_const(parser)
-    parser.add_argument("--svg", metavar="FILE", help="have Graphviz draw the automaton")
-    parser.add_argument("--dot", action="store_true", help="print the automaton as DOT, no more")
     parser.add_argument(
         "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
     )
@@ -57,10 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     spec = load(arguments.subject, const=constants_of(arguments.const))
     ids = _ids(arguments.ids, spec)
     compiled = compile_spec(spec.checked)
-    if arguments.dot or arguments.svg:
-        _draw(compiled, ids, arguments)
-    if not arguments.dot:
-        _print(compiled, ids, difference=len(arguments.ids) == 2, runs=arguments.runs)
+    _print(compiled, ids, difference=len(arguments.ids) == 2, runs=arguments.runs)
     return 0
 
 
@@ -76,7 +70,6 @@ def _ids(named: list[str], spec: Spec) -> list[str]:
 
 
 def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: int) -> None:
-
     from rvmon.explain.example import Budget
     from rvmon.report.explain_text import difference_explained, explained
     from rvmon.report.terminal import Terminal
@@ -92,23 +85,3 @@ def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: in
             console.print()
         for part in explained(compiled, name, budget):
             console.print(part)
-
-
-def _draw(compiled: CompiledSpec, ids: list[str], arguments: argparse.Namespace) -> None:
-    from rvmon.explain.graph import graph_dot, graph_of
-    from rvmon.export.network_file import svg_of
-
-    for name in ids:
-        one = compiled.requirements[name]
-        if one.automaton is None:
-            raise RvmonError(f"error: {name} has no automaton to draw: {one.refusal}")
-        graph = graph_of(one, one.automaton, compiled.checked)
-        if arguments.dot:
-            say(graph_dot(graph, name), end="")
-        if arguments.svg:
-            if len(ids) > 1:
-                raise RvmonError("error: --svg draws one requirement: name it after the file")
-            try:
-                write_whole(arguments.svg, svg_of(graph_dot(graph, name)))
-            except OSError as error:
-                raise RvmonError(f"error: {arguments.svg}: {error.strerror or error}") from None

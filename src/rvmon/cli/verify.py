@@ -60,9 +60,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=positive,
         help="instead of deciding, count what N random runs do: figures, not proofs",
     )
-    instead.add_argument(
-        "--export", metavar="FILE", help="instead write the model: .xml for UPPAAL, .dot or .svg"
-    )
     parser.add_argument(
         "--until",
         metavar="UNITS",
@@ -99,30 +96,14 @@ def run(arguments: argparse.Namespace) -> int:
         return _show_suite(network, arguments, budget)
     if arguments.simulate is not None:
         return _simulate(network, arguments)
-    if arguments.export is not None:
-        from rvmon.export.network_file import write_network
-
-        write_network(network, arguments.export)
-        _warn_of_queries(network, arguments.export)
-        return 0
     return _decide(network, arguments, budget)
-
-
-def _warn_of_queries(network: Network, path: str) -> None:
-    """Say which queries an exported file has only as comments."""
-    from rvmon.export.uppaal import left_out
-
-    if path.lower().endswith(".xml"):
-        for query in left_out(network):
-            name = f"`{query.id}`: " if query.id else ""
-            warn(f"warning: not a query of UPPAAL, left out: {name}{query.text}")
 
 
 def _refuse_unused(arguments: argparse.Namespace) -> None:
     """Refuse options that would change nothing."""
-    by_query = not (arguments.spec or arguments.suite or arguments.export)
+    by_query = not (arguments.spec or arguments.suite)
     for option, value, used, why in (
-        ("--query", arguments.query, by_query, "with --spec, --suite or --export"),
+        ("--query", arguments.query, by_query, "with --spec or --suite"),
         ("--bind", arguments.bind, arguments.spec, "without --spec"),
         ("--until", arguments.until, arguments.simulate, "without --simulate"),
     ):

@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import assert_never
 
 from rvmon.automaton.automaton import Automaton
+from rvmon.core.judges import machine_of
 from rvmon.formula.horizon import horizon
 from rvmon.formula.state import StateOp
+from rvmon.monitor.compiled.code_plan import planned_rule
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.plan.graph import graph_of
 from rvmon.spec.checked.formula import (
@@ -258,12 +260,16 @@ def facts_of(compiled: CompiledRequirement) -> Facts:
 
 
 def _judge(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
-    if automaton is None:
-        return f"delay network: as an automaton it would have {compiled.refusal}"
-    clocks = automaton.clocks
+    judge = machine_of(planned_rule(compiled), compiled.gap)
+    if automaton is None or not isinstance(judge, Automaton):
+        kind = "delay network" if isinstance(judge, Automaton) or judge[1] is None else "windows"
+        if automaton is not None:
+            return f"{kind}: its automaton would step each open attempt by itself"
+        return f"{kind}: as an automaton it would have {compiled.refusal}"
     return (
         f"automaton of {_counted(len(automaton.locations), 'location')}, "
-        f"{_counted(clocks, 'clock')}, {_counted(automaton.classes, 'class', 'classes')} of inputs"
+        f"{_counted(automaton.clocks, 'clock')}, "
+        f"{_counted(automaton.classes, 'class', 'classes')} of inputs"
     )
 
 
@@ -279,6 +285,8 @@ def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
         reach = horizon(compiled.obligation.owed)
         span = "while an attempt is open" if reach is None else f"over {format_duration(reach)}"
         return f"where its parts are known to hold or not, a stretch per change, {span}"
+    if compiled.in_runs(automaton):
+        return "20 bytes per open attempt, in runs: those that wait alike take one step together"
     stamps = f", {_counted(automaton.clocks, 'time stamp')}" if automaton.clocks else ""
     return f"per open attempt its location{stamps}"
 

@@ -1,7 +1,5 @@
 """`rvmon explain` as a person uses it."""
 
-import shutil
-import xml.etree.ElementTree as ET
 
 import pytest
 
@@ -94,28 +92,6 @@ def test_a_requirement_differs_not_from_its_twin(tmp_path, capsys):
     assert "No run was found" in shown(capsys, str(path), "R1", "R2")
 
 
-def test_dot_and_svg(door, capsys):
-    """The automaton as DOT and as well-formed SVG, with all its places and conditions."""
-    dot = shown(capsys, "door.rv", "D1", "--dot")
-    assert dot.startswith('digraph "D1" {')
-    assert '"A" -> "F" [label="x > 2 s"]' in dot
-    if shutil.which("dot") is None:
-        pytest.skip("Graphviz is not installed")
-    shown(capsys, "door.rv", "D1", "--svg", "d1.svg")
-    root = ET.fromstring((door / "d1.svg").read_text())  # noqa: S314 - we made it
-    texts = [element.text for element in root.iter() if element.tag.endswith("text")]
-    assert {"start", "A", "P", "F", "x > 2 s"} <= set(texts)
-    assert main(["explain", "door.rv", "D1", "--svg", "no/such/x.svg"]) == 2
-    assert "no/such/x.svg" in capsys.readouterr().err
-
-
-def test_without_graphviz_a_drawing_says_what_to_do(door, capsys, monkeypatch):
-    """It is named, and what prints the automaton without it."""
-    monkeypatch.setenv("PATH", str(door))
-    assert main(["explain", "door.rv", "D1", "--svg", "d1.svg"]) == 2
-    assert "error: there is no program `dot`" in capsys.readouterr().err
-
-
 def test_a_code_has_its_page(capsys):
     """A diagnostic's code is explained by its page, in either case of letters."""
     assert "# RV012 unknown-signal" in shown(capsys, "RV012")
@@ -130,7 +106,6 @@ def test_a_code_has_its_page(capsys):
         (["door.rv", "D1", "D2", "D3"], "two different ones"),
         (["none.rv", "D1"], "none.rv"),
         (["RV999"], "no diagnostic `RV999`"),
-        (["door.rv", "--svg", "x.svg"], "--svg draws one requirement"),
         (["door.rv", "D1", "--runs", "0"], "--runs"),
         (["door.rv", "D1", "--const", "T"], "NAME=VALUE"),
     ],

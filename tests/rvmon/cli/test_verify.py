@@ -80,8 +80,6 @@ def test_the_run_is_shown_in_seconds(tmp_path, capsys):
         ([str(MODELS / "bridge.ta"), "--suite", "edges", "--query", "over"], "does nothing"),
         ([str(MODELS / "bridge.ta"), "--bind", "a=b"], "does nothing without --spec"),
         ([str(MODELS / "bridge.ta"), "--until", "3"], "does nothing without --simulate"),
-        ([str(MODELS / "bridge.ta"), "--export", "bridge.png"], "end the name in .xml"),
-        ([str(MODELS / "bridge.ta"), "--export", "/nowhere/bridge.xml"], "No such file"),
     ],
 )
 def test_wrong_input_exits_with_2(arguments, message, capsys):
@@ -162,32 +160,6 @@ def test_simulation(lamp, capsys):
     assert answer["low"] <= answer["share"] <= answer["high"]
 
 
-@pytest.mark.parametrize("ending", ["xml", "dot"])
-def test_export(lamp, ending, tmp_path):
-    """The model is written for UPPAAL, from where it comes back, or for Graphviz."""
-    path = tmp_path / f"lamp.{ending}"
-    assert main(["verify", lamp[0], "--export", str(path)]) == 0
-    assert "Lamp" in path.read_text(encoding="utf-8")
-    if ending == "xml":
-        assert main(["verify", str(path), "--query", "E<> Lamp.on"]) == 0
-
-
-def test_a_drawing(lamp, graphviz, tmp_path):
-    """Locations and edges are drawn."""
-    path = tmp_path / "lamp.svg"
-    assert main(["verify", lamp[0], "--export", str(path)]) == 0
-    text = path.read_text(encoding="utf-8")
-    assert "Lamp" in text
-    assert text.count("<path") >= 4
-
-
-def test_a_drawing_needs_graphviz(lamp, tmp_path, monkeypatch, capsys):
-    """Without Graphviz the message says what to install, or to write DOT instead."""
-    monkeypatch.setenv("PATH", str(tmp_path))
-    assert main(["verify", lamp[0], "--export", str(tmp_path / "lamp.svg")]) == 2
-    assert "install Graphviz" in capsys.readouterr().err
-
-
 def test_a_binding_needs_a_signal(lamp, capsys):
     """A name that the specification does not declare is told with those that it does."""
     assert main(["verify", lamp[0], "--spec", lamp[1], "--bind", "light=Lamp.on"]) == 2
@@ -209,15 +181,6 @@ def test_a_requirement_beyond_the_model_is_said_plainly(lamp, capsys):
     model, spec = lamp
     main(["verify", model, "--spec", spec])
     assert "BAD: not expressible: the network has no signal `lit`" in capsys.readouterr().out
-
-
-def test_an_export_says_which_queries_it_leaves_out(tmp_path, capsys):
-    """UPPAAL has no bounded operators: one line for each such query."""
-    assert main(["verify", str(MODELS / "dock.ta"), "--export", str(tmp_path / "d.xml")]) == 0
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line == (
-        "warning: not a query of UPPAAL, left out: `soon`: robot.docked -->[<=20] charging"
-    )
 
 
 def test_several_queries_in_one_word(capsys):

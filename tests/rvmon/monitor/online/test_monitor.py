@@ -6,8 +6,6 @@ import pytest
 
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError, UnknownNameError
-from rvmon.monitor import compile_spec
-from rvmon.monitor.compiled.costs import compile_report
 from rvmon.verdict.verdict import Verdict
 
 SPEC = """spec handover "Handover"
@@ -162,30 +160,3 @@ def test_what_has_no_automaton_is_judged():
     monitor.step_ns(0, {"a": True})
     monitor.step_ns(1, {"a": True})
     assert brief(monitor.step_ns(99, {})) == [("R", 1, "F", 91)]
-
-
-def test_the_compile_report_says_what_became_of_a_requirement():
-    """What judges, size and horizon are known before a run; a refusal names what was too much."""
-    reports = {
-        name: compile_report(one)
-        for name, one in compile_spec(rvmon.loads(SPEC).checked).requirements.items()
-    }
-    assert (reports["R1"].judge, reports["R1"].locations, reports["R1"].clocks) == (
-        "automaton",
-        4,
-        1,
-    )
-    assert reports["R1"].horizon == 3 * 10**9
-    assert reports["R3"].clocks == 0
-    [report] = [
-        compile_report(one)
-        for one in compile_spec(rvmon.loads(SPAWNING).checked).requirements.values()
-    ]
-    assert report.judge == "windows"
-    assert "more than" in report.why
-    windows = rvmon.loads(
-        "signal p : bool\nevent e\nrequirement R\n  upon e then within 5 s for 3 s p"
-    )
-    [report] = map(compile_report, compile_spec(windows.checked).requirements.values())
-    assert (report.judge, report.locations) == ("windows", 0)
-    assert report.why == "its automaton steps each open attempt"

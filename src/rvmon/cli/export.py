@@ -1,0 +1,156 @@
+"""`rvmon export`: a specification or a model in the form that other programs take."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.cli.options import add_const, add_only, asked_ids, constants_of
+from rvmon.cli.output import say, warn
+from rvmon.diagnostics.shown import shown_json
+from rvmon.errors import RvmonError
+from rvmon.report.folder import write_file
+
+if TYPE_CHECKING:
+    from rvmon.monitor.compiled.requirement import CompiledRequirement
+    from rvmon.session import Spec
+
+_OF_MODELS = ("dot", "uppaal")
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the subcommand's arguments."""
+    parser = subparsers.add_parser(
+        "export",
+        description="Of a specification, write a monitor that needs nothing of rvmon: C99 (the "
+        "core that judges, the plan that it judges by, a header for C++) that runs in one block of "
+        "memory. Or the automata: dot for Graphviz, json, hoa (the least LTL3 monitors of "
+        "requirements without windows of time). Of a model, write dot, or XML for UPPAAL.",
+        epilog="examples: rvmon export examples/base.rv --to c -o monitor/; rvmon export "
+        "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg; rvmon export "
+        "examples/models/fischer.ta --to uppaal -o fischer.xml",
+    )
+    parser.add_argument("subject", metavar="SPEC|MODEL", help="a .rv file; or a .ta or .xml file")
+    parser.add_argument("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
+    parser.add_argument(
+        "-o", "--output", metavar="PATH", help="a folder (c), else a file (default: print it)"
+    )
+    add_only(parser)
+    add_const(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Make the texts, write or print them, and return the exit code."""
+    if Path(arguments.subject).suffix in (".ta", ".xml"):
+        text = _model_text(arguments)
+    else:
+        from rvmon.session import load
+
+        if arguments.to == "uppaal":
+            raise RvmonError(f"{arguments.subject} is no model (.ta): UPPAAL has no specifications")
+        spec = load(arguments.subject, const=constants_of(arguments.const))
+        ids = asked_ids(arguments, spec)
+        if not spec.requirements:
+            raise RvmonError(f"{arguments.subject} has no requirement: there is nothing to export")
+        if arguments.to == "c":
+            _write_c(spec, ids, arguments.output)
+            return 0
+        text = _automata(spec, ids, arguments.to)
+    if arguments.output is None:
+        say(text, end="")
+    else:
+        write_file(arguments.output, text)
+    return 0
+
+
+def _model_text(arguments: argparse.Namespace) -> str:
+    """A network of timed automata; of the queries that UPPAAL cannot express it is told."""
+    from rvmon.export.network_dot import network_dot
+    from rvmon.export.uppaal import left_out, uppaal_xml
+    from rvmon.timed.language.load import load_network
+
+    if arguments.to not in _OF_MODELS:
+        raise RvmonError(
+            f"--to {arguments.to} is of specifications: {arguments.subject} is a model"
+        )
+    constants = {}
+    for name, value in constants_of(arguments.const).items():
+        try:
+            constants[name] = int(value)
+        except ValueError:
+            raise RvmonError(f"--const {name}={value}: constants of models are whole") from None
+    network = load_network(arguments.subject, constants=constants)
+    if arguments.to == "dot":
+        return network_dot(network)
+    for query in left_out(network):
+        name = f"`{query.id}`: " if query.id else ""
+        warn(f"warning: not a query of UPPAAL, left out: {name}{query.text}")
+    return uppaal_xml(network)
+
+
+def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
+    from rvmon.export.c_files import c_files
+    from rvmon.monitor import compile_spec
+    from rvmon.monitor.compiled.code_plan import plan_alone
+
+    if output is None:
+        raise RvmonError("C is several files: name a folder with -o DIR")
+    folder = Path(output)
+    if folder.exists() and not folder.is_dir():
+        raise RvmonError(f"cannot write to {folder}: C is several files: name a folder with -o DIR")
+    texts = c_files(plan_alone(compile_spec(spec.checked), ids))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RvmonError(f"cannot write to {folder}: {error.strerror}") from None
+    for name, text in texts.items():
+        write_file(folder / name, text)
+        say(str(folder / name))
+
+
+def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
+    """The automata of requirements, one after the other."""
+    from rvmon.monitor import compile_spec
+
+    chosen = compile_spec(spec.checked).chosen(ids)
+    if form == "hoa":
+        return _hoa_texts(chosen)
+    if form == "json":
+        import msgspec
+
+        from rvmon.export.hoa import automaton_json
+
+        found = [automaton_json(one, spec.checked) for one in chosen]
+        return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
+    from rvmon.explain.graph import graph_dot, graph_of
+
+    texts = []
+    for one in chosen:
+        if one.automaton is None:
+            raise RvmonError(f"error: {one.requirement.id} has no automaton: {one.refusal}")
+        graph = graph_of(one, one.automaton, spec.checked)
+        texts.append(graph_dot(graph, one.requirement.id))
+    return "".join(texts)
+
+
+def _hoa_texts(chosen: Sequence[CompiledRequirement]) -> str:
+    """The automata that can be written; of the others it is said why they are left out.
+
+    Raises:
+        RvmonError: there is none; the message says why of the first.
+    """
+    from rvmon.export.hoa import hoa
+
+    texts, faults = [], []
+    for one in chosen:
+        try:
+            texts.append(hoa(one))
+        except RvmonError as error:
+            faults.append(error)
+    if not texts:
+        raise faults[0]
+    for fault in faults:
+        warn(f"left out: {str(fault).removeprefix('error: ')}")
+    return "".join(texts)
