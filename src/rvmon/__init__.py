@@ -53,10 +53,10 @@ __all__ = [
 
 # `import rvmon` stays light: a name is imported when it is first asked for.
 _HOMES = {
-    "Attempt": "rvmon.verdict.attempt",
+    "Attempt": "rvmon.session",
     "Diagnostic": "rvmon.diagnostics.diagnostic",
     "Monitor": "rvmon.monitor",
-    "Report": "rvmon.verdict.report",
+    "Report": "rvmon.session",
     "Requirement": "rvmon.spec.checked.specification",
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",

@@ -13,6 +13,8 @@ from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import SpecError
 from rvmon.spec.checked.selection import requirements_asked, sources_asked
 from rvmon.trace.time import ticks_of_seconds
+from rvmon.verdict.attempt import Attempt
+from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
     from rvmon.coverage.hits import Hits
@@ -25,8 +27,6 @@ if TYPE_CHECKING:
     from rvmon.readers.source import Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
 
 
 class Spec:
@@ -49,9 +49,9 @@ class Spec:
         return f"<Spec {self.checked.name}: {', '.join(self.checked.requirements)}>"
 
     def _repr_html_(self) -> str:
-        from rvmon.report.notebook import spec_html
+        from rvmon.report import notebook
 
-        return spec_html(self.checked)
+        return notebook.spec_html(self.checked)
 
     @property
     def requirements(self) -> Mapping[str, Requirement]:
@@ -368,3 +368,20 @@ def _compile(text: str, name: str, const: Mapping[str, str] | None, directory: P
 
     checked, warnings = compile_cached(text, name=name, constants=const, directory=directory)
     return Spec(checked, warnings)
+
+
+def _report_html(report: Report) -> str:
+    from rvmon.report import notebook
+
+    return notebook.report_html(report)
+
+
+def _attempt_html(attempt: Attempt) -> str:
+    from rvmon.report import notebook
+
+    return notebook.attempt_html(attempt)
+
+
+# Verdicts are data and know no pages: what notebooks show of them, they are given here.
+Report._repr_html_ = _report_html
+Attempt._repr_html_ = _attempt_html

@@ -65,8 +65,7 @@ def program() -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(_MANY)
     code = main()
-    if "duckdb" not in sys.modules:  # that one calls it a leak
-        gc.freeze()  # what is left goes with the process: it is not searched once more
+    gc.freeze()  # what is left goes with the process: it is not searched once more
     return code
 
 

@@ -24,7 +24,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "compare",
         description="Hold the verdicts on recordings against earlier ones, by recording and "
         "requirement: what fails now, what is fixed, what is no longer shown. Files are those of "
-        "`rvmon run --out` (.csv, .parquet, .sqlite, .duckdb) and of `--format json` (.json). The "
+        "`rvmon run --out` (.csv, .parquet, .sqlite) and of `--format json` (.json). The "
         "exit code is 1 if less holds than before.",
         epilog="examples: rvmon run examples/base.rv examples/base.csv --out old.csv; rvmon "
         "compare old.csv old.csv",
@@ -38,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, show, and return the exit code."""
     from rvmon.verdict.compare import compare
-    from rvmon.verdict.read_rows import read_results
+    from rvmon.verdict.table_file import read_results
 
     with busy("comparing verdicts"):
         found = compare(read_results(arguments.before), read_results(arguments.after))

@@ -27,8 +27,8 @@ from rvmon.evidence.keep import (
 from rvmon.evidence.matrix import Row, rows_by_item
 from rvmon.session import load
 from rvmon.verdict.rows import VerdictRow
+from rvmon.verdict.table_file import csv_bytes
 from rvmon.verdict.verdict import LAW
-from rvmon.verdict.write_rows import csv_bytes
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign

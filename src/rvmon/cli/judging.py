@@ -50,7 +50,6 @@ class Options:
     Attributes:
         only: ids of the requirements, or `None` for all.
         until: the instant in seconds to which recordings are judged; default their last sample.
-        strict_columns: whether missing and undeclared columns are errors.
         robustness: whether to find the robustness of each attempt as well.
         allow_missing: the names that recordings in columns may lack; `True`: all.
         coverage: whether all that the coverage model has is watched; default: coverpoints and
@@ -60,7 +59,6 @@ class Options:
 
     only: tuple[str, ...] | None = None
     until: float | None = None
-    strict_columns: bool = False
     robustness: bool = False
     allow_missing: bool | tuple[str, ...] = False
     coverage: bool = False
@@ -81,7 +79,6 @@ def spec_and_options(
     return spec, Options(
         asked_ids(arguments, spec),
         arguments.until,
-        arguments.strict_columns,
         arguments.robustness,
         allowed_names(arguments.allow_missing),
         arguments.coverage is not None,
@@ -233,8 +230,6 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         if trace.endswith((".csv", ".parquet")) and not can_be_read_again(trace):
             raise TraceError("is a pipe: pipes hold JSON lines; keep other recordings in a file")
         recording = opened(spec, trace)
-        if options.strict_columns:
-            _refuse_mismatch(recording, spec)
         missing = expect_names(
             spec.checked,
             recording,
@@ -270,16 +265,3 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     report = replace(report, trace=trace, health=health)
     seconds = time.monotonic() - began
     return Judged(trace, report, missing=missing, hits=beside.hits, seconds=seconds)
-
-
-def _refuse_mismatch(recording: FileRecording, spec: Spec) -> None:
-    ignored = list(recording.ignored)
-    declared = {*spec.schema.signals, *spec.schema.events}
-    missing = sorted(declared - (recording.names or declared))
-    faults = [
-        f"{what}: {', '.join(names)}"
-        for what, names in (("columns not declared", ignored), ("columns missing", missing))
-        if names
-    ]
-    if faults:
-        raise TraceError("; ".join(faults))

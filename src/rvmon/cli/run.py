@@ -90,7 +90,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--out",
         metavar="FILE",
-        help="write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite, .duckdb",
+        help="write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite",
     )
     parser.add_argument(
         "--resume",
@@ -130,11 +130,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--require-triggered",
         metavar="[=IDS]",
         help="exit with 1 if one of these (default: any) was triggered in no recording",
-    )
-    parser.add_argument(
-        "--strict-columns",
-        action="store_true",
-        help="columns that are missing or not declared are errors",
     )
     add_max_memory(parser)
 
@@ -272,7 +267,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.resume and arguments.out is None:
         raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
     if arguments.out is not None:
-        from rvmon.verdict.write_rows import refuse_format
+        from rvmon.verdict.table_file import refuse_format
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)

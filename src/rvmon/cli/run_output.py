@@ -48,11 +48,11 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
         RvmonError: it cannot be written.
     """
     import rvmon
-    from rvmon.verdict import write_rows as write
+    from rvmon.verdict.table_file import write_results as write
     from rvmon.verdict.verdict import LAW
 
     about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
-    write.write_results(path, rows_of(judged), about)
+    write(path, rows_of(judged), about)
 
 
 def rows_of(judged: Iterable[Judged]) -> Iterator[VerdictRow]:

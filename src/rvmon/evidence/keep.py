@@ -33,8 +33,8 @@ from rvmon.reproducer import (
 )
 from rvmon.session import Spec
 from rvmon.verdict.rows import VerdictRow
+from rvmon.verdict.table_file import csv_bytes
 from rvmon.verdict.verdict import LAW
-from rvmon.verdict.write_rows import csv_bytes
 from rvmon.writing import write_whole
 
 SUMS = "SHA256SUMS"
@@ -122,7 +122,6 @@ class Judging(msgspec.Struct, frozen=True):
     clock: str | None
     binding: str | None
     allow_missing: str | None
-    strict_columns: bool
     robustness: bool
     severity: str | None = None
     tag: list[str] = []

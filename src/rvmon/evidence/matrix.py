@@ -14,8 +14,8 @@ from rvmon.report.table import plain
 from rvmon.report.terminal import in_short
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.verdict.rows import VerdictRow
+from rvmon.verdict.table_file import csv_table
 from rvmon.verdict.verdict import Verdict, fold
-from rvmon.verdict.write_rows import csv_table
 
 LISTED = 100
 """Recordings, or tests, of one verdict that the page names; the table names all."""

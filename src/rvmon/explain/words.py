@@ -247,9 +247,11 @@ Facts = dict[str, str]
 
 def facts_of(compiled: CompiledRequirement) -> Facts:
     """By heading, one line each."""
-    automaton = compiled.automaton
+    machine = machine_of(planned_rule(compiled), compiled.gap)
+    automaton = compiled.automaton if isinstance(machine, Automaton) else None
+    chained = not isinstance(machine, Automaton) and machine[1] is not None
     facts = {
-        "judged by": _judge(compiled, automaton),
+        "judged by": _judge(compiled, automaton, chained=chained),
         "decided": _decided(compiled),
         "memory": _memory(compiled, automaton),
     }
@@ -259,11 +261,10 @@ def facts_of(compiled: CompiledRequirement) -> Facts:
     return {heading: fact for heading, fact in facts.items() if fact}
 
 
-def _judge(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
-    judge = machine_of(planned_rule(compiled), compiled.gap)
-    if automaton is None or not isinstance(judge, Automaton):
-        kind = "delay network" if isinstance(judge, Automaton) or judge[1] is None else "windows"
-        if automaton is not None:
+def _judge(compiled: CompiledRequirement, automaton: Automaton | None, *, chained: bool) -> str:
+    if automaton is None:
+        kind = "windows" if chained else "delay network"
+        if compiled.automaton is not None:
             return f"{kind}: its automaton would step each open attempt by itself"
         return f"{kind}: as an automaton it would have {compiled.refusal}"
     return (

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from importlib import import_module
-from typing import Any
+from typing import Any, ClassVar
 
 from rvmon.native import Record
 from rvmon.trace.sample import Scalar
@@ -96,6 +95,9 @@ class Attempt(Record):
     robustness: float | None = None
     in_doubt: bool = False
 
+    _repr_html_: ClassVar[Callable[[Attempt], str]]
+    """What notebooks show; `rvmon.session` sets it, as pages lie above verdicts."""
+
     def _work_out(self) -> None:
         """Set the fields that were never set: called when someone asks for one."""
         if not hasattr(self, "_details"):
@@ -122,9 +124,6 @@ class Attempt(Record):
         """Its number, behind a question mark if it is in doubt."""
         return f"?{self.number}" if self.in_doubt else str(self.number)
 
-    def _repr_html_(self) -> str:
-        return str(import_module("rvmon.report.notebook").attempt_html(self))  # lies above
-
     def __str__(self) -> str:
         """One line for people.
 
@@ -139,44 +138,10 @@ class Attempt(Record):
         return f"{headline}: {self.reason}" if self.reason else headline
 
 
-_PREFIX = Decision.PREFIX
+_EARLY = (*("requirement", "number", "triggered", "decided"), *("verdict", "decision", "in_doubt"))
+"""The fields that every record has from the start; the others may be worked out late."""
 
-
-def decided_attempt(
-    requirement: str,
-    number: int,
-    triggered: int,
-    decided: int,
-    verdict: Verdict,
-    details: Callable[[Attempt, Any], Mapping[str, Any]],
-    noted: Any,
-) -> Attempt:
-    """An attempt that the prefix decided; the rest is worked out when someone asks for it.
-
-    Args:
-        requirement: as in `Attempt`; so are the next four.
-        number: from 1.
-        triggered: ticks.
-        decided: ticks.
-        verdict: `P` or `F`.
-        details: gives all the other fields by name, from the attempt and `noted`.
-        noted: what is needed for that.
-
-    >>> made = decided_attempt("R1", 1, 0, 5, Verdict.PASS, lambda _, t: {"reason": f"at {t}"}, 5)
-    >>> made.verdict.value, made.reason
-    ('P', 'at 5')
-    """
-    made = Attempt.__new__(Attempt)
-    made.requirement = requirement
-    made.number = number
-    made.triggered = triggered
-    made.decided = decided
-    made.verdict = verdict
-    made.decision = _PREFIX
-    made.in_doubt = False
-    made._details = details
-    made._noted = noted
-    return made
+_LATE = tuple(one.name for one in fields(Attempt) if one.name not in (*_EARLY, "robustness"))
 
 
 def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
@@ -186,33 +151,16 @@ def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
         attempt: without robustness.
         robustness: in SI units; `None` if it has none.
 
-    >>> made = decided_attempt("R1", 1, 0, 5, Verdict.PASS, lambda _, t: {"reason": f"at {t}"}, 5)
-    >>> measured_attempt(made, 0.5).robustness
+    >>> measured_attempt(Attempt("R1", 1, 0, 5, Verdict.PASS, reason="`p`"), 0.5).robustness
     0.5
     """
-    if attempt.decision is not _PREFIX or attempt.decided is None or attempt.in_doubt:
-        return replace(attempt, robustness=robustness)
-    made = decided_attempt(
-        attempt.requirement,
-        attempt.number,
-        attempt.triggered,
-        attempt.decided,
-        attempt.verdict,
-        _measured_details,
-        (attempt, robustness),
-    )
+    made = Attempt.__new__(Attempt)
+    for name in _EARLY:
+        setattr(made, name, getattr(attempt, name))
     made.robustness = robustness
+    made._details = lambda _, noted: {name: getattr(noted, name) for name in _LATE}
+    made._noted = attempt
     return made
-
-
-def _measured_details(_: Attempt, noted: tuple[Attempt, float | None]) -> Mapping[str, Any]:
-    attempt, robustness = noted
-    return {**{name: getattr(attempt, name) for name in _LATE}, "robustness": robustness}
-
-
-_LATE = (  # the fields that `decided_attempt` leaves out
-    *("reason", "deadline", "at_trigger", "at_decision", "owed", "captured", "blame", "forecast"),
-)
 
 
 _SHOWN = 3
@@ -229,14 +177,6 @@ class LazyAttempts(Sequence[Attempt]):
     @abstractmethod
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """Those of a requirement with one verdict, in their order, each made as it is asked for."""
-
-    @abstractmethod
-    def texts(self, origin: int) -> Iterator[tuple[str, str]]:
-        """The requirement and the JSON text of each, as `rvmon.verdict.attempt_json` writes it.
-
-        Args:
-            origin: the instant from which people count seconds, ticks.
-        """
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from rvmon.verdict.read_rows import Kept
+from rvmon.verdict.rows import VerdictRow
 from rvmon.verdict.verdict import Verdict, fold
 
 
@@ -85,13 +85,13 @@ class _Run:
     failures: dict[str, list[str]] = field(default_factory=dict)
 
 
-def compare(before: Iterable[Kept], after: Iterable[Kept]) -> Comparison:
+def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Comparison:
     """Hold two files of verdicts against each other, by recording and requirement.
 
     Recordings are the same that have the same name. If no name stands in both files, the folder
     that all recordings of a file lie in is left out: the recordings were moved.
 
-    >>> old = Kept("a.csv", "R1", "R1#1", "P", "", "")
+    >>> old = VerdictRow("a.csv", "R1", "R1#1", verdict="P")
     >>> compare([old], [old._replace(verdict="F", reason="late")]).differences[0].change.value
     'fails now'
     """
@@ -153,7 +153,7 @@ def _change(before: Verdict, after: Verdict) -> Change:
             return Change.OTHERWISE
 
 
-def _runs(rows: Iterable[Kept]) -> dict[str, _Run]:
+def _runs(rows: Iterable[VerdictRow]) -> dict[str, _Run]:
     runs: dict[str, _Run] = {}
     for row in rows:
         run = runs.setdefault(row.recording, _Run())

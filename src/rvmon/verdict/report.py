@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rvmon.trace.health import Health
 from rvmon.verdict.attempt import Attempt, LazyAttempts
@@ -68,8 +67,8 @@ class Report:
         default_factory=dict, init=False, repr=False, compare=False
     )
 
-    def _repr_html_(self) -> str:
-        return str(import_module("rvmon.report.notebook").report_html(self))  # lies above
+    _repr_html_: ClassVar[Callable[[Report], str]]
+    """What notebooks show; `rvmon.session` sets it, as pages lie above verdicts."""
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
         """The attempts of one requirement with one verdict, in their order.
@@ -104,14 +103,10 @@ class Report:
         a.csv R1 R1#1 P
         a.csv R2 None NT
         """
-        from rvmon.verdict.rows import VerdictRow, attempt_row, text_row
+        from rvmon.verdict.rows import VerdictRow, attempt_row
 
-        if isinstance(self.attempts, LazyAttempts):  # their texts are made together
-            for name, text in self.attempts.texts(self.origin):
-                yield text_row(self.trace, name, text)
-        else:
-            for attempt in self.attempts:
-                yield attempt_row(self.trace, self.origin, attempt)
+        for attempt in self.attempts:
+            yield attempt_row(self.trace, self.origin, attempt)
         for name, verdict in self.verdicts.items():
             found = [one for one, count in self.counts[name].items() if count]
             if not found or fold(found) is not verdict:  # none, or there may have been others
@@ -128,7 +123,7 @@ class Report:
         >>> report.to_arrow().select(["attempt", "verdict", "decided"]).to_pylist()
         [{'attempt': 'R1#1', 'verdict': 'P', 'decided': 5}]
         """
-        from rvmon.verdict.frames import arrow_table
+        from rvmon.verdict.rows import arrow_table
 
         return arrow_table(self.rows(), {"law": str(self.law)})
 
@@ -138,7 +133,7 @@ class Report:
         Raises:
             RvmonError: pyarrow or pandas is needed.
         """
-        from rvmon.verdict.frames import pandas_frame
+        from rvmon.verdict.rows import pandas_frame
 
         return pandas_frame(self.to_arrow())
 
@@ -148,7 +143,7 @@ class Report:
         Raises:
             RvmonError: pyarrow or polars is needed.
         """
-        from rvmon.verdict.frames import polars_frame
+        from rvmon.verdict.rows import polars_frame
 
         return polars_frame(self.to_arrow())
 
@@ -160,20 +155,16 @@ class Report:
         Args:
             requirements: `Spec.requirements`, of which severity and tags are to stand there.
         """
-        from rvmon.verdict.attempt_json import attempt_text
-        from rvmon.verdict.report_json import encode, labels
+        from rvmon.verdict.report_json import encode, encoded, labels, timed_record
 
-        if isinstance(self.attempts, LazyAttempts):
-            texts = self.attempts.texts(self.origin)
-        else:
-            texts = ((one.requirement, attempt_text(one, self.origin)) for one in self.attempts)
+        texts = ((one.requirement, timed_record(one, self.origin)) for one in self.attempts)
         return encode(
             {"law": self.law, "trace": self.trace, "origin": self.origin, "end": self.end},
             {
                 name: (verdict, self._rest_of(name) | labels((requirements or {}).get(name)))
                 for name, verdict in self.verdicts.items()
             },
-            texts,
+            ((name, encoded(shown)) for name, shown in texts),
             {
                 "health": self.health,
                 **({"goals": self.goals} if self.goals else {}),

@@ -3,19 +3,54 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 
 from rvmon.errors import TraceError
 from rvmon.trace.health import Health
+from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.attempt_json import encoded, record
 from rvmon.verdict.covered import CoveredGroup, IllegalHit
 from rvmon.verdict.verdict import LAW, Verdict
 
 if TYPE_CHECKING:
     from rvmon.spec.checked.specification import Requirement
+
+
+_ALWAYS = frozenset({"number", "triggered", "decided", "verdict", "decision", "reason"})
+"""Keys that every attempt has in JSON; the others are left out where they are empty."""
+
+_NAMES = tuple(one.name for one in fields(Attempt) if one.name != "requirement")
+
+
+def record(attempt: Attempt) -> dict[str, object]:
+    """An attempt by the keys that it has in JSON; its requirement stands elsewhere."""
+    shown: dict[str, object] = {}
+    for name in _NAMES:
+        value = getattr(attempt, name)
+        if name in _ALWAYS or (value not in (None, "", {}) and value is not False):
+            shown[name] = value
+    return shown
+
+
+def timed_record(attempt: Attempt, origin: int) -> dict[str, object]:
+    """The same, and its instants in seconds after the origin (ticks)."""
+    shown = record(attempt)
+    shown["triggered_s"] = seconds(attempt.triggered, origin)
+    shown["decided_s"] = None if attempt.decided is None else seconds(attempt.decided, origin)
+    return shown
+
+
+def seconds(instant: int, origin: int) -> float:
+    """An instant in seconds after the origin; both in ticks."""
+    return (instant - origin) / TICKS_PER_SECOND
+
+
+def encoded(value: object) -> str:
+    """A value as JSON text."""
+    return msgspec.json.encode(value).decode()
 
 
 class RequirementJson(msgspec.Struct):
@@ -110,9 +145,9 @@ def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
     try:
         document = msgspec.json.decode(text, type=ReportJson)
         attempts = [
-            msgspec.convert({**fields, "requirement": name}, Attempt)
+            msgspec.convert({**shown, "requirement": name}, Attempt)
             for name, entry in document.requirements.items()
-            for fields in entry.attempts
+            for shown in entry.attempts
         ]
     except (msgspec.DecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
         raise TraceError(f"this is no report of rvmon: {error}") from None

@@ -1,14 +1,18 @@
-"""Verdicts as rows of a table: one for each attempt, and one for whatever has none."""
+"""Verdicts as rows of a table: one for each attempt, and one for whatever has none; frames."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, NamedTuple, get_args, get_type_hints
 
-import msgspec
-
+from rvmon.errors import not_installed
 from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.attempt_json import encoded, seconds
+from rvmon.verdict.report_json import encoded, seconds
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+    import pyarrow
 
 
 class VerdictRow(NamedTuple):
@@ -90,49 +94,63 @@ def attempt_row(recording: str, origin: int | None, attempt: Attempt) -> Verdict
     )
 
 
-class _Text(msgspec.Struct):
-    """What of an attempt's JSON text a row has."""
-
-    number: int
-    triggered: int
-    decided: int | None
-    verdict: str
-    decision: str
-    reason: str
-    triggered_s: float
-    decided_s: float | None
-    deadline: int | None = None
-    in_doubt: bool = False
-    robustness: float | None = None
-    captured: msgspec.Raw = msgspec.Raw()
+def column_types() -> dict[str, type]:
+    """The type of each column of verdicts; all but texts and truths may be null."""
+    hints = get_type_hints(VerdictRow)
+    return {name: (get_args(hint) or (hint,))[0] for name, hint in hints.items()}
 
 
-_decoder = msgspec.json.Decoder(_Text)
+def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow.Table:
+    """Rows as a table of Arrow.
 
-
-def text_row(recording: str, requirement: str, text: str) -> VerdictRow:
-    """The row of an attempt that is there as JSON text.
-
-    Args:
-        recording: its name.
-        requirement: the id.
-        text: as `rvmon.verdict.attempt_json.attempt_text` writes it.
+    Raises:
+        RvmonError: pyarrow is needed.
     """
-    fields = _decoder.decode(text)
-    return VerdictRow(
-        recording,
-        requirement,
-        f"{requirement}{'?' if fields.in_doubt else '#'}{fields.number}",
-        fields.number,
-        fields.verdict,
-        fields.decision,
-        fields.in_doubt,
-        fields.triggered,
-        fields.decided,
-        fields.deadline,
-        fields.triggered_s,
-        fields.decided_s,
-        fields.robustness,
-        bytes(fields.captured).decode(),
-        fields.reason,
+    try:
+        import pyarrow
+    except ImportError:
+        raise not_installed("this table", "pyarrow") from None
+    types = {
+        str: pyarrow.string(),
+        int: pyarrow.int64(),
+        float: pyarrow.float64(),
+        bool: pyarrow.bool_(),
+    }
+    schema = pyarrow.schema(
+        {name: types[kind] for name, kind in column_types().items()},
+        metadata={f"rvmon.{key}": text for key, text in about.items()},
     )
+    columns = list(zip(*rows, strict=True)) or [() for _ in schema]
+    return pyarrow.table(dict(zip(schema.names, columns, strict=True)), schema=schema)
+
+
+def pandas_frame(table: pyarrow.Table) -> pandas.DataFrame:
+    """A table of verdicts as a data frame of pandas; instants stay whole numbers, also where null.
+
+    Raises:
+        RvmonError: pandas is needed.
+    """
+    try:
+        import pandas
+    except ImportError:
+        raise not_installed("this table", "pandas") from None
+    import pyarrow
+
+    whole = {pyarrow.int64(): pandas.Int64Dtype()}
+    frame: pandas.DataFrame = table.to_pandas(types_mapper=whole.get)
+    return frame
+
+
+def polars_frame(table: pyarrow.Table) -> polars.DataFrame:
+    """A table of verdicts as a data frame of polars.
+
+    Raises:
+        RvmonError: polars is needed.
+    """
+    try:
+        import polars
+    except ImportError:
+        raise not_installed("this table", "polars") from None
+    frame = polars.from_arrow(table)
+    assert isinstance(frame, polars.DataFrame)  # noqa: S101 - as a table is no column
+    return frame

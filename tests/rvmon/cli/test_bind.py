@@ -169,7 +169,7 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr("rvmon.verdict.write_rows.write_whole", ended)
+        patched.setattr("rvmon.verdict.table_file.write_whole", ended)
         assert main(command) == 130
         (runs / "1" / "1.mcap").touch()
         assert main(command) == 130

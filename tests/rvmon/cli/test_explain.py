@@ -1,6 +1,5 @@
 """`rvmon explain` as a person uses it."""
 
-
 import pytest
 
 from rvmon.cli import main

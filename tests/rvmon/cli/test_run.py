@@ -342,18 +342,6 @@ def test_binary_standard_input_is_told(files, monkeypatch, capsys):
         assert "not UTF-8 text" in capsys.readouterr().err
 
 
-def test_strict_columns_refuses_what_the_spec_does_not_name(files, capsys):
-    """A column too many or too few is an error only under --strict-columns."""
-    (files / "more.csv").write_text("t,closed,knock,battery\n0,1,,5\n")
-    assert main(["run", "door.rv", "more.csv"]) == 0
-    assert "battery" in capsys.readouterr().out
-    (files / "more.csv").write_text("t,closed,battery\n0,1,5\n")
-    assert main(["run", "door.rv", "more.csv", "--strict-columns"]) == 2
-    told = capsys.readouterr().err
-    assert "battery" in told
-    assert "knock" in told
-
-
 def test_an_absent_column_is_told(files, capsys):
     """A declared event without a column is unknown if it may be: health and exit code say so."""
     (files / "less.csv").write_text("t,closed\n0,1\n5,0\n")

@@ -10,7 +10,7 @@ import rvmon
 from rvmon.cli import main
 from rvmon.execute import journal
 from rvmon.verdict.attempt import LazyAttempts
-from rvmon.verdict.read_rows import read_results
+from rvmon.verdict.table_file import read_results
 
 SPEC = """signal p : bool
 requirement R1
@@ -59,7 +59,7 @@ def test_a_run_that_was_ended_goes_on(folder, capsys, monkeypatch, resume):
     def full(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("rvmon.verdict.write_rows.write_whole", full)
+    monkeypatch.setattr("rvmon.verdict.table_file.write_whole", full)
     assert main(words) == 130
     monkeypatch.undo()
     monkeypatch.chdir(folder)

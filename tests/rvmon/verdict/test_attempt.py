@@ -5,7 +5,7 @@ import pickle
 
 import pytest
 
-from rvmon.verdict.attempt import Attempt, decided_attempt
+from rvmon.verdict.attempt import Attempt, Decision
 from rvmon.verdict.verdict import Verdict
 
 REST = {
@@ -29,7 +29,11 @@ def decided(calls: list[object] | None = None) -> Attempt:
             calls.append((attempt.number, noted))
         return REST
 
-    return decided_attempt("R1", 3, 0, 5, Verdict.FAIL, details, "noted")
+    made = Attempt.__new__(Attempt)
+    made.requirement, made.number, made.triggered, made.decided = "R1", 3, 0, 5
+    made.verdict, made.decision, made.in_doubt = Verdict.FAIL, Decision.PREFIX, False
+    made._details, made._noted = details, "noted"
+    return made
 
 
 def test_the_rest_is_worked_out_once_and_only_if_someone_looks():

@@ -3,20 +3,27 @@
 import pytest
 
 from rvmon.verdict.compare import Change, compare
-from rvmon.verdict.read_rows import Kept
+from rvmon.verdict.rows import VerdictRow
 
 
 def rows(*verdicts, recording="a.csv", requirement="R1", error=""):
     """The rows of one requirement in one recording, one for each attempt."""
     return [
-        Kept(recording, requirement, f"{requirement}#{number}", verdict, f"r{number}", error)
+        VerdictRow(
+            recording,
+            requirement,
+            f"{requirement}#{number}",
+            verdict=verdict,
+            reason=f"r{number}",
+            error=error,
+        )
         for number, verdict in enumerate(verdicts, start=1)
     ]
 
 
 def broken(recording="a.csv"):
     """The row of a recording that cannot be judged."""
-    return [Kept(recording, None, None, None, "", "it is cut off")]
+    return [VerdictRow(recording, error="it is cut off")]
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,8 @@ from tests.tools.hostile import hostile_names
 
 import rvmon
 from rvmon.errors import RvmonError
-from rvmon.verdict.read_rows import Kept, read_results
 from rvmon.verdict.rows import VerdictRow, broken_rows
-from rvmon.verdict.write_rows import refuse_format, write_results
+from rvmon.verdict.table_file import read_results, refuse_format, write_results
 
 SPEC = """signal speed : real
 event go(id: int)
@@ -68,15 +67,15 @@ def test_frames_keep_instants_whole():
     assert found.to_polars()["decided"][0] == origin + 1
 
 
-@pytest.mark.parametrize("end", ["csv", "parquet", "sqlite", "db", "duckdb"])
+@pytest.mark.parametrize("end", ["csv", "parquet", "sqlite"])
 def test_what_is_written_is_read_back(report, tmp_path, end):
     """In every form, with a recording that broke off."""
-    pytest.importorskip("duckdb")
     path = tmp_path / f"v.{end}"
     rows = [*report.rows(), *broken_rows("b.csv", "line 3: what is `x`?", report.attempts[:1])]
     write_results(path, rows, {"law": "2"})
     found = read_results(path)
-    assert found == [Kept(*(getattr(row, name) for name in Kept._fields)) for row in rows]
+    kept = ("recording", "requirement", "attempt", "verdict", "reason", "error")
+    assert found == [VerdictRow(**{name: getattr(row, name) for name in kept}) for row in rows]
 
 
 def test_json_is_read_as_well(report, tmp_path):
@@ -88,7 +87,7 @@ def test_json_is_read_as_well(report, tmp_path):
     path.write_text(
         f'[{report.to_json()},{{"law":2,"trace":"b","error":"e","judged_before":{{}}}}]'
     )
-    assert read_results(path) == [*one, Kept("b", None, None, None, "", "e")]
+    assert read_results(path) == [*one, VerdictRow("b", error="e")]
 
 
 def test_databases_say_what_judged(report, tmp_path):
@@ -100,10 +99,9 @@ def test_databases_say_what_judged(report, tmp_path):
         assert database.execute("SELECT * FROM about").fetchall() == [("spec", "s.rv")]
 
 
-@pytest.mark.parametrize("end", ["csv", "parquet", "sqlite", "duckdb"])
+@pytest.mark.parametrize("end", ["csv", "parquet", "sqlite"])
 def test_names_are_data(tmp_path, end):
     """Whatever recordings and requirements are called, and reasons say."""
-    pytest.importorskip("duckdb")
     names = [name for name in hostile_names(60) if name and name.isprintable()]
     rows = [VerdictRow(name, name, f"{name}#1", 1, "P", reason=name) for name in names]
     write_results(tmp_path / f"v.{end}", rows, {})
@@ -125,7 +123,7 @@ def test_what_is_no_file_of_verdicts_is_refused(tmp_path):
         refuse_format("v.xls")
     with pytest.raises(RvmonError, match="there is no file"):
         read_results(tmp_path / "none.csv")
-    for end in ("csv", "parquet", "sqlite", "duckdb", "json"):
+    for end in ("csv", "parquet", "sqlite", "json"):
         path = tmp_path / f"v.{end}"
         for body in (b"", b"t,a\n0,1\n", b"\xff\xfe\x00", b'{"a": 1}', b"[1]", b"PAR1 PAR1"):
             path.write_bytes(body)
@@ -142,7 +140,7 @@ def test_a_verdict_that_there_is_not_is_refused(tmp_path):
 
 def test_a_package_that_is_missing_is_named(monkeypatch):
     """Before anything is judged."""
-    monkeypatch.setattr("rvmon.verdict.write_rows.find_spec", lambda _: None)
+    monkeypatch.setattr("rvmon.verdict.table_file.find_spec", lambda _: None)
     with pytest.raises(RvmonError, match="needs pyarrow, which is not installed: pip install"):
         refuse_format("v.parquet")
 

@@ -10,7 +10,6 @@ import numpy as np
 from rvmon import native
 from rvmon.monitor.core.planned import DECISIONS, VERDICTS, PlannedCore
 from rvmon.verdict.attempt import Attempt, Decision, LazyAttempts
-from rvmon.verdict.attempt_json import attempt_text
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
@@ -83,10 +82,6 @@ class RecordedAttempts(LazyAttempts):
         own = records["requirement"] == self._ids.index(requirement)
         chosen = np.flatnonzero(own & (records["verdict"] == VERDICTS.index(verdict)))
         return (self[index] for index in chosen.tolist())
-
-    def texts(self, origin: int) -> Iterator[tuple[str, str]]:
-        """See `LazyAttempts`."""
-        return ((one.requirement, attempt_text(one, origin)) for one in self)
 
     def _attempt(self, record: Any, numbers: NDArray[Any]) -> Attempt:
         triggered, decided, captured, note, requirement, number, verdict, decision, in_doubt = (
