@@ -1,6 +1,6 @@
 """Compiles the native code when the package is built, and in place: `python hatch_build.py`.
 
-The binding, `src/rvmon/core/module.c`, and all other `src/rvmon/core/*.c` as one unit, which makes
+The binding, `src/rvmon/core/native/python`, and all other C of the core as one unit, which makes
 them faster, are compiled and linked to one extension, `rvmon.native._core`; the files of
 `src/rvmon/timed/native`, each by itself, to another, `rvmon.native._zones`, and likewise those of
 `src/rvmon/readers/native` to `rvmon.native._csv`. The compiler is `$CC`, Python's own, `cc`, `gcc`
@@ -32,13 +32,15 @@ try:
 except ImportError:  # run as a program, which needs Python alone
     BuildHookInterface = object
 
-CORE = Path(__file__).resolve().parent / "src" / "rvmon" / "core"
+PACKAGE = Path(__file__).resolve().parent / "src" / "rvmon"
+CORE = PACKAGE / "core" / "native"
+AMALGAMATE = PACKAGE / "core" / "amalgamate.py"
 BESIDE = {
-    "_zones": CORE.with_name("timed") / "native",
-    "_csv": CORE.with_name("readers") / "native",
+    "_zones": PACKAGE / "timed" / "native",
+    "_csv": PACKAGE / "readers" / "native",
 }
 """The other extensions and the folders of their sources."""
-NATIVE = CORE.with_name("native")
+NATIVE = PACKAGE / "native"
 ZIG = "ziglang>=0.13,<1"
 LIMITED_API = "0x030B0000"
 """The stable ABI of Python 3.11, which one extension for all later versions needs."""
@@ -128,7 +130,8 @@ def build(folder: Path) -> Path:
     with tempfile.TemporaryDirectory(dir=folder, prefix=".build-") as made:
         unit = Path(made, "unit.c")
         unit.write_text(_unit(), encoding="utf-8")
-        return _extension(folder / file_name(), CORE, ["module.c", str(unit)], Path(made))
+        binding = sorted(f"python/{source.name}" for source in (CORE / "python").glob("*.c"))
+        return _extension(folder / file_name(), CORE, [*binding, str(unit)], Path(made))
 
 
 def build_all(folder: Path) -> list[Path]:
@@ -183,7 +186,7 @@ def _source_hash(home: Path) -> str:
 
 def _unit() -> str:
     """The sources of the core as one, of which messages name the files."""
-    return str(runpy.run_path(str(CORE / "amalgamate.py"))["core_source"]("core.h", lines=True))
+    return str(runpy.run_path(str(AMALGAMATE))["core_source"]("core.h", str(CORE), lines=True))
 
 
 def _machine() -> list[str]:

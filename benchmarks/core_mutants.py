@@ -28,9 +28,10 @@ from pathlib import Path
 from benchmarks.core_recording import recorded
 
 from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.core import amalgamate
 
 ROOT = Path(__file__).resolve().parent.parent
-CORE = ROOT / "src" / "rvmon" / "core"
+CORE = Path(amalgamate.FOLDER)
 REPLAY = Path(__file__).with_name("core_replay.c")
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-w")
 MOST_MEMORY = 2 << 30
@@ -38,7 +39,7 @@ MOST_MEMORY = 2 << 30
 
 def sources() -> list[Path]:
     """The C of the core, without the binding."""
-    return sorted(path for path in CORE.glob("*.c") if path.name != "module.c")
+    return [CORE / name for name in amalgamate.core_files()]
 
 
 class Trial:
@@ -51,8 +52,6 @@ class Trial:
 
     def __init__(self, folder: Path, cases: bytes) -> None:
         self._folder = folder
-        for header in CORE.glob("*.h"):
-            shutil.copy2(header, folder)
         self._cases = folder / "cases"
         self._cases.write_bytes(cases)
         self._objects = {path: folder / f"{path.stem}.o" for path in (*sources(), REPLAY)}
@@ -83,7 +82,7 @@ class Trial:
         return "survived" if said == self._expected else "killed"
 
     def _compiled(self, source: Path, made: Path) -> bool:
-        words = ["gcc", *FLAGS, f"-I{self._folder}", "-c", str(source), "-o", str(made)]
+        words = ["gcc", *FLAGS, f"-I{CORE}", "-c", str(source), "-o", str(made)]
         return subprocess.run(words, capture_output=True, check=False).returncode == 0
 
     def _said(self, program: Path, objects: Sequence[Path], most: float) -> bytes | None:

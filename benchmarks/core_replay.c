@@ -8,7 +8,7 @@
  * alone decided what was not due; f, t: a sample was taken after the end, or twice; g: it was short of
  * memory, and green; r, s: rows, or a step, were refused. */
 #include "core.h"
-#include "plan.h"
+#include "plan/plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>

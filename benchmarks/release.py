@@ -21,6 +21,8 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from rvmon.core import amalgamate
+
 ROOT = Path(__file__).parents[1]
 DIST = ROOT / "dist"
 PYTHONS = ("3.11", "3.12", "3.13")
@@ -42,7 +44,6 @@ DOORS = {
 }
 """What has to import where only this extra is installed; the core alone has no name."""
 
-CORE = ROOT / "src" / "rvmon" / "core"
 TARGETS = ("x86_64-windows", "aarch64-macos", "aarch64-linux", "wasm32-wasi")
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror")
 REPEATS = 5
@@ -123,11 +124,12 @@ def _compiled_elsewhere(tools: Path) -> str:
     """A line about the core, but for what knows of Python, compiled for other systems."""
     python = tools / "bin" / "python"
     _run([python, "-m", "pip", "install", "-q", "ziglang>=0.13,<1"])
-    sources = [path for path in sorted(CORE.glob("*.c")) if path.name != "module.c"]
+    sources = [Path(amalgamate.FOLDER, name) for name in amalgamate.core_files()]
     for target in TARGETS:
         for source in sources:
             made = tools / f"{target}-{source.stem}.o"
-            line = [python, "-m", "ziglang", "cc", "-target", target, *FLAGS, "-c", source]
+            flags = [*FLAGS, "-I", amalgamate.FOLDER]
+            line = [python, "-m", "ziglang", "cc", "-target", target, *flags, "-c", source]
             _run([*line, "-o", made])
     return f"core: {len(sources)} files of C compile for {', '.join(TARGETS)}"
 

@@ -30,7 +30,7 @@ import numpy as np
 from benchmarks.peers.with_faults import resident_kib
 
 import rvmon
-import rvmon.core as native
+from rvmon.core import amalgamate
 from rvmon.errors import TraceError
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.trace.time import TIME_LIMIT
@@ -147,10 +147,9 @@ def program(folder: Path, names: Sequence[str]) -> Path:
     compiled = rvmon.loads(SPEC)._compiled
     planned = planned_core(compiled, names)
     (folder / "pattern.h").write_text("\n".join(_header(planned)))
-    core = Path(native.__file__).parent
-    sources = [path for path in core.glob("*.c") if path.name != "module.c"]
-    words = ["cc", "-std=gnu99", "-O2", "-ffp-contract=off", "-I", str(folder), "-I", str(core)]
-    words += [*map(str, sources), str(Path(__file__).with_suffix(".c"))]
+    sources = [f"{amalgamate.FOLDER}/{name}" for name in amalgamate.core_files()]
+    words = ["cc", "-std=gnu99", "-O2", "-ffp-contract=off", "-I", str(folder), "-I", amalgamate.FOLDER]
+    words += [*sources, str(Path(__file__).with_suffix(".c"))]
     subprocess.run([*words, "-lm", "-o", str(folder / "soak")], check=True)
     return folder / "soak"
 

@@ -7,7 +7,7 @@
  * and must not be green. With -DSNAPSHOTS the first byte names a plan, too, and the others are what
  * stands behind the head of a snapshot, which is put right: what is accepted judges some samples. */
 #include "core.h"
-#include "plan.h"
+#include "plan/plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>

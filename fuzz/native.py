@@ -30,6 +30,7 @@ from tests.tools.put_away import HEAD, Twins, actions_of
 from tests.tools.timed_plans import search_plans
 from tests.tools.watched import is_small, truths_plan
 
+from rvmon.core import amalgamate
 from rvmon.core.plan import pack
 from rvmon.coverage.bins import Bins
 from rvmon.errors import RvmonError
@@ -41,9 +42,9 @@ from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 HARNESS = Path(__file__).with_name("harness.c")
+CORE = Path(amalgamate.FOLDER)
 ZONES_HARNESS = HARNESS.with_name("zones.c")
-CORE = HARNESS.parents[1] / "src" / "rvmon" / "core"
-ZONES = CORE.with_name("timed") / "native"
+ZONES = HARNESS.parents[1] / "src" / "rvmon" / "timed" / "native"
 COMPILER = "afl-clang-fast"
 FLAGS = (
     *("-std=c99", "-g", "-O1", "-fno-omit-frame-pointer", "-ffp-contract=off"),
@@ -129,14 +130,16 @@ def compiled(folder: Path, target: str, *, compiler: str = COMPILER) -> Path:
     Raises:
         CalledProcessError: the compiler failed.
     """
-    program, home = folder / target, ZONES if target == "models" else CORE
-    sources = [path for path in home.glob("*.c") if path.name not in ("memory.c", "module.c")]
+    program, home = folder / target, CORE
     if target == "models":
+        home = ZONES
+        sources = [path for path in home.glob("*.c") if path.name != "module.c"]
         sources.append(ZONES_HARNESS)
     else:
         memory = folder / "memory.c"
         memory.write_text(guarded_memory(), encoding="utf-8")
-        sources += [HARNESS, memory]
+        names = [name for name in amalgamate.core_files() if name != "memory.c"]
+        sources = [*(CORE / name for name in names), HARNESS, memory]
     flags = [*FLAGS, f"-I{home}", *TARGETS[target]]
     words = [compiler, *flags, *map(str, sources), "-lm", "-o", str(program)]
     subprocess.run(words, check=True, capture_output=True)

@@ -72,7 +72,7 @@ def test_machines_say_the_same(other: str, cases: Path, tmp_path: Path) -> None:
 def test_mutants_are_seen(cases: Path, tmp_path: Path) -> None:
     """Most small changes of the core are told from it by some dozens of cases."""
     trial = Trial(tmp_path, cases.read_bytes())
-    path = CORE / "graph.c"
+    path = CORE / "formulas" / "graph.c"
     drawn = draw(c_mutants(path), Namespace(seed=1, count=4))
     assert sum(trial.outcome(mutant) == "killed" for mutant in drawn) >= 3
 

@@ -1,5 +1,5 @@
 /* The memory of a monitor, each block by itself: what guarded.py puts in the place of memory.c. */
-#include "calls.h"
+#include "basics.h"
 
 #include <stdio.h>
 #include <stdlib.h>

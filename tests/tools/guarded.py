@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-_CORE = Path(__file__).parents[2] / "src" / "rvmon" / "core"
+_CORE = Path(__file__).parents[2] / "src" / "rvmon" / "core" / "native"
 _GROWN = "void *widened("
 
 

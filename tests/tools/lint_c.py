@@ -2,7 +2,7 @@
 
     python -m tests.tools.lint_c [WARNING …]
 
-`module.c` is compiled twice: with Python's headers, and with the declarations of its own.
+What binds to Python is compiled twice: with Python's headers, and with the declarations of its own.
 A compiler that is missing is named and passed over, in CI (`$CI`) it is an error.
 """
 
@@ -18,7 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2] / "src" / "rvmon"
-FOLDERS = PACKAGE / "core", PACKAGE / "timed" / "native", PACKAGE / "readers" / "native"
+FOLDERS = PACKAGE / "core" / "native", PACKAGE / "timed" / "native", PACKAGE / "readers" / "native"
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # some warnings come with optimising alone
 TRIAL = "#include <stdint.h>\n#include <stdlib.h>\nint main(void) { return 0; }\n"
 COMPILERS = {"gcc": "gcc", "clang": "clang", "gcc -m32 -msse2 -mfpmath=sse": "gcc-multilib"}
@@ -34,17 +34,19 @@ def main(warnings: list[str]) -> int:
             missing.append(f"C is not checked with `{command}`: no such compiler ({package})")
             continue
         start = [*command.split(), *FLAGS, *warnings, "-c"]
-        for source in sorted(path for folder in FOLDERS for path in folder.glob("*.c")):
-            lines += [[*start, str(source), *way] for way in _ways(source.name, command)]
+        for folder in FOLDERS:
+            for source in sorted(folder.rglob("*.c")):
+                ways = _ways(source, command)
+                lines += [[*start, f"-I{folder}", str(source), *way] for way in ways]
     with ThreadPoolExecutor(os.cpu_count() or 1) as threads:
         failures = [text for text in threads.map(_complaint, lines) if text]
     print(*missing, *failures, sep="\n", end="\n" if missing or failures else "")
     return int(bool(failures or (missing and os.environ.get("CI"))))
 
 
-def _ways(source: str, command: str) -> list[list[str]]:
+def _ways(source: Path, command: str) -> list[list[str]]:
     """The options by which a source is compiled, one list for each time."""
-    if source != "module.c":
+    if "PyObject" not in source.read_text(encoding="utf-8"):
         return [[]]
     include = sysconfig.get_path("include")
     own = ["-DRVMON_OWN_PYTHON_H"]

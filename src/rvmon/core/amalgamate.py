@@ -8,11 +8,11 @@ from __future__ import annotations
 import os
 import re
 
-FOLDER = os.path.dirname(os.path.abspath(__file__))
+FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "native")
 HEADER = "core.h"
 """What an embedding program includes; the other headers are the core's own."""
-BINDING = "module.c"
-"""The one source that needs Python."""
+BINDING = "python"
+"""The folder of the sources that need Python."""
 
 _INCLUDE = re.compile(r'^#include (?:"(?P<own>[^"]+)"|<(?P<system>[^>]+)>).*\n', re.MULTILINE)
 _PROTOTYPE = re.compile(
@@ -25,6 +25,18 @@ def core_header(folder: str = FOLDER) -> str:
     return _text(folder, HEADER)
 
 
+def core_files(folder: str = FOLDER) -> list[str]:
+    """The sources of the core but the binding to Python, as paths below their folder, sorted."""
+    places = ["", *(name for name in os.listdir(folder) if "." not in name and name != BINDING)]
+    names = [
+        f"{place}/{name}" if place else name
+        for place in places
+        for name in os.listdir(os.path.join(folder, place))
+        if name.endswith(".c")
+    ]
+    return sorted(names)
+
+
 def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> str:
     """All sources of the core but the binding to Python, one behind the other.
 
@@ -35,7 +47,7 @@ def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> st
         folder: where the sources stand.
         lines: whether a compiler's messages shall name the files that the lines come from.
     """
-    names = sorted(name for name in os.listdir(folder) if name.endswith(".c") and name != BINDING)
+    names = core_files(folder)
     done = {HEADER}
     system: dict[str, None] = {}
     body = "".join(_body(folder, name, done, system, lines) for name in names)

@@ -1,4 +1,4 @@
-"""From the plan of requirements to the bytes that the core judges by; see plan.md."""
+"""From the plan of requirements to the bytes that the core judges by; see native/plan/plan.md."""
 
 from __future__ import annotations
 

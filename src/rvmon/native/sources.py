@@ -9,7 +9,7 @@ import os
 import zlib
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-FOLDER = os.path.join(_PACKAGE, "core")
+FOLDER = os.path.join(_PACKAGE, "core", "native")
 ZONES_FOLDER = os.path.join(_PACKAGE, "timed", "native")
 CSV_FOLDER = os.path.join(_PACKAGE, "readers", "native")
 BLOCK = 1 << 17
@@ -17,15 +17,21 @@ BLOCK = 1 << 17
 
 
 def source_names(folder: str = FOLDER) -> list[str]:
-    """Names of all C files and headers in a folder, that of the core, sorted."""
-    return sorted(name for name in os.listdir(folder) if name.endswith((".c", ".h")))
+    """All C files and headers in a folder, that of the core, and in those within, sorted."""
+    found = []
+    for name in os.listdir(folder):
+        if name.endswith((".c", ".h")):
+            found.append(name)
+        elif "." not in name and name != "__pycache__":
+            found += [f"{name}/{inner}" for inner in source_names(f"{folder}/{name}")]
+    return sorted(found)
 
 
 def source_hash(folder: str = FOLDER) -> str:
     """Hash of the names and contents of the C sources; empty where there are none.
 
     A checksum against forgotten builds, not against forgery: it is computed at each import, in
-    0.2 ms for 270 kB in 28 files.
+    2 ms for 870 kB in 118 files.
     """
     names = source_names(folder)
     value = 0

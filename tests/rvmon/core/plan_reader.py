@@ -11,7 +11,7 @@ from typing import Any
 
 import rvmon.core
 
-HEADER = Path(rvmon.core.__file__).with_name("plan.h")
+HEADER = Path(rvmon.core.__file__).parent / "native" / "plan" / "plan.h"
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _STRUCT = re.compile(r"typedef struct \{(.*?)\} (\w+);", re.DOTALL)

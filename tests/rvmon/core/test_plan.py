@@ -26,7 +26,7 @@ from tests.rvmon.core.plan_reader import (
 
 import rvmon
 from rvmon.automaton.automaton import Automaton
-from rvmon.core import sections
+from rvmon.core import amalgamate, sections
 from rvmon.core.atoms import MOST_EVENTS, AtomOp
 from rvmon.core.forms import Operator
 from rvmon.core.measures import Measure
@@ -263,10 +263,10 @@ def test_records_have_the_layout_that_c_gives_them(tmp_path):
                 for own, _ in fields
             ]
     source = tmp_path / "sizes.c"
-    head = '#include <stdio.h>\n#include "plan.h"\nint main(void)\n{\n'
+    head = '#include <stdio.h>\n#include "plan/plan.h"\nint main(void)\n{\n'
     source.write_text("\n".join([head, *lines, "return 0;\n}\n"]), encoding="utf-8")
     program = tmp_path / "sizes"
-    command = ["gcc", *STRICT, f"-I{HEADER.parent}", str(source), "-o", str(program)]
+    command = ["gcc", *STRICT, f"-I{amalgamate.FOLDER}", str(source), "-o", str(program)]
     subprocess.run(command, check=True)  # noqa: S603
     printed = subprocess.run([program], check=True, capture_output=True, text=True)  # noqa: S603
     found = dict(line.split() for line in printed.stdout.splitlines())
@@ -308,7 +308,7 @@ def test_comparisons_of_too_many_events_are_refused():
 def check(tmp_path_factory):
     """The core's own check of bytes: the section that is wrong, or −1."""
     library = tmp_path_factory.mktemp("core") / "core.so"
-    sources = [str(one) for one in HEADER.parent.glob("*.c") if one.name != "module.c"]
+    sources = [f"{amalgamate.FOLDER}/{name}" for name in amalgamate.core_files()]
     flags = [
         "-O1",
         "-shared",
@@ -316,7 +316,7 @@ def check(tmp_path_factory):
         "-fsanitize=undefined",
         "-fsanitize-undefined-trap-on-error",
     ]
-    command = ["gcc", *STRICT, *flags, *sources, "-o", str(library), "-lm"]
+    command = ["gcc", *STRICT, *flags, f"-I{amalgamate.FOLDER}", *sources, "-o", str(library), "-lm"]
     subprocess.run(command, check=True)  # noqa: S603
     function = ctypes.CDLL(str(library)).rv_plan_check
     function.argtypes = [ctypes.c_void_p, ctypes.c_size_t]

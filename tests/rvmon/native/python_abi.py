@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-HEADER = Path(__file__).parents[3] / "src" / "rvmon" / "core" / "python_abi.h"
+HEADER = Path(__file__).parents[3] / "src" / "rvmon" / "core" / "native" / "python" / "python_abi.h"
 STRUCTURE = re.compile(r"^typedef struct( \w+)? \{\n(.*?)^\} (\w+);", re.DOTALL | re.MULTILINE)
 FIELD = re.compile(r"^ .*?(\w+)(?:\)\(void\))?;$", re.MULTILINE)
 CONSTANTS = re.compile(r"^/\* Constants: .*?^#endif", re.DOTALL | re.MULTILINE)

@@ -33,11 +33,12 @@ def hook():
 @pytest.fixture
 def copied(hook, monkeypatch, tmp_path):
     """A folder that the hook builds from, with the binding alone: it links, and is quick."""
-    folder = tmp_path / "core"
-    folder.mkdir()
-    for source in Path(rvmon.native.sources.FOLDER).iterdir():
-        if source.suffix == ".h" or source.name in {"amalgamate.py", "module.c"}:
-            shutil.copy(source, folder)
+    folder = tmp_path / "native"
+    whole = Path(rvmon.native.sources.FOLDER)
+    for source in (*whole.rglob("*.h"), *whole.glob("python/*.c")):
+        target = folder / source.relative_to(whole)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, target)
     monkeypatch.setattr(hook, "CORE", folder)
     return folder
 
@@ -182,7 +183,7 @@ def test_changed_source_is_built_anew(copied, hook, tmp_path):
     """A build from other sources carries another hash."""
     before = rvmon.native.sources.source_hash(str(copied))
     assert before.encode() in hook.build(tmp_path).read_bytes()
-    with (copied / "module.c").open("ab") as file:
+    with (copied / "python" / "module.c").open("ab") as file:
         file.write(b"/* more */\n")
     after = rvmon.native.sources.source_hash(str(copied))
     built = hook.build(tmp_path).read_bytes()

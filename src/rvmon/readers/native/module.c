@@ -1,7 +1,7 @@
 /* rvmon.native._csv for CPython: one function, which keeps nothing. */
 #include "csv.h"
 
-#include "../../core/python_abi.h"
+#include "../../core/native/python/python_abi.h"
 
 #ifndef RVMON_SOURCE_HASH
 #define RVMON_SOURCE_HASH "" /* compiled by hand */

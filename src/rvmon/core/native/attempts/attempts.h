@@ -1,0 +1,82 @@
+/* Attempts: begun, taken through positions and time by automata, decided. */
+#ifndef RVMON_ATTEMPTS_H
+#define RVMON_ATTEMPTS_H
+
+#include "basics.h"
+
+/* ---- automata.c: one attempt through positions and time */
+typedef struct {
+    int32_t location;
+    int64_t *clocks;
+    rv_hit *moves;             /* where it is counted where it goes; NULL: it is not */
+} token;
+
+int32_t class_of_letter(const run *r, int32_t index, bool better);
+bool step_token(const machine *a, token *k, int64_t t, int32_t letter);
+bool rests(const machine *a, const token *k, int64_t t, int32_t letter, int64_t *due);
+int64_t next_cut(const machine *a, const token *k, int64_t t, const int64_t *before);
+int64_t settle_token(const machine *a, token *k, int64_t t, int64_t until);
+int64_t run_token(const machine *a, token *k, int32_t letter, int64_t first, int64_t last,
+                  bool *slides);
+bool holds_at_end(const machine *a, int32_t location, const int64_t *clocks, int64_t end,
+                  int64_t reached);
+
+/* ---- attempts.c */
+bool is_true(const run *r, int32_t node);
+bool is_current(const run *r, int32_t index, int32_t at);
+bool grow_pool(home *h, int64_t wanted);
+int32_t place_taken(run *r);
+void give_back(home *h, int32_t at);
+void number_attempt(run *r, int32_t index, int32_t at, int64_t t);
+bool is_sure(const run *r, int32_t index);
+bool runs_on(const run *r, int32_t index);
+void leave_episode(run *r, int32_t index);
+void look_at(run *r, int32_t index, int64_t t);
+void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t,
+              int64_t note);
+void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
+void leave(run *r, int32_t index, int32_t before, int32_t at);
+bool is_undecidable(const attempt *x);
+void lay_down(run *r, int32_t index, int32_t at);
+void lay_aside(run *r, int32_t index, int32_t before, int32_t at);
+int32_t next_open(const run *r, int32_t index, int32_t at);
+uint32_t told_number(const run *r, int32_t at);
+void settle_attempt(run *r, int32_t index, int32_t at, int64_t end, int64_t reached);
+
+/* ---- starts.c: attempts as they begin */
+bool starts(run *r, int32_t index, uint8_t truth);
+bool watches(const run *r, int32_t index);
+void begin_here(run *r, int32_t index, int64_t t, int64_t triggered);
+void begin(run *r, int32_t index, int64_t t, int64_t triggered);
+void enter(run *r, int32_t index, int32_t at, int64_t t);
+
+/* ---- drive.c: attempts of a judge through time */
+void set_rule_due(run *r, int32_t index, int64_t due);
+void set_restless(run *r, int32_t index);
+void pass_to(run *r, int32_t index, int64_t t);
+void pass_ticks(run *r, int32_t index, int64_t t);
+void visit_judge(run *r, int32_t index, int64_t t);
+void reach_judge(run *r, int32_t index, int64_t t);
+bool drive_from(run *r, int32_t index, int32_t at, int64_t t);
+
+/* ---- queue.c: attempts of which age alone decides */
+bool make_queue(run *r, int32_t index);
+void clear_queue(judge *j);
+bool queue_is_empty(const judge *j);
+bool is_queued(const run *r, int32_t index);
+void queue_visit(run *r, int32_t index, int64_t t);
+void queue_pass(run *r, int32_t index, int64_t t);
+void queue_reach(run *r, int32_t index, int64_t t);
+bool queue_begin(run *r, int32_t index, int64_t t);
+void loosen_queue(run *r, int32_t index);
+void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
+const queued *queue_item(const judge *j, int32_t i);
+const attempt *queued_attempt(const run *r, int32_t index, int32_t i);
+
+/* Whether a judge has attempts that a position may concern. */
+static inline bool has_attempts(const judge *j)
+{
+    return (j->first >= 0) || ((j->queue != NULL) && (j->queue->count > 0));
+}
+
+#endif

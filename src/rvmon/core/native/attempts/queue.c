@@ -1,0 +1,224 @@
+/* Attempts of which age alone decides: a queue in the order of their triggers, cut into segments of one
+ * location. A letter moves a segment at once; where a region of ages ends, the place is found by
+ * halving. So a position costs as much as there are segments, however many attempts are open.
+ *
+ * Who made the plan has proved (JUDGE_IN_RUNS) that there is one clock at most, which starts at the
+ * trigger, and that older attempts are never led behind younger ones. As soon as something unknown
+ * matters, attempts are driven one by one.
+ *
+ * Source: AUTOMATA 3. */
+#include "attempts/attempts.h"
+#include "attempts/queue.h"
+#include "notes/notes.h"
+#include "results/results.h"
+
+#include <string.h>
+
+bool is_queued(const run *r, int32_t index)
+{
+    return r->judges[index].queue != NULL;
+}
+
+bool queue_is_empty(const judge *j)
+{
+    return (j->queue == NULL) || (j->queue->count == 0);
+}
+
+/* The queue of a judge, if it may have one; false if memory is short. */
+bool make_queue(run *r, int32_t index)
+{
+    const judge_plan *plan_of_judge = &r->part->judges[index];
+    const int32_t flags = plan_of_judge->flags & (JUDGE_IN_RUNS | JUDGE_EPISODIC);
+    judge *j = &r->judges[index];
+    if ((flags != JUDGE_IN_RUNS) || (plan_of_judge->automaton < 0)
+        || (r->part->machines[index].clocks > 1) || (GAP(r) > 1)
+        || (r->part->plan->captured > 0) || (j->queue != NULL)) {
+        return true;
+    }
+    j->queue = arena_take(&r->home->monitor->memory, sizeof *j->queue);
+    return j->queue != NULL;
+}
+
+void clear_queue(judge *j)
+{
+    if (j->queue != NULL) {
+        j->queue->head = 0;
+        j->queue->count = 0;
+        j->queue->segment_count = 0;
+    }
+}
+
+/* One that is queued, as an attempt by itself; until the next one is asked for. */
+static const attempt *attempt_of_queued(const run *r, const queued *one, int32_t location)
+{
+    attempt *x = r->home->lone;
+    x->triggered = one->triggered;
+    x->due = -LIMIT;
+    x->number = one->number;
+    x->next = -1;
+    x->location = location;
+    x->sure = true;
+    x->doubted_at = RV_NO_TIME;
+    x->clocks[0] = one->triggered;
+    return x;
+}
+
+/* Tell of one that was decided, which stood in a location before. */
+void tell_of_decision(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t)
+{
+    const attempt *x = attempt_of_queued(g->r, one, location);
+    int64_t note = -1;
+    if (g->r->truth_log != NULL) {
+        hold_token(g->r->home->monitor, g->a, location, x->clocks);
+        note = note_decision(g->r, g->index, x, t);
+    }
+    report(g->r, g->index, x, x->number, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t, note);
+}
+
+/* Make a queue larger; false if memory is short. */
+static bool widen_queue(rv_monitor *m, queue *q)
+{
+    const int32_t room = (q->room > 0) ? 2 * q->room : 8;
+    queued *made = (q->room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
+    int32_t i;
+    if (made == NULL) {
+        m->spoilt = true;
+        return false;
+    }
+    for (i = 0; i < q->count; i++) {
+        made[i] = *item(q, i);
+    }
+    arena_give(&m->memory, q->items, (size_t)q->room * sizeof *made);
+    q->items = made;
+    q->room = room;
+    q->head = 0;
+    return true;
+}
+
+/* One that is queued; with `append`, it is put behind those that there are. NULL: memory is short. */
+queued *next_queued(rv_monitor *m, queue *q, int32_t i, bool append)
+{
+    if (append) {
+        if ((q->count == q->room) && !widen_queue(m, q)) {
+            return NULL;
+        }
+        q->count++;
+    }
+    return item(q, i);
+}
+
+/* Put an attempt that begins at `t` behind the others, unless that decides it; false if memory is
+ * short. */
+bool queue_begin(run *r, int32_t index, int64_t t)
+{
+    const queueing g = queueing_of(r, index);
+    queue *q = g.q;
+    queued *made;
+    int64_t clock = 0;
+    int64_t due;
+    queued x;
+    token k;
+    k.location = g.a->initial;
+    k.clocks = &clock;
+    k.moves = moves_of(r, index);
+    count_begin(r, index, t);
+    (void)step_token(g.a, &k, t, g.j->letter);
+    x.triggered = t;
+    g.j->count++;
+    x.number = g.j->count;
+    x.spare = 0;
+    if (k.location <= PASSED) {
+        tell_of_decision(&g, &x, g.a->initial, k.location == PASSED, t);
+        return true;
+    }
+    made = next_queued(r->home->monitor, q, q->count, true);
+    if (made == NULL) {
+        return false;
+    }
+    *made = x;
+    if ((q->segment_count > 0) && (q->segments[q->segment_count - 1].location == k.location)) {
+        q->segments[q->segment_count - 1].count++;
+    } else if (q->segment_count < SEGMENTS_MOST) {
+        q->segments[q->segment_count].location = k.location;
+        q->segments[q->segment_count].count = 1;
+        q->segment_count++;
+    } else {
+        r->home->monitor->spoilt = true;
+        return false;
+    }
+    if (!rests(g.a, &k, t, g.j->letter, &due)) {
+        set_restless(r, index);
+        due = t + 1;
+    }
+    set_rule_due(r, index, least(r->rules.due[index], due));
+    return true;
+}
+
+/* Drive those that are queued one by one from now on: something unknown matters. */
+void loosen_queue(run *r, int32_t index)
+{
+    const queueing g = queueing_of(r, index);
+    int32_t from = 0;
+    int32_t k;
+    for (k = 0; k < g.q->segment_count; k++) {
+        const int32_t end = from + g.q->segments[k].count;
+        for (; from < end; from++) {
+            const queued *one = item(g.q, from);
+            const int32_t at = place_taken(r);
+            attempt *x;
+            if (at < 0) {
+                break;
+            }
+            x = attempt_at(r->home, at);
+            (void)memcpy(x, attempt_of_queued(r, one, g.q->segments[k].location), r->home->stride);
+            if (g.j->last < 0) {
+                g.j->first = at;
+            } else {
+                attempt_at(r->home, g.j->last)->next = at;
+            }
+            g.j->last = at;
+        }
+    }
+    g.j->sorted = false;
+    clear_queue(g.j);
+}
+
+/* Settle those that are queued when time has come to the end. */
+void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
+{
+    const judge_plan *own = &r->part->judges[index];
+    const queueing g = queueing_of(r, index);
+    int32_t from = 0;
+    int32_t k;
+    for (k = 0; k < g.q->segment_count; k++) {
+        const int32_t behind = from + g.q->segments[k].count;
+        for (; from < behind; from++) {
+            const queued *one = item(g.q, from);
+            const attempt *x = attempt_of_queued(r, one, g.q->segments[k].location);
+            const int64_t now = stamp_of_end(end, reached);
+            const int32_t outcome =
+                own->outcomes[holds_at_end(g.a, x->location, x->clocks, end, reached) ? 1 : 0];
+            report(r, index, x, x->number, (uint8_t)(outcome & 3), (uint8_t)(outcome >> 2), end,
+                   (r->truth_log == NULL) ? -1 : note_open(r, index, x, now, false, end));
+        }
+    }
+}
+
+/* The trigger and number of one that is queued, the oldest first. */
+const queued *queue_item(const judge *j, int32_t i)
+{
+    return item(j->queue, i);
+}
+
+/* The same as an attempt by itself. */
+const attempt *queued_attempt(const run *r, int32_t index, int32_t i)
+{
+    const queue *q = r->judges[index].queue;
+    int32_t k = 0;
+    int32_t end = q->segments[0].count;
+    while (i >= end) {
+        k++;
+        end += q->segments[k].count;
+    }
+    return attempt_of_queued(r, item(q, i), q->segments[k].location);
+}

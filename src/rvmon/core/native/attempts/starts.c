@@ -1,0 +1,154 @@
+/* Attempts as they begin: where a trigger starts one, and how its judge takes it in. */
+#include "attempts/attempts.h"
+#include "margins/margins.h"
+#include "notes/notes.h"
+#include "runs/runs.h"
+#include "windows/windows.h"
+
+#include <string.h>
+
+/* Whether a judge has to see positions though no attempt is open. */
+bool watches(const run *r, int32_t index)
+{
+    const judge_plan *judged = &r->part->judges[index];
+    if ((judged->automaton >= 0) || (judged->form < 0) || (r->part->forms[judged->form].looks_back == 0)) {
+        return false;
+    }
+    return (r->part->plan->captured == 0) || (((r->judging >> index) & 1) != 0);
+}
+
+/* Whether the truth of its trigger starts an attempt of a judge. */
+bool starts(run *r, int32_t index, uint8_t truth)
+{
+    const judge_plan *judged = &r->part->judges[index];
+    const bool pulse = (judged->flags & JUDGE_PULSE) != 0;
+    judge *j = &r->judges[index];
+    bool start = (truth == IS_TRUE) && (pulse || (j->before == IS_FALSE));
+    if ((r->part->plan->captured > 0) && !starts_here(r, index) && !j->running) {
+        return false; /* its attempt has begun, and is over */
+    }
+    j->before = truth;
+    if ((judged->flags & JUDGE_EPISODIC) != 0) {
+        start = !j->running
+                && (((judged->flags & JUDGE_HIDDEN) != 0) ? (truth == IS_UNKNOWN)
+                                                        : (truth != IS_FALSE));
+        j->running = start || (j->running && (truth != IS_FALSE));
+    } else if (pulse && (truth == IS_TRUE)) {
+        /* It starts another one at the next position, if it is still true there. */
+        r->repeating[r->repeating_count] = index;
+        r->repeating_count++;
+    } else {
+        /* It waits for the next edge. */
+    }
+    return start;
+}
+
+/* Judge an attempt at the position at `t`, at which it begins; false if that decides it. */
+static bool remains(run *r, int32_t index, int32_t at, int64_t t)
+{
+    if (is_chained(r, index)) {
+        return chain_enter(r, index, at, t);
+    }
+    if (is_networked(r, index)) {
+        return network_enter(r, index, at, t);
+    }
+    return drive_from(r, index, at, t);
+}
+
+/* Start an attempt that is judged in this run. */
+void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
+{
+    const judge_plan *judged = &r->part->judges[index];
+    judge *j = &r->judges[index];
+    const bool judged_here = (r->at.presence == ARE_THERE) && !j->blind;
+    attempt *x;
+    int32_t at;
+    if (judged_here && (!has_attempts(j) || (j->position < t))) {
+        visit_judge(r, index, t);
+    }
+    if (r->truth_log != NULL) {
+        note_trigger(r, index, triggered);
+    }
+    if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
+        margins_begin(r, index, t, measured_attempt(r, triggered, j->count + 1U));
+        (void)queue_begin(r, index, t);
+        return;
+    }
+    at = place_taken(r);
+    if (at < 0) {
+        leave_episode(r, index); /* or it would be tried again at each position */
+        return;
+    }
+    x = attempt_at(r->home, at);
+    (void)memset(x, 0, r->home->stride);
+    x->triggered = triggered;
+    x->next = -1;
+    x->location = WAITING;
+    x->doubted_at = RV_NO_TIME;
+    if (judged->automaton >= 0) {
+        x->location = r->part->machines[index].initial;
+    }
+    x->sure = is_sure(r, index);
+    x->trigger_unknown = !x->sure;
+    if (r->part->plan->captured > 0) {
+        (void)memset(&r->home->turns[at], 0, sizeof *r->home->turns);
+        r->home->turns[at].judge = r;
+        x->cannot_pass = r->cut < NEVER;
+        j->running = (judged->flags & JUDGE_EPISODIC) != 0;
+    }
+    x->record = measured_attempt(r, triggered, 0);
+    number_attempt(r, index, at, triggered);
+    if (r->truth_log != NULL) {
+        note_begin(r, index, x, t);
+    }
+    margins_begin(r, index, t, x->record);
+    if (runs_on(r, index)) {
+        leave_episode(r, index);
+        j->current = at;
+    }
+    if (!judged_here) {
+        x->cannot_pass = true; /* what it owes here will not be known */
+        x->parted = true;
+        x->location = FAILED;
+        x->better = PASSED;
+        lay_down(r, index, at);
+    } else {
+        enter(r, index, at, t);
+    }
+}
+
+/* Judge an attempt that is in no list from the position at `t` on. */
+void enter(run *r, int32_t index, int32_t at, int64_t t)
+{
+    judge *j = &r->judges[index];
+    attempt *x = attempt_at(r->home, at);
+    const bool stays = remains(r, index, at, t);
+    if (stays && is_undecidable(x)) {
+        lay_down(r, index, at);
+    } else if (stays) {
+        set_rule_due(r, index, least(r->rules.due[index], x->due));
+        if (j->last < 0) {
+            j->first = at;
+            j->sorted = true;
+        } else {
+            attempt *last = attempt_at(r->home, j->last);
+            last->next = at;
+            j->sorted = j->sorted && (last->due <= x->due);
+        }
+        j->last = at;
+    } else if (r->part->plan->captured == 0) {
+        give_back(r->home, at);
+    } else {
+        /* It is told of at the end of the call. */
+    }
+}
+
+/* Start an attempt at the position at `t`. */
+void begin(run *r, int32_t index, int64_t t, int64_t triggered)
+{
+    if ((r->part->plan->captures.count > 0) && starts_here(r, index)) {
+        begin_captured(r, index, t, triggered);
+    } else {
+        begin_here(r, index, t, triggered);
+    }
+}

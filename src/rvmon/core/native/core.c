@@ -1,0 +1,420 @@
+/* What an embedding program calls: see core.h. */
+#include "input/input.h"
+#include "notes/notes.h"
+#include "results/results.h"
+#include "runs/runs.h"
+
+#include <string.h>
+
+/* Tables of a part that are worked out once: which node a timer belongs to, and which signal. */
+static bool prepare_part(rv_monitor *m, part *p)
+{
+    int32_t i;
+    p->timed = arena_take(&m->memory, (size_t)(p->plan->timers + 1) * sizeof *p->timed);
+    p->perishable = arena_take(&m->memory, (size_t)(p->plan->perishable + 1) * sizeof *p->perishable);
+    p->machines = arena_take(&m->memory, (size_t)p->plan->judges.count * sizeof *p->machines);
+    p->networked = arena_take(&m->memory, (size_t)p->plan->judges.count * sizeof *p->networked);
+    if ((p->networked == NULL) || (p->timed == NULL) || (p->perishable == NULL) || (p->machines == NULL)) {
+        return false;
+    }
+    for (i = 0; i < p->plan->nodes.count; i++) {
+        if (p->nodes[i].timer >= 0) {
+            p->timed[p->nodes[i].timer] = i;
+        }
+    }
+    for (i = 0; i < p->plan->signals.count; i++) {
+        if (p->signals[i].perishable >= 0) {
+            p->perishable[p->signals[i].perishable] = i;
+        }
+    }
+    if (!find_quick(&m->memory, &m->plan, p)) {
+        return false;
+    }
+    p->is_watched = (p->plan->truths >= 0) || (p->plan->watches.count > 0);
+    for (i = 0; i < p->plan->judges.count; i++) {
+        p->has_episodes = p->has_episodes || ((p->judges[i].flags & JUDGE_EPISODIC) != 0);
+        p->is_traced = p->is_traced || ((p->judges[i].flags & JUDGE_TRACED) != 0);
+        p->restarts = p->restarts || (p->judges[i].again >= 0);
+        if ((p->judges[i].automaton < 0) && (p->forms[p->judges[i].form].windows.count == 0)) {
+            p->networked[p->networked_count] = i;
+            p->networked_count++;
+        }
+        if (p->judges[i].automaton >= 0) {
+            p->machines[i] = machine_view(&m->plan, &m->plan.automata[p->judges[i].automaton]);
+        }
+    }
+    return true;
+}
+
+static bool prepare(rv_monitor *m)
+{
+    const plan *p = &m->plan;
+    const int32_t names = p->header->signals + p->header->events;
+    int32_t i;
+    m->parts = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->parts);
+    m->homes = arena_take(&m->memory, (size_t)(p->part_count + 1) * sizeof *m->homes);
+    m->absent = arena_take(&m->memory, (size_t)names + 1);
+    m->losing = arena_take(&m->memory, (size_t)names + 1);
+    m->late = arena_take(&m->memory, (size_t)p->header->requirements + 1);
+    m->stale = arena_take(&m->memory, (size_t)(p->header->signals + 1) * sizeof *m->stale);
+    if ((m->parts == NULL) || (m->homes == NULL) || (m->absent == NULL) || (m->losing == NULL)
+        || (m->late == NULL) || (m->stale == NULL)) {
+        return false;
+    }
+    for (i = 0; i < p->part_count; i++) {
+        part *one = &m->parts[i];
+        one->plan = &p->parts[i];
+        one->signals = &p->signals[one->plan->signals.first];
+        one->events = &p->events[one->plan->events.first];
+        one->atoms = &p->atoms[one->plan->atoms.first];
+        one->nodes = &p->nodes[one->plan->nodes.first];
+        one->judges = &p->judges[one->plan->judges.first];
+        one->forms = &p->forms[one->plan->forms.first];
+        one->watches = &p->watches[one->plan->watches.first];
+        one->groups = &p->groups[one->plan->groups.first];
+        m->homes[i].monitor = m;
+        m->homes[i].part = one;
+        m->homes[i].alarms.next = NEVER;
+        if (!prepare_part(m, one)) {
+            return false;
+        }
+    }
+    m->is_alone = (p->part_count == 1) && (p->parts[0].captured == 0);
+    return margins_prepare(m);
+}
+
+/* Begin a run: nothing has come, nothing was recorded. */
+static bool begin_run(rv_monitor *m)
+{
+    const plan *p = &m->plan;
+    const int32_t names = p->header->signals + p->header->events;
+    int32_t i;
+    m->record_count = 0;
+    m->captured_count = 0;
+    m->laid_count = 0;
+    forget_notes(m, 0, 0);
+    m->sorted = 0;
+    m->began = RV_NO_TIME;
+    m->last = RV_NO_TIME;
+    m->after = -LIMIT;
+    m->reached = RV_NO_TIME;
+    m->heard = RV_NO_TIME;
+    m->losing_count = 0;
+    m->dense_until = RV_NO_TIME;
+    m->dense_end = RV_NO_TIME;
+    (void)memset(m->losing, 0, (size_t)names + 1);
+    (void)memset(m->late, 0, (size_t)p->header->requirements + 1);
+    (void)memset(m->stale, 0, (size_t)(p->header->signals + 1) * sizeof *m->stale);
+    m->finished = false;
+    m->spoilt = false;
+    margins_reset(m);
+    for (i = 0; i < p->part_count; i++) {
+        if (!home_begin(&m->homes[i])) {
+            m->spoilt = true;
+            return false;
+        }
+    }
+    for (i = 0; i < names; i++) {
+        if (m->absent[i] != 0U) {
+            m->absent[i] = 0;
+            rv_set_absent(m, i);
+        }
+    }
+    return true;
+}
+
+rv_monitor *rv_new(const void *bytes, size_t size, rv_memory memory)
+{
+    arena a;
+    rv_monitor *m;
+    if (rv_plan_check(bytes, size) >= 0) {
+        return NULL;
+    }
+    (void)memset(&a, 0, sizeof a);
+    a.from = memory;
+    if (memory.block != NULL) {
+        const size_t off = (size_t)(16U - (uintptr_t)memory.block % 16U) % 16U;
+        a.free = (char *)memory.block + off;
+        a.left = (memory.size > off) ? memory.size - off : 0;
+        a.from.allocate = NULL;
+    }
+    m = arena_take(&a, sizeof *m);
+    if (m == NULL) {
+        arena_release(&a);
+        return NULL;
+    }
+    arena_move(&m->memory, &a);
+    (void)plan_view(&m->plan, bytes, size);
+    if (!prepare(m) || !begin_run(m)) {
+        rv_free(m);
+        return NULL;
+    }
+    return m;
+}
+
+void rv_free(rv_monitor *m)
+{
+    if (m != NULL) {
+        arena a = m->memory; /* the monitor itself is in it */
+        arena_release(&a);
+    }
+}
+
+int rv_reserve(rv_monitor *m, int32_t attempts)
+{
+    bool done = (attempts <= 0) || grow_records(m, attempts);
+    int32_t i;
+    for (i = 0; (attempts > 0) && done && (i < m->plan.part_count); i++) {
+        done = (m->homes[i].part->plan->judges.count == 0) || home_reserve(&m->homes[i], attempts);
+    }
+    return done ? RV_OK : RV_NO_MEMORY;
+}
+
+size_t rv_memory_used(const rv_monitor *m)
+{
+    return m->memory.used;
+}
+
+int rv_reset(rv_monitor *m)
+{
+    return begin_run(m) ? RV_OK : RV_NO_MEMORY;
+}
+
+/* The homes that read a name, one after the other. */
+const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count)
+{
+    const int32_t first = m->plan.subscription_first[name];
+    *count = m->plan.subscription_first[name + 1] - first;
+    return &m->plan.subscriptions[first];
+}
+
+void rv_set_absent(rv_monitor *m, int32_t name)
+{
+    const bool event = name >= m->plan.header->signals;
+    int32_t count;
+    const subscription *s = subscriptions_of(m, name, &count);
+    int32_t i;
+    if (m->absent[name] == 0U) {
+        m->absent[name] = 1;
+        for (i = 0; i < count; i++) {
+            home_mark_absent(&m->homes[s[i].part], event, s[i].local);
+        }
+    }
+}
+
+static bool is_in_range(int64_t t)
+{
+    return (t > -LIMIT) && (t < LIMIT);
+}
+
+/* Put the updates of a sample into the inboxes of those that read them. */
+bool distribute(rv_monitor *m, const rv_update *updates, int32_t count)
+{
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < count; i++) {
+        const bool event = updates[i].name >= m->plan.header->signals;
+        int32_t readers;
+        const subscription *s = subscriptions_of(m, updates[i].name, &readers);
+        for (k = 0; k < readers; k++) {
+            home *h = &m->homes[s[k].part];
+            if (h->inbox_count == h->inbox_room) {
+                incoming *made = enlarged(m, h->inbox, &h->inbox_room, (int64_t)h->inbox_count + 1,
+                                       sizeof *made);
+                if (made == NULL) {
+                    return false;
+                }
+                h->inbox = made;
+            }
+            h->inbox[h->inbox_count].local = s[k].local;
+            h->inbox[h->inbox_count].event = event;
+            h->inbox[h->inbox_count].update = &updates[i];
+            h->inbox_count++;
+        }
+    }
+    return true;
+}
+
+/* Judge a sample where all requirements stand in one run. */
+static void step_alone(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+{
+    run *r = m->homes[0].root;
+    const quick_signal *quick;
+    int32_t i;
+    if ((m->plan.header->gap == 0) && r->at.started) {
+        r->at.position = last_position(m);
+    }
+    approach(r, t);
+    quick = quick_now(r);
+    for (i = 0; i < count; i++) {
+        const int32_t name = updates[i].name;
+        const int32_t first = m->plan.subscription_first[name];
+        if (first < m->plan.subscription_first[name + 1]) {
+            incoming in;
+            in.local = m->plan.subscriptions[first].local;
+            in.event = name >= m->plan.header->signals;
+            in.update = &updates[i];
+            if (in.event || (quick == NULL) || !take_quickly(r, quick, in.local, in.update)) {
+                take_update(r, t, &in);
+            }
+        }
+    }
+    arrive(r, t);
+}
+
+/* Judge a sample, each part by itself; one that does not read it, and has nothing due, sleeps on. */
+static bool step_parts(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+{
+    int32_t i;
+    if (!distribute(m, updates, count)) {
+        return false;
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        home *h = &m->homes[i];
+        if ((h->inbox_count > 0) || (h->alarm <= t) || !h->root->at.started || (m->shapes != NULL)
+            || (h->root->at.presence != ARE_THERE)
+            || ((h->part->plan->flags & PART_KEEPS_PAST) != 0)) {
+            h->previous = last_position(m);
+            home_sample(h, t);
+        }
+    }
+    return true;
+}
+
+/* Tell by how much what is owed holds, as far as that is settled now that time has come to `t`. */
+void settle_margins(rv_monitor *m, int64_t t)
+{
+    int32_t i;
+    for (i = 0; (m->shapes != NULL) && !m->hurries && (i < m->plan.part_count); i++) {
+        margins_settle(&m->homes[i], t);
+    }
+}
+
+int rv_step(rv_monitor *m, int64_t t, const rv_update *updates, int32_t count)
+{
+    int32_t i;
+    if (m->finished) {
+        return RV_FINISHED;
+    }
+    if (m->spoilt) {
+        return RV_NO_MEMORY;
+    }
+    if (!is_in_range(t)) {
+        return RV_OUT_OF_RANGE;
+    }
+    if (t <= m->after) {
+        return RV_TOO_EARLY;
+    }
+    if ((m->dense_until != RV_NO_TIME) && is_amid_dense(m, t)) {
+        if (!distribute(m, updates, count)) {
+            return RV_NO_MEMORY;
+        }
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_take_amid(&m->homes[i], t);
+        }
+    } else if (m->is_alone) {
+        step_alone(m, t, updates, count);
+    } else if (!step_parts(m, t, updates, count)) {
+        return RV_NO_MEMORY;
+    } else {
+        /* All parts have taken it. */
+    }
+    if (m->last == RV_NO_TIME) {
+        m->began = t;
+    }
+    m->last = t;
+    m->after = t;
+    m->reached = t;
+    if (m->shapes != NULL) {
+        settle_margins(m, t);
+    }
+    if (m->record_count > m->sorted) {
+        sort_records(m);
+    }
+    return m->spoilt ? RV_NO_MEMORY : RV_OK;
+}
+
+int rv_advance(rv_monitor *m, int64_t t)
+{
+    int32_t i;
+    if (m->finished) {
+        return RV_FINISHED;
+    }
+    if (m->spoilt) {
+        return RV_NO_MEMORY;
+    }
+    if (!is_in_range(t)) {
+        return RV_OUT_OF_RANGE;
+    }
+    if (t > m->reached) {
+        if (m->dense_until != RV_NO_TIME) {
+            pass_dense(m, t - 1);
+        }
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_wait(&m->homes[i], t);
+        }
+        m->reached = t;
+        if (t - 1 > m->after) {
+            m->after = t - 1;
+        }
+        settle_margins(m, t);
+        sort_records(m);
+    }
+    return m->spoilt ? RV_NO_MEMORY : RV_OK;
+}
+
+int64_t rv_end(const rv_monitor *m, int64_t t)
+{
+    int64_t end = (m->heard > m->last) ? m->heard : m->last;
+    if (end != RV_NO_TIME) {
+        end = (t > end) ? t : end;
+        if ((m->plan.header->gap > 0) && (m->reached - 1 > end)) {
+            end = m->reached - 1;
+        }
+    }
+    return end;
+}
+
+int rv_finish(rv_monitor *m, int64_t t)
+{
+    const int64_t end = rv_end(m, t);
+    int32_t i;
+    if (m->finished) {
+        return RV_FINISHED;
+    }
+    if ((t != RV_NO_TIME) && !is_in_range(t)) {
+        return RV_OUT_OF_RANGE;
+    }
+    if ((m->dense_until != RV_NO_TIME) && !m->finished && !m->spoilt) {
+        m->dense_until = least(m->dense_until, end);
+        end_dense(m);
+    }
+    m->finished = true;
+    if ((end != RV_NO_TIME) && !m->spoilt) {
+        const int64_t reached = (m->reached > end) ? m->reached : end + 1;
+        for (i = 0; i < m->plan.part_count; i++) {
+            home_close(&m->homes[i], end, reached);
+        }
+        sort_records(m);
+    }
+    return m->spoilt ? RV_NO_MEMORY : RV_OK;
+}
+
+int64_t rv_next_due(rv_monitor *m)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; !m->finished && !m->spoilt && (i < m->plan.part_count); i++) {
+        found = least(found, home_due(&m->homes[i]));
+    }
+    return found;
+}
+
+rv_times rv_times_of(const rv_monitor *m)
+{
+    rv_times found;
+    found.began = m->began;
+    found.last = m->last;
+    found.reached = m->reached;
+    return found;
+}

@@ -1,0 +1,36 @@
+/* Formulas of present and past, worked out at each position. */
+#ifndef RVMON_FORMULAS_H
+#define RVMON_FORMULAS_H
+
+#include "basics.h"
+
+/* ---- timers.c */
+void timers_set(timers *h, int32_t id, int64_t due);
+void timers_clear(timers *h, int32_t ids);
+static inline int64_t timers_next(const timers *h)
+{
+    return h->next;
+}
+/* The ids that are due by `t`, into `found`; returns how many. */
+int32_t timers_due(const timers *h, int64_t t, int32_t *found);
+
+/* ---- past.c */
+stretch *next_stretch_of(rv_monitor *m, stretches *s, int32_t i, bool append);
+void part_stretches(rv_monitor *m, stretches *worse, stretches *better);
+uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
+
+/* ---- amounts.c */
+uint8_t node_amount(run *r, const node_plan *n, int64_t t, uint8_t operand);
+uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
+
+/* ---- graph.c: the nodes of a part */
+void mark_dirty(run *r, int32_t node);
+void mark_all_dirty(run *r);
+void work_out(run *r, int64_t t);
+bool has_dirty_nodes(const run *r);
+void remember_unknown(run *r, int64_t t);
+void blank_out(run *r, int64_t t);
+void vary(run *r, int64_t t, bool pending);
+void settle_phase(run *r);
+
+#endif

@@ -1,0 +1,257 @@
+/* The formulas of present and past as a graph: what depends on a change is worked out anew, operands
+ * before operators. */
+#include "formulas/formulas.h"
+#include "input/input.h"
+#include "notes/notes.h"
+#include "results/results.h"
+
+#include <string.h>
+
+void mark_dirty(run *r, int32_t node)
+{
+    const int32_t word = node >> 6;
+    r->dirty[word] |= UINT64_C(1) << (node & 63);
+    r->dirty_words[word >> 6] |= UINT64_C(1) << (word & 63);
+}
+
+void mark_all_dirty(run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->nodes.count; i++) {
+        mark_dirty(r, i);
+    }
+}
+
+static uint8_t combined(const run *r, const node_plan *n)
+{
+    const int32_t *operands = LIST(PLAN(r), n->operands);
+    uint8_t found = r->truth[operands[0]];
+    int32_t i;
+    for (i = 1; i < n->operands.count; i++) {
+        const uint8_t one = r->truth[operands[i]];
+        if ((n->op == NODE_AND) ? (one < found) : (one > found)) {
+            found = one;
+        }
+    }
+    return found;
+}
+
+static uint8_t elapsed(run *r, const node_plan *n, int64_t t)
+{
+    const int64_t due = sum(r->at.begun, n->low);
+    const int64_t may_be_due = sum(r->at.origin, n->low);
+    timers_set(&r->wake, n->timer, (t < may_be_due) ? may_be_due : ((t < due) ? due : NEVER));
+    return (t >= due) ? IS_TRUE : ((t >= may_be_due) ? IS_UNKNOWN : IS_FALSE);
+}
+
+static uint8_t previous(run *r, const node_plan *n, int64_t t, uint8_t operand)
+{
+    const uint8_t value = r->seen[n->slot];
+    r->seen[n->slot] = operand;
+    timers_set(&r->wake, n->timer, (value != operand) ? t + step_of(r) : NEVER);
+    return value;
+}
+
+/* Without bounds: what the operands were is in the one value. */
+static uint8_t ever(run *r, const node_plan *n, uint8_t left, uint8_t right)
+{
+    uint8_t value = r->seen[n->slot];
+    value = (left < value) ? left : value;
+    value = (right > value) ? right : value;
+    r->seen[n->slot] = value;
+    return value;
+}
+
+/* The left side of a `since` where all is unknown: what has to last for ever asks for no position. */
+static uint8_t left_there(const run *r, const node_plan *n)
+{
+    const node_plan *left = &r->part->nodes[LIST(PLAN(r), n->operands)[0]];
+    return ((left->op == NODE_CONSTANT) && (left->a == IS_TRUE)) ? IS_TRUE : IS_UNKNOWN;
+}
+
+/* Have what remembers know that its operands are unknown from the position `t` on. */
+void remember_unknown(run *r, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->nodes.count; i++) {
+        const node_plan *n = &r->part->nodes[i];
+        switch (n->op) {
+        case NODE_PREVIOUS: (void)previous(r, n, t, IS_UNKNOWN); break;
+        case NODE_EVER: (void)ever(r, n, left_there(r, n), IS_UNKNOWN); break;
+        case NODE_EDGE:
+        case NODE_STRETCH: (void)node_since(r, n, t, left_there(r, n), IS_UNKNOWN); break;
+        case NODE_AMOUNT: (void)node_amount(r, n, t, IS_UNKNOWN); break;
+        default: break;
+        }
+    }
+}
+
+static uint8_t evaluated(run *r, int32_t place, int64_t t)
+{
+    const node_plan *n = &r->part->nodes[place];
+    const int32_t *operands = LIST(PLAN(r), n->operands);
+    switch (n->op) {
+    case NODE_LEAF:
+    case NODE_UNBORN: return leaf_truth(r, n);
+    case NODE_CONSTANT: return (uint8_t)n->a;
+    case NODE_LAPSED: return truth_if(t >= r->cut);
+    case NODE_ELAPSED: return elapsed(r, n, t);
+    case NODE_NOT: return (uint8_t)(IS_TRUE - r->truth[operands[0]]);
+    case NODE_AND:
+    case NODE_OR: return combined(r, n);
+    case NODE_SURE: return truth_if(r->truth[operands[0]] == IS_TRUE);
+    case NODE_DOUBT: return node_doubt(r, n, place, t, r->truth[operands[0]]);
+    case NODE_PREVIOUS: return previous(r, n, t, r->truth[operands[0]]);
+    case NODE_EVER: return ever(r, n, r->truth[operands[0]], r->truth[operands[1]]);
+    case NODE_AMOUNT: return node_amount(r, n, t, r->truth[operands[0]]);
+    default: return node_since(r, n, t, r->truth[operands[0]], r->truth[operands[1]]);
+    }
+}
+
+/* Store the truth of a node, and tell the judges that it is linked with. */
+static void store(run *r, int32_t place, uint8_t value, int64_t t)
+{
+    const node_plan *n = &r->part->nodes[place];
+    const uint8_t was = r->truth[place];
+    int32_t i;
+    if (r->margins != NULL) {
+        margins_mark_changed(r, r->part->plan->signals.count + r->part->plan->events.count + place);
+    }
+    r->truth[place] = value;
+    if (r->truth_log != NULL) {
+        note_node(r, place, was, t);
+    }
+    for (i = 0; i < n->links.count; i++) {
+        const link_plan *l = &PLAN(r)->links[n->links.first + i];
+        judge *j;
+        if (l->kind == LINK_WATCH) {
+            call_watch(r, l->judge);
+            continue;
+        }
+        j = &r->judges[l->judge];
+        if ((l->kind & LINK_LETTER) != 0) {
+            j->worse += l->worse[value] - l->worse[was];
+            j->better += l->better[value] - l->better[was];
+            touch(r, l->judge, TOUCHED_LETTER);
+        }
+        if ((l->kind & LINK_TRIGGER) != 0) {
+            touch(r, l->judge, TOUCHED_TRIGGER);
+        }
+        if (((l->kind & LINK_DETERMINED) != 0) && (value == IS_TRUE)) {
+            r->at.undetermined_left--;
+        }
+    }
+}
+
+static bool tells_of_trigger(const run *r, const node_plan *n)
+{
+    return (n->links.count > 0) && ((PLAN(r)->links[n->links.first].kind & LINK_DETERMINED) != 0);
+}
+
+/* What a node is where all that formulas read is unknown. */
+static uint8_t blank_value(run *r, int32_t place, int64_t t)
+{
+    const node_plan *n = &r->part->nodes[place];
+    const int32_t *operands = LIST(PLAN(r), n->operands);
+    switch (n->op) {
+    case NODE_LAPSED: return truth_if(t >= r->cut);
+    case NODE_DOUBT: return node_doubt(r, n, place, t, IS_UNKNOWN);
+    case NODE_NOT: return (uint8_t)(IS_TRUE - r->truth[operands[0]]);
+    case NODE_AND:
+    case NODE_OR: return combined(r, n);
+    case NODE_SURE: return (r->truth[operands[0]] == IS_TRUE) ? IS_TRUE : IS_UNKNOWN;
+    default: return IS_UNKNOWN;
+    }
+}
+
+/* Have every formula be unknown at the position `t`; that a trigger was ever known stays so, and what
+ * may be hidden, or was captured, is known all the same. */
+void blank_out(run *r, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->nodes.count; i++) {
+        if (!tells_of_trigger(r, &r->part->nodes[i])) {
+            const uint8_t value = blank_value(r, i, t);
+            if (value != r->truth[i]) {
+                store(r, i, value, t);
+            }
+        }
+    }
+}
+
+/* Store another truth of a node; what depends on it is to be worked out. */
+static void change(run *r, int32_t place, uint8_t value, int64_t t)
+{
+    const list parents = r->part->nodes[place].parents[r->at.phase];
+    const int32_t *parent = LIST(PLAN(r), parents);
+    int32_t i;
+    store(r, place, value, t);
+    for (i = 0; i < parents.count; i++) {
+        mark_dirty(r, parent[i]);
+    }
+}
+
+bool has_dirty_nodes(const run *r)
+{
+    const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
+    int32_t upper;
+    for (upper = 0; upper < ((words + 63) >> 6); upper++) {
+        if (r->dirty_words[upper] != 0U) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void work_out(run *r, int64_t t)
+{
+    const int32_t words = (r->part->plan->nodes.count + 63) >> 6;
+    int32_t upper;
+    for (upper = 0; upper < ((words + 63) >> 6); upper++) {
+        while (r->dirty_words[upper] != 0U) {
+            const int32_t word = upper * 64 + lowest_bit(r->dirty_words[upper]);
+            while (r->dirty[word] != 0U) {
+                const int32_t place = word * 64 + lowest_bit(r->dirty[word]);
+                uint8_t value;
+                r->dirty[word] &= r->dirty[word] - 1;
+                value = evaluated(r, place, t);
+                if (value != r->truth[place]) {
+                    change(r, place, value, t);
+                }
+            }
+            r->dirty_words[upper] &= ~(UINT64_C(1) << (word & 63));
+        }
+    }
+}
+
+/* Work out anew what depends on captured values; what remembers stands. */
+void vary(run *r, int64_t t, bool pending)
+{
+    const part_plan *p = r->part->plan;
+    const int32_t *atoms = LIST(PLAN(r), p->varying_atoms);
+    const int32_t *nodes = LIST(PLAN(r), p->varying_nodes);
+    int32_t i;
+    for (i = 0; i < p->varying_atoms.count; i++) {
+        reread(r, atoms[i], pending);
+    }
+    for (i = 0; i < p->varying_nodes.count; i++) {
+        const uint8_t value = evaluated(r, nodes[i], t);
+        if (value != r->truth[nodes[i]]) {
+            change(r, nodes[i], value, t); /* what remembers it looks at the next position */
+        }
+    }
+}
+
+/* Once all is born and determined, what asks for that is looked at no more. */
+void settle_phase(run *r)
+{
+    if ((r->at.phase == 0) && (r->at.births_left == 0) && (r->at.undetermined_left == 0)) {
+        const list dead = r->part->plan->dead_timers;
+        const int32_t *nodes = LIST(PLAN(r), dead);
+        int32_t i;
+        r->at.phase = 1;
+        for (i = 0; i < dead.count; i++) {
+            timers_set(&r->wake, r->part->nodes[nodes[i]].timer, NEVER);
+        }
+    }
+}

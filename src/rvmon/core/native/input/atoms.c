@@ -1,0 +1,303 @@
+/* Atoms: what a formula reads off the input at a position. Each is read when its input changes, and
+ * shown by the leaves that speak of it. */
+#include "formulas/formulas.h"
+#include "input/input.h"
+
+/* For how a value stands to a constant a comparison is true. */
+enum { LESS = 1 << IS_LESS, EQUAL = 1 << IS_EQUAL, GREATER = 1 << IS_GREATER };
+static const uint8_t HOLDS_FOR[CMPS] = {
+    [CMP_LT] = LESS, [CMP_LE] = LESS | EQUAL, [CMP_EQ] = EQUAL, [CMP_NE] = LESS | GREATER,
+    [CMP_GE] = GREATER | EQUAL, [CMP_GT] = GREATER,
+};
+
+/* Without a branch for what nobody can foretell. */
+static uint8_t compare_real(int32_t how, const rv_number *value, double constant)
+{
+    const int32_t stands = order_of(value->as.real, constant);
+    if (value->kind != RV_REAL) {
+        return IS_UNKNOWN;
+    }
+    return (uint8_t)(IS_TRUE * ((HOLDS_FOR[how] >> stands) & 1));
+}
+
+/* More comparisons than so many are left alone where a value stays between two of their constants. */
+#define QUICK_MOST 4
+
+/* Whether comparisons with constants are all that reads a signal in the second phase. */
+static bool is_compared_only(const plan *all, const part *p, int32_t local)
+{
+    const signal_plan *s = &p->signals[local];
+    const list atoms = s->on_change[1];
+    int32_t i;
+    if ((s->flags != 0) || (s->perishable >= 0) || (atoms.count > QUICK_MOST)) {
+        return false;
+    }
+    for (i = 0; i < atoms.count; i++) {
+        const atom_plan *a = &p->atoms[LIST(all, atoms)[i]];
+        if ((a->op != ATOM_REAL) || (a->momentary != 0) || (a->nodes[1].count != 1)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Find the signals of a part that can be taken quickly; false: memory is short. */
+bool find_quick(arena *a, const plan *all, part *p)
+{
+    const int32_t signals = p->plan->signals.count;
+    int32_t local;
+    p->quick = arena_take(a, (size_t)(signals + 1) * sizeof *p->quick);
+    for (local = 0; (p->quick != NULL) && (local < signals); local++) {
+        const list atoms = p->signals[local].on_change[1];
+        quick_compare *made;
+        int32_t i;
+        if ((atoms.count == 0) || !is_compared_only(all, p, local)) {
+            continue;
+        }
+        made = arena_take(a, (size_t)atoms.count * sizeof *made);
+        if (made == NULL) {
+            return false;
+        }
+        for (i = 0; i < atoms.count; i++) {
+            const int32_t atom = LIST(all, atoms)[i];
+            const int32_t node = LIST(all, p->atoms[atom].nodes[1])[0];
+            made[i].constant = p->atoms[atom].constant;
+            made[i].atom = atom;
+            made[i].word = node >> 6;
+            made[i].dirty = UINT64_C(1) << (node & 63);
+            made[i].holds_for = HOLDS_FOR[p->atoms[atom].compare];
+        }
+        p->quick[local].compares = made;
+        p->quick[local].count = atoms.count;
+    }
+    return p->quick != NULL;
+}
+
+static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)
+{
+    const rv_number left = program_value(r, a->left, at);
+    const rv_number right = program_value(r, a->right, at);
+    return (uint8_t)compare_numbers(a->compare, &left, &right);
+}
+
+/* Over fields of events: all combinations of their occurrences are looked at. */
+static uint8_t over_occurrences(const run *r, const atom_plan *a)
+{
+    const int32_t *events = LIST(PLAN(r), a->events);
+    int32_t at[PAYLOAD_EVENTS_MOST];
+    uint8_t found = IS_FALSE;
+    bool absent = false;
+    bool may_occur = true;
+    int32_t i;
+    for (i = 0; i < a->events.count; i++) {
+        const int32_t e = events[i];
+        absent = absent || (r->silent[e] == IS_UNKNOWN);
+        may_occur = may_occur && ((r->silent[e] == IS_UNKNOWN) || (r->payloads[e].count > 0));
+        at[i] = 0;
+    }
+    if (absent || !may_occur) {
+        return may_occur ? IS_UNKNOWN : IS_FALSE;
+    }
+    for (;;) {
+        uint8_t one = IS_UNKNOWN;
+        bool known = true;
+        for (i = 0; i < a->events.count; i++) {
+            const occurrences *o = &r->payloads[events[i]];
+            known = known && (o->known[at[i]] != 0U);
+            r->chosen[events[i]] = at[i];
+        }
+        if (known) {
+            one = compare_at(r, a, r->chosen);
+        }
+        found = (one > found) ? one : found;
+        for (i = a->events.count - 1; i >= 0; i--) {
+            at[i]++;
+            if (at[i] < r->payloads[events[i]].count) {
+                break;
+            }
+            at[i] = 0;
+        }
+        if (i < 0) {
+            break;
+        }
+    }
+    return found;
+}
+
+static uint8_t atom_now(const run *r, const atom_plan *a)
+{
+    const int32_t signals = r->part->plan->signals.count;
+    switch (a->op) {
+    case ATOM_SIGNAL:
+        return (r->value[a->input].kind == RV_UNKNOWN)
+            ? IS_UNKNOWN : truth_if(r->value[a->input].as.whole != 0);
+    case ATOM_REAL: return compare_real(a->compare, &r->value[a->input], a->constant);
+    case ATOM_COMPARE: return compare_at(r, a, NULL);
+    case ATOM_PAYLOAD: return over_occurrences(r, a);
+    case ATOM_EVENT:
+        return (r->absent[signals + a->input] != 0U) ? IS_UNKNOWN : r->occurs[a->input];
+    case ATOM_KNOWN_SIGNAL:
+        if ((r->at.lost_count > 0) && (r->lost[a->input] != NOT_LOST)) {
+            return IS_UNKNOWN;
+        }
+        return truth_if(r->value[a->input].kind != RV_UNKNOWN);
+    case ATOM_KNOWN_EVENT: return truth_if(r->occurs[a->input] != IS_UNKNOWN);
+    case ATOM_UPDATED_SIGNAL:
+        return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->updated[a->input];
+    case ATOM_UPDATED_EVENT:
+        return (r->absent[signals + a->input] != 0U)
+            ? IS_UNKNOWN : r->updated[signals + a->input];
+    case ATOM_CHANGED: return (r->absent[a->input] != 0U) ? IS_UNKNOWN : r->changed[a->input];
+    default: return r->at.starting;
+    }
+}
+
+/* Whether an atom as it is now speaks of this position only. */
+static bool is_momentary(const run *r, int32_t atom)
+{
+    return (r->atom[atom] != IS_FALSE) && (r->momentary[atom] != 0U);
+}
+
+/* List an atom as one that speaks of the next position only. */
+static void list_fresh(run *r, int32_t atom)
+{
+    if (is_momentary(r, atom) && (r->is_fresh[atom] == 0U)) {
+        r->is_fresh[atom] = 1;
+        r->fresh[r->at.fresh_count] = atom;
+        r->at.fresh_count++;
+    }
+}
+
+bool recheck(run *r, int32_t atom)
+{
+    const atom_plan *a = &r->part->atoms[atom];
+    const uint8_t now = (a->op == ATOM_REAL) ? compare_real(a->compare, &r->value[a->input], a->constant)
+                                             : atom_now(r, a);
+    const bool changed = now != r->atom[atom];
+    /* A comparison of fields stays unknown for another reason: it matters to what is not born. */
+    if (changed || ((a->op == ATOM_PAYLOAD) && (now == IS_UNKNOWN))) {
+        const list nodes = a->nodes[r->at.phase];
+        const int32_t *node = LIST(PLAN(r), nodes);
+        int32_t i;
+        r->atom[atom] = now;
+        for (i = 0; i < nodes.count; i++) {
+            mark_dirty(r, node[i]);
+        }
+    }
+    if (r->momentary[atom] != 0U) {
+        list_fresh(r, atom);
+    }
+    return changed;
+}
+
+bool recheck_list(run *r, list l)
+{
+    const int32_t *atoms = LIST(PLAN(r), l);
+    bool changed = false;
+    int32_t i;
+    for (i = 0; i < l.count; i++) {
+        changed = recheck(r, atoms[i]) || changed;
+    }
+    return changed;
+}
+
+/* Have an atom be read again at the next position, if it speaks of this one only. */
+static void fade(run *r, int32_t atom)
+{
+    if (is_momentary(r, atom) && (r->is_fading[atom] == 0U)) {
+        r->is_fading[atom] = 1;
+        r->fading[r->at.fading_count] = atom;
+        r->at.fading_count++;
+    }
+}
+
+/* Read atoms again while what occurred at the last position is still there. */
+void recheck_amid(run *r, list l)
+{
+    const int32_t *atoms = LIST(PLAN(r), l);
+    int32_t i;
+    recheck_list(r, l);
+    for (i = 0; r->over && (i < l.count); i++) {
+        fade(r, atoms[i]);
+    }
+}
+
+/* Read again what spoke of the last position only; what was read since speaks of this one. */
+void recheck_fading(run *r)
+{
+    const int32_t count = r->at.fading_count;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        r->is_fading[r->fading[i]] = 0;
+    }
+    r->at.fading_count = 0;
+    for (i = 0; i < count; i++) {
+        (void)recheck(r, r->fading[i]);
+    }
+    for (i = 0; i < r->at.fresh_count; i++) {
+        const int32_t atom = r->fresh[i];
+        r->is_fresh[atom] = 0;
+        fade(r, atom);
+    }
+    r->at.fresh_count = 0;
+}
+
+/* Read an atom anew at a position at which its nodes are worked out anyway. If what occurred is still
+ * `pending`, it speaks of the next position. */
+void reread(run *r, int32_t atom, bool pending)
+{
+    r->atom[atom] = atom_now(r, &r->part->atoms[atom]);
+    if (!is_momentary(r, atom)) {
+        return;
+    }
+    if (pending) {
+        list_fresh(r, atom);
+    } else {
+        fade(r, atom);
+    }
+}
+
+static bool is_unborn(const run *r, list births)
+{
+    const int32_t *one = LIST(PLAN(r), births);
+    int32_t i;
+    for (i = 0; i < births.count; i++) {
+        if (r->births[one[i] >> 1] <= (one[i] & 1)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether all that is said of the events of an atom is known: an occurrence that is unknown leaves it
+ * unknown, born or not. */
+static bool all_occurrences_known(const run *r, const atom_plan *a)
+{
+    const int32_t *events = LIST(PLAN(r), a->events);
+    int32_t i;
+    int32_t j;
+    for (i = 0; i < a->events.count; i++) {
+        const occurrences *o = &r->payloads[events[i]];
+        if (r->silent[events[i]] == IS_UNKNOWN) {
+            return false;
+        }
+        for (j = 0; j < o->count; j++) {
+            if (o->known[j] == 0U) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+uint8_t leaf_truth(const run *r, const node_plan *n)
+{
+    if (n->op == NODE_UNBORN) {
+        return truth_if(is_unborn(r, n->operands));
+    }
+    if ((r->atom[n->a] == IS_UNKNOWN) && (n->b != IS_UNKNOWN) && is_unborn(r, n->operands)
+        && all_occurrences_known(r, &r->part->atoms[n->a])) {
+        return (uint8_t)n->b;
+    }
+    return r->atom[n->a];
+}

@@ -1,0 +1,130 @@
+/* What a sample says: numbers, held values, atoms, and names that may have said anything. */
+#ifndef RVMON_INPUT_H
+#define RVMON_INPUT_H
+
+#include "basics.h"
+#include "margins/margins.h"
+
+/* ---- numbers.c */
+int32_t compare_numbers(int32_t how, const rv_number *a, const rv_number *b); /* a truth */
+bool same_number(const rv_number *a, const rv_number *b);
+rv_number program_value(const run *r, int32_t place, const int32_t *at);
+rv_number number_of_double(double x);
+
+/* ---- functions.c */
+#define MOST_ARGUMENTS 4
+int32_t arguments_of(int32_t op); /* how many an operation has; 0: it is none */
+rv_number function_of_wholes(int32_t op, int64_t a, int64_t b);
+double function_of_reals(int32_t op, const double *x); /* not finite: unknown */
+
+/* ---- values.c: samples, held values, what occurred */
+void mark(run *r, int32_t name);
+uint8_t remember(history *h, int64_t t, const rv_number *value);
+void come_to_birth(run *r, int32_t local, bool known);
+void be_born(run *r, int32_t local);
+void set_stale(run *r, int32_t local, int64_t t);
+void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
+void apply_update(run *r, int64_t t, const incoming *in);
+
+/* Whether a signal can take a value and nothing else is to be done. */
+static inline bool means_the_same(const run *r, int32_t local, const rv_number *value)
+{
+    const span *s = &r->spans[local];
+    const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
+    return (value->kind == r->value[local].kind) && (s->low < x) && (x < s->high);
+}
+
+void margins_mark_changed(run *r, int32_t what);
+
+/* ---- atoms.c */
+bool find_quick(arena *a, const plan *all, part *p);
+bool recheck(run *r, int32_t atom);     /* whether it is another truth */
+bool recheck_list(run *r, list l);      /* whether one of them is */
+void recheck_amid(run *r, list l);
+void recheck_fading(run *r);
+void reread(run *r, int32_t atom, bool pending);
+uint8_t leaf_truth(const run *r, const node_plan *n);
+
+/* How a value stands to a constant: the place of a bit. */
+enum { IS_EQUAL, IS_LESS, IS_GREATER };
+
+static inline int32_t order_of(double x, double constant)
+{
+    return IS_LESS * (int32_t)(x < constant) + IS_GREATER * (int32_t)(x > constant);
+}
+
+/* The signals of a run that can be taken quickly now; NULL: none of them. */
+static inline const quick_signal *quick_now(const run *r)
+{
+    return ((r->at.phase == 1) && (r->at.lost_count == 0) && (r->margins == NULL)) ? r->part->quick : NULL;
+}
+
+/* Take a real value of a signal that few comparisons read, without a branch for what nobody can foretell;
+ * false: it is none of these. */
+static inline bool take_quickly(run *r, const quick_signal *quick, int32_t local, const rv_update *u)
+{
+    const quick_compare *c = quick[local].compares;
+    const quick_compare *end;
+    rv_number *value = &r->value[local];
+    uint64_t *dirty = r->dirty;
+    uint64_t *words = r->dirty_words;
+    uint8_t *atoms = r->atom;
+    double x;
+    if ((c == NULL) || (u->value.kind != RV_REAL) || (value->kind != RV_REAL) || (u->says != RV_SAYS_YES)) {
+        return false;
+    }
+    x = u->value.as.real;
+    end = c + quick[local].count;
+    value->as.real = x;
+    for (; c < end; c++) {
+        const int32_t word = c->word;
+        const uint8_t now = (uint8_t)(IS_TRUE * ((c->holds_for >> order_of(x, c->constant)) & 1));
+        const uint64_t other = (now != atoms[c->atom]) ? 1U : 0U;
+        dirty[word] |= c->dirty & (0U - other);
+        words[word >> 6] |= other << (word & 63);
+        atoms[c->atom] = now;
+    }
+    return true;
+}
+
+static inline void take_update(run *r, int64_t t, const incoming *in)
+{
+    const rv_update *u = in->update;
+    if (r->margins != NULL) {
+        margins_mark_changed(r, in->event ? r->part->plan->signals.count + in->local : in->local);
+    }
+    if (!in->event && (u->says == RV_SAYS_YES) && means_the_same(r, in->local, &u->value)) {
+        r->value[in->local] = u->value;
+    } else {
+        apply_update(r, t, in);
+    }
+}
+
+void forget(run *r);
+void go_stale(run *r, int64_t t, int32_t perishable);
+void mark_absent(run *r, bool event, int32_t local);
+void have_no_source(run *r, bool event, int32_t local);
+
+/* ---- outages.c: names that may have said anything */
+void begin_unlost(run *r);
+bool take_amid(run *r, int64_t t, const incoming *in);
+void come_back(run *r, int64_t t);
+void stay_unknown(run *r, int32_t local);
+bool has_no_source(const run *r, int32_t name);
+bool is_lost_at(const run *r, int32_t name, int64_t t);
+void give_loss(run *r, int64_t t, const incoming *in, int32_t count);
+int32_t names_to_lose(const run *r);
+
+/* ---- blank.c: positions that may not be there */
+void may_begin(run *r, int64_t t);
+void begin_blank(run *r, int64_t t);
+void end_blank(run *r, int64_t t);
+void revive_all(run *r, int64_t t);
+
+/* ---- unknowns.c: what was not known of signals */
+bool begin_unknowns(home *h);
+void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value);
+int64_t unknowns_count(const run *r, int64_t doubt);
+void put_unknowns(const run *r, int64_t doubt, int64_t *to);
+
+#endif

@@ -1,0 +1,309 @@
+/* What a sample says: held values, births, updates, occurrences. */
+#include "formulas/formulas.h"
+#include "input/input.h"
+#include "runs/runs.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Whole numbers up to there are exact as doubles, and their neighbours are others. */
+#define EXACT (INT64_C(1) << 52)
+
+/* Remember to forget what is said of a name once its position is over. Signals come first. */
+void mark(run *r, int32_t name)
+{
+    if (r->marked[name] == 0U) {
+        r->marked[name] = 1;
+        r->marks[r->at.marks_count] = name;
+        r->at.marks_count++;
+    }
+    r->at.gathered = true;
+}
+
+void forget(run *r)
+{
+    const int32_t signals = r->part->plan->signals.count;
+    int32_t i;
+    for (i = 0; i < r->at.marks_count; i++) {
+        const int32_t name = r->marks[i];
+        r->marked[name] = 0;
+        r->updated[name] = 0;
+        if (name < signals) {
+            r->changed[name] = IS_FALSE;
+        } else {
+            r->occurs[name - signals] = r->silent[name - signals];
+            r->payloads[name - signals].count = 0;
+        }
+    }
+    r->at.marks_count = 0;
+}
+
+/* Take an update; tells whether it brought another value. */
+uint8_t remember(history *h, int64_t t, const rv_number *value)
+{
+    const bool first = h->updates == 0;
+    h->before = h->last;
+    h->before_at = h->at;
+    h->last = *value;
+    h->at = t;
+    h->updates = first ? 1 : 2;
+    if (first) {
+        return IS_FALSE;
+    }
+    if ((value->kind == RV_UNKNOWN) || (h->before.kind == RV_UNKNOWN)) {
+        return IS_UNKNOWN;
+    }
+    return truth_if(!same_number(value, &h->before));
+}
+
+/* Learn between which numbers a signal can move and change nothing: those next to its value that it is
+ * compared with. There are none if more hangs on it than comparisons with constants. */
+static void learn_span(run *r, int32_t local)
+{
+    const signal_plan *s = &r->part->signals[local];
+    const list atoms = s->on_change[r->at.phase];
+    const int32_t *place = LIST(PLAN(r), atoms);
+    const rv_number *value = &r->value[local];
+    span *found = &r->spans[local];
+    int32_t i;
+    *found = NO_SPAN;
+    if ((r->part->quick[local].count > 0) || (s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
+        return;
+    }
+    if (value->kind == RV_WHOLE) {
+        if ((value->as.whole > -EXACT) && (value->as.whole < EXACT)) {
+            found->low = (double)(value->as.whole - 1);
+            found->high = (double)(value->as.whole + 1);
+        }
+    } else if (value->kind == RV_REAL) {
+        found->low = -HUGE_VAL;
+        found->high = HUGE_VAL;
+        for (i = 0; i < atoms.count; i++) {
+            const atom_plan *a = &r->part->atoms[place[i]];
+            if ((a->op == ATOM_REAL) && (value->as.real < a->constant)) {
+                found->high = (a->constant < found->high) ? a->constant : found->high;
+            } else if ((a->op == ATOM_REAL) && (value->as.real > a->constant)) {
+                found->low = (a->constant > found->low) ? a->constant : found->low;
+            } else {
+                *found = NO_SPAN;
+                return;
+            }
+        }
+    } else {
+        /* What is unknown is seldom told twice. */
+    }
+}
+
+/* Hold a value; what reads it is looked at again if it is another one. */
+static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
+{
+    if (!same_number(value, &r->value[local])) {
+        if (((value->kind == RV_UNKNOWN) != (r->value[local].kind == RV_UNKNOWN))
+            && (r->truth_log != NULL)) {
+            note_knowledge(r, t, local, value);
+        }
+        if (r->margins != NULL) {
+            margins_mark_changed(r, local);
+        }
+        r->value[local] = *value;
+        if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
+            r->spans[local] = NO_SPAN; /* mostly the next value means something else again */
+            return;
+        }
+    }
+    learn_span(r, local);
+}
+
+void come_to_birth(run *r, int32_t local, bool known)
+{
+    const signal_plan *s = &r->part->signals[local];
+    if ((r->births[local] < s->births) && (known || (r->births[local] > 0))) {
+        const int32_t *nodes = LIST(PLAN(r), s->on_birth);
+        int32_t i;
+        r->births[local]++;
+        if (r->births[local] == s->births) {
+            r->at.births_left--;
+        }
+        for (i = 0; i < s->on_birth.count; i++) {
+            mark_dirty(r, nodes[i]);
+        }
+    }
+}
+
+/* What was lost of a signal, or never comes, is no value to come: it has been there. */
+void be_born(run *r, int32_t local)
+{
+    while (r->births[local] < r->part->signals[local].births) {
+        come_to_birth(r, local, true);
+    }
+}
+
+/* Have a signal become stale so long after an update at `t`. */
+void set_stale(run *r, int32_t local, int64_t t)
+{
+    const signal_plan *s = &r->part->signals[local];
+    const int64_t stale_at = sum(t, s->stale_after + 1);
+    timers_set(&r->wake, r->part->plan->timers + s->perishable, stale_at);
+    /* The update may change no value: then nothing else has the timer seen to. */
+    r->at.alarm = least(r->at.alarm, stale_at);
+}
+
+static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value)
+{
+    const signal_plan *s = &r->part->signals[local];
+    const bool known = value->kind != RV_UNKNOWN;
+    if (!known && ((s->flags & SIGNAL_IGNORES_NAN) != 0)) {
+        return;
+    }
+    if ((s->flags & SIGNAL_CAPTURED) != 0) {
+        r->at.dirty = true; /* another value may be captured */
+    }
+    if (s->perishable >= 0) {
+        set_stale(r, local, t);
+    }
+    if (s->births != 0) {
+        come_to_birth(r, local, known);
+    }
+    if ((s->flags & (SIGNAL_MARKS | SIGNAL_HISTORY)) != 0) {
+        r->updated[local] = IS_TRUE;
+        mark(r, local);
+        if ((s->flags & SIGNAL_HISTORY) != 0) {
+            const uint8_t changed = remember(&r->history[local], t, value);
+            r->changed[local] = (changed > r->changed[local]) ? changed : r->changed[local];
+        }
+        r->at.dirty = true;
+        hold(r, t, local, value);
+        (void)recheck_list(r, s->on_update[r->at.phase]);
+    } else {
+        hold(r, t, local, value);
+    }
+}
+
+/* Keep the payload of an occurrence. */
+void keep_payload(run *r, int32_t local, bool known, const rv_number *fields)
+{
+    occurrences *o = &r->payloads[local];
+    const int32_t width = r->part->events[local].fields;
+    rv_monitor *m = r->home->monitor;
+    if (o->count == o->room) {
+        int32_t room = o->room;
+        int32_t same = o->room;
+        uint8_t *flags = enlarged(m, o->known, &room, (int64_t)o->count + 1, 1);
+        rv_number *values;
+        if (flags == NULL) {
+            return;
+        }
+        o->known = flags;
+        values = enlarged(m, o->fields, &same, room, sizeof *values * (size_t)((width > 0) ? width : 1));
+        if (values == NULL) {
+            return;
+        }
+        o->fields = values;
+        o->room = room;
+    }
+    o->known[o->count] = known ? 1U : 0U;
+    if (width > 0) {
+        rv_number *own = &o->fields[o->count * width];
+        int32_t i;
+        for (i = 0; i < width; i++) {
+            own[i] = (known && (fields != NULL)) ? fields[i] : UNKNOWN_NUMBER;
+        }
+    }
+    o->count++;
+}
+
+static void take_event(run *r, int32_t local, int32_t says, const rv_number *fields)
+{
+    const event_plan *e = &r->part->events[local];
+    const int32_t name = r->part->plan->signals.count + local;
+    if ((e->flags & EVENT_MARKS) != 0) {
+        r->updated[name] = IS_TRUE;
+        mark(r, name);
+        r->at.dirty = true;
+    }
+    if (says != RV_SAYS_NO) {
+        const bool known = says == RV_SAYS_YES;
+        const uint8_t occurs = known ? IS_TRUE : IS_UNKNOWN;
+        mark(r, name);
+        r->occurs[local] = (occurs > r->occurs[local]) ? occurs : r->occurs[local];
+        if ((e->flags & EVENT_FIELDS) != 0) {
+            keep_payload(r, local, known, fields);
+        }
+        r->at.dirty = true;
+    }
+    (void)recheck_list(r, e->on_occurrence[r->at.phase]);
+}
+
+void apply_update(run *r, int64_t t, const incoming *in)
+{
+    const rv_update *u = in->update;
+    if ((r->at.lost_count > 0) && take_amid(r, t, in)) {
+        return;
+    }
+    if (!in->event) {
+        const bool is_nan = (u->value.kind == RV_UNKNOWN) && (u->value.as.whole == RV_IS_NAN);
+        rv_number unknown = UNKNOWN_NUMBER;
+        unknown.as.whole = is_nan ? RV_IS_NAN : RV_IS_NONE;
+        take_signal(r, t, in->local, (u->says == RV_SAYS_YES) ? &u->value : &unknown);
+    } else if ((r->part->events[in->local].flags & EVENT_KEY) != 0) {
+        const int32_t says = concerning(r, u);
+        if (says >= 0) {
+            take_event(r, in->local, says, u->fields);
+        }
+    } else {
+        take_event(r, in->local, u->says, u->fields);
+    }
+}
+
+/* Count that a signal went stale at `t`, once for all that read it. */
+static void count_stale(const run *r, int64_t t, int32_t name)
+{
+    const rv_monitor *m = r->home->monitor;
+    const subscription *first = &m->plan.subscriptions[m->plan.subscription_first[name]];
+    if ((r == r->home->root) && (r->home == &m->homes[first->part])) {
+        rv_staleness *found = &m->stale[name];
+        found->first = (found->count == 0) ? t : found->first;
+        found->count++;
+    }
+}
+
+void go_stale(run *r, int64_t t, int32_t perishable)
+{
+    const int32_t local = r->part->perishable[perishable];
+    rv_number stale = UNKNOWN_NUMBER;
+    stale.as.whole = IS_STALE;
+    count_stale(r, t, r->part->signals[local].name);
+    if (r->at.lost_count > 0) {
+        stay_unknown(r, local);
+    }
+    hold(r, t, local, &stale);
+}
+
+void mark_absent(run *r, bool event, int32_t local)
+{
+    const part *p = r->part;
+    const int32_t name = event ? p->plan->signals.count + local : local;
+    const list needs = event ? p->events[local].needs : p->signals[local].needs;
+    const int32_t *atoms = LIST(PLAN(r), needs);
+    int32_t i;
+    if (r->absent[name] != 0U) {
+        return;
+    }
+    r->absent[name] = 1;
+    if (event) {
+        r->silent[local] = IS_UNKNOWN;
+        r->occurs[local] = IS_UNKNOWN;
+    }
+    for (i = 0; i < needs.count; i++) {
+        r->momentary[atoms[i]]--;
+    }
+}
+
+/* Take it, before the first position, that a name has no source. */
+void have_no_source(run *r, bool event, int32_t local)
+{
+    mark_absent(r, event, local);
+    if (!event) {
+        be_born(r, local);
+    }
+}

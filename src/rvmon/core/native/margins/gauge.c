@@ -1,0 +1,288 @@
+/* One bound of the robustness of a formula while a trace goes by: what is new of each operator goes from
+ * operands to operators, and a value is told as soon as nothing that may come can change it. What is
+ * kept is what is not settled.
+ *
+ * Source: SEMANTICS 5; Deshmukh et al. 2017 (figures of a part of a trace). */
+#include "margins/margins.h"
+
+#include <string.h>
+
+static void *taken(rv_monitor *m, int64_t count, size_t each)
+{
+    void *made = arena_take(&m->memory, (size_t)(count + 1) * each);
+    m->spoilt = m->spoilt || (made == NULL);
+    return made;
+}
+
+bool gauge_make(rv_monitor *m, const margin_shape *s, gauge *g)
+{
+    if (g->nodes == NULL) {
+        g->nodes = taken(m, s->count, sizeof *g->nodes);
+        g->edges = taken(m, s->edges, sizeof *g->edges);
+        g->letter = taken(m, s->plan->measures.count, sizeof *g->letter);
+    }
+    return (g->nodes != NULL) && (g->edges != NULL) && (g->letter != NULL);
+}
+
+static void empty_steps(margin_steps *s)
+{
+    s->first = 0;
+    s->end = 0;
+}
+
+/* Begin at a position, of which no letter is known. */
+void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answered)
+{
+    int32_t i;
+    for (i = 0; i < s->count; i++) {
+        margin_node *o = &g->nodes[i];
+        empty_steps(&o->out);
+        empty_steps(&o->wedge);
+        o->parts.begin = o->parts.middle = o->parts.end = 0;
+        o->known = first - 1;
+        o->joined = first - 1;
+        o->next = first;
+        o->positions = 0;
+        o->carried = (s->nodes[i].turned != 0) ? INFINITE : -INFINITE;
+        o->begun = false;
+    }
+    for (i = 0; i < s->edges; i++) {
+        g->edges[i].read = 0;
+        g->edges[i].value = s->fixed[i];
+    }
+    empty_steps(&g->stamps);
+    g->first = first;
+    g->read = 0;
+    g->answered = answered;
+    g->reported = -INFINITE;
+    g->begun = false;
+}
+
+/* The same as another one, independent from now on. */
+bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *g)
+{
+    bool done = gauge_make(m, s, made) && steps_copy(m, &made->stamps, &g->stamps);
+    int32_t i;
+    for (i = 0; done && (i < s->count); i++) {
+        margin_node *to = &made->nodes[i];
+        const margin_node *from = &g->nodes[i];
+        done = steps_copy(m, &to->out, &from->out) && steps_copy(m, &to->wedge, &from->wedge)
+               && parts_copy(m, &to->parts, &from->parts);
+        to->known = from->known;
+        to->joined = from->joined;
+        to->next = from->next;
+        to->positions = from->positions;
+        to->carried = from->carried;
+        to->begun = from->begun;
+    }
+    if (done) {
+        (void)memcpy(made->edges, g->edges, (size_t)s->edges * sizeof *g->edges);
+        (void)memcpy(made->letter, g->letter, (size_t)s->plan->measures.count * sizeof *g->letter);
+        made->first = g->first;
+        made->read = g->read;
+        made->answered = g->answered;
+        made->reported = g->reported;
+        made->begun = g->begun;
+    }
+    return done;
+}
+
+/* Take what the leaves are from a position on. */
+void gauge_take(gauging *w, int64_t at, const double *values)
+{
+    const margin_shape *s = w->shape;
+    const bool all = w->sparse || !w->g->begun;
+    int32_t i;
+    if (w->sparse) {
+        note_position(w, at);
+    }
+    for (i = 0; i < s->plan->measures.count; i++) {
+        if ((s->leaves[i] >= 0) && (all || (values[i] != w->g->letter[i]))) {
+            w->g->letter[i] = values[i];
+            tell_step(w, s->leaves[i], at, values[i]);
+        }
+    }
+    w->g->begun = true;
+}
+
+/* What is asked for at positions before one has the value that was told last. */
+static void answer(gauging *w, int64_t before)
+{
+    gauge *g = w->g;
+    measuring *q = w->q;
+    while ((g->answered < q->asks_end) && (ask_at(q, g->answered)->position < before)) {
+        margin_ask *one = ask_at(q, g->answered);
+        if (w->answers != NULL) {
+            w->answers[g->answered - q->asks_first] = g->reported;
+        } else if (w->side == 1) {
+            one->high = g->reported;
+        } else {
+            one->low = g->reported;
+            one->high = q->parted ? one->high : g->reported;
+        }
+        g->answered++;
+    }
+}
+
+/* Let the leaves be known up to a position, and answer what is settled. */
+void gauge_run(gauging *w)
+{
+    const margin_shape *s = w->shape;
+    const int32_t root = s->count - 1;
+    const margin_steps *news = &w->g->nodes[root].out;
+    int32_t i;
+    for (i = 0; i < s->count; i++) {
+        switch (s->nodes[i].kind) {
+        case OP_LEAF: break;
+        case OP_WINDOW: gauge_window(w, i); break;
+        case OP_SHIFT: gauge_shift(w, i); break;
+        default: gauge_join(w, i); break;
+        }
+    }
+    while (w->g->read < news->end) {
+        answer(w, step_at(news, w->g->read)->at);
+        w->g->reported = step_at(news, w->g->read)->value;
+        w->g->read++;
+    }
+    answer(w, operand_known(w, root) + 1);
+}
+
+/* ---- shapes */
+
+/* Which leaves never change and are read beside others alone: nobody has to be told of these. */
+static void find_fixed(const plan *p, const margin_shape *s, bool *fixed)
+{
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < s->count; i++) {
+        const operator_plan *n = &s->nodes[i];
+        fixed[i] = (n->kind == OP_LEAF) && (s->measures[n->left].kind == MEASURE_CONSTANT);
+    }
+    for (i = 0; i < s->count; i++) {
+        const operator_plan *n = &s->nodes[i];
+        const int32_t pair[2] = {n->left, n->right};
+        const int32_t *operands = (n->kind == OP_JUNCTION) ? LIST(p, n->operands) : pair;
+        const int32_t count = s->places[i].edge_count;
+        bool all = true;
+        for (k = 0; k < count; k++) {
+            all = all && fixed[operands[k]];
+        }
+        for (k = 0; all && (k < count); k++) {
+            fixed[operands[k]] = false;
+        }
+    }
+    fixed[s->count - 1] = false;
+}
+
+/* Which operators matter where the formula is asked for alone: it, and what junctions join to it. */
+static void find_alone(const margin_shape *s)
+{
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < s->count; i++) {
+        s->places[i].alone = true;
+    }
+    for (i = s->count - 1; i >= 0; i--) {
+        const margin_place *own = &s->places[i];
+        const bool joins = (s->nodes[i].kind == OP_JUNCTION) && own->alone;
+        for (k = 0; !joins && (k < own->edge_count); k++) {
+            if (s->operands[own->edge + k] >= 0) {
+                s->places[s->operands[own->edge + k]].alone = false;
+            }
+        }
+    }
+}
+
+static int32_t operand_count(const operator_plan *n)
+{
+    switch (n->kind) {
+    case OP_LEAF: return 0;
+    case OP_JUNCTION: return n->operands.count;
+    case OP_WINDOW:
+    case OP_SHIFT: return 1;
+    default: return 2;
+    }
+}
+
+static void lay_out(const plan *p, margin_shape *s, const bool *fixed)
+{
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < s->count; i++) {
+        const operator_plan *n = &s->nodes[i];
+        const int32_t pair[2] = {n->left, n->right};
+        const int32_t *operands = (n->kind == OP_JUNCTION) ? LIST(p, n->operands) : pair;
+        for (k = 0; k < s->places[i].edge_count; k++) {
+            const int32_t own = s->places[i].edge + k;
+            s->operands[own] = fixed[operands[k]] ? -1 : operands[k];
+            if (fixed[operands[k]]) {
+                const bool no = s->measures[s->nodes[operands[k]].left].turned != 0;
+                s->fixed[own] = no ? -INFINITE : INFINITE;
+            }
+        }
+        if (n->kind == OP_LEAF) {
+            s->leaves[n->left] = fixed[i] ? -1 : i;
+        }
+        s->passes = s->passes || (n->kind == OP_WINDOW) || (n->kind == OP_SHIFT);
+    }
+}
+
+/* So much after a position what is known of an operator comes to it, or later. */
+static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags, int64_t step)
+{
+    const operator_plan *n = &s->nodes[place];
+    const margin_place *own = &s->places[place];
+    const int64_t steps = (n->high > 0) ? n->high : 0;
+    const int64_t ahead = (steps > LIMIT / step) ? LIMIT : steps * step;
+    int64_t found = 0;
+    int32_t k;
+    for (k = 0; k < own->edge_count; k++) {
+        const int32_t operand = s->operands[own->edge + k];
+        if ((operand >= 0) && (lags[operand] > found)) {
+            found = lags[operand];
+        }
+    }
+    if ((n->kind == OP_WINDOW) || (n->kind == OP_SHIFT)) {
+        found = (ahead > 0) ? moved(found, ahead) : 0;
+    }
+    return ((n->kind == OP_WINDOW) && (n->over > found)) ? n->over : found;
+}
+
+/* Work out the shape of what is measured; false if memory is short. */
+bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s)
+{
+    const plan *p = &m->plan;
+    const int32_t count = g->operators.count;
+    bool *fixed = taken(m, count, sizeof *fixed);
+    int64_t *lags = taken(m, count, sizeof *lags);
+    int32_t i;
+    s->plan = g;
+    s->nodes = &p->operators[g->operators.first];
+    s->measures = &p->measures[g->measures.first];
+    s->count = count;
+    s->places = taken(m, count, sizeof *s->places);
+    s->leaves = taken(m, g->measures.count, sizeof *s->leaves);
+    if ((fixed == NULL) || (lags == NULL) || (s->places == NULL) || (s->leaves == NULL)) {
+        return false;
+    }
+    for (i = 0; i < count; i++) {
+        s->places[i].edge = s->edges;
+        s->places[i].edge_count = operand_count(&s->nodes[i]);
+        s->edges += s->places[i].edge_count;
+    }
+    s->operands = taken(m, s->edges, sizeof *s->operands);
+    s->fixed = taken(m, s->edges, sizeof *s->fixed);
+    if ((s->operands == NULL) || (s->fixed == NULL)) {
+        return false;
+    }
+    find_fixed(p, s, fixed);
+    lay_out(p, s, fixed);
+    find_alone(s);
+    for (i = 0; i < count; i++) {
+        lags[i] = lag_of(s, i, lags, (p->header->gap > 0) ? p->header->gap : 1);
+    }
+    s->lag = lags[count - 1];
+    arena_give(&m->memory, fixed, (size_t)(count + 1) * sizeof *fixed);
+    arena_give(&m->memory, lags, (size_t)(count + 1) * sizeof *lags);
+    return true;
+}

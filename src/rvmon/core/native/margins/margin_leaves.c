@@ -1,0 +1,185 @@
+/* By how much a leaf holds or fails to at the position at hand, in base units.
+ *
+ * A comparison of numbers counts by how far its sides are apart, anything else as infinite; what is not
+ * known may be anything. */
+#include "input/input.h"
+#include "margins/margins.h"
+
+static const margin_range ANYTHING = {-(double)INFINITY, (double)INFINITY};
+
+static margin_range of_truth(uint8_t truth)
+{
+    margin_range made = {-INFINITE, INFINITE};
+    if (truth == IS_FALSE) {
+        made.high = -INFINITE;
+    } else if (truth == IS_TRUE) {
+        made.low = INFINITE;
+    } else {
+        /* It may be either. */
+    }
+    return made;
+}
+
+static bool is_anything(const margin_range *x)
+{
+    return (x->low == -INFINITE) && (x->high == INFINITE);
+}
+
+static double double_of(const rv_number *x)
+{
+    return (x->kind == RV_WHOLE) ? (double)x->as.whole : x->as.real;
+}
+
+/* One number less another: of whole numbers rounded once. */
+static double apart(const rv_number *a, const rv_number *b)
+{
+    if (compare_numbers(CMP_EQ, a, b) == IS_TRUE) {
+        return 0.0; /* of infinite ones, too */
+    }
+    if ((a->kind == RV_WHOLE) && (b->kind == RV_WHOLE)) {
+        const bool less = a->as.whole < b->as.whole;
+        const uint64_t x = (uint64_t)a->as.whole;
+        const uint64_t y = (uint64_t)b->as.whole;
+        return less ? -(double)(y - x) : (double)(x - y);
+    }
+    return double_of(a) - double_of(b);
+}
+
+/* By how much a comparison holds, given how far its left side is above the right one. Nothing is -0. */
+static double signed_by(int32_t compare, double distance)
+{
+    switch (compare) {
+    case CMP_LT:
+    case CMP_LE: return 0.0 - distance;
+    case CMP_GT:
+    case CMP_GE: return distance;
+    case CMP_EQ: return 0.0 - fabs(distance);
+    default: return fabs(distance);
+    }
+}
+
+static margin_range exactly(double value)
+{
+    margin_range made;
+    made.low = value;
+    made.high = value;
+    return made;
+}
+
+static margin_range of_programs(const run *r, const atom_plan *a, double factor, const int32_t *at)
+{
+    const rv_number left = program_value(r, a->left, at);
+    const rv_number right = program_value(r, a->right, at);
+    if ((left.kind == RV_UNKNOWN) || (right.kind == RV_UNKNOWN)) {
+        return ANYTHING;
+    }
+    return exactly(signed_by(a->compare, apart(&left, &right) * factor));
+}
+
+/* Take the occurrences that are looked at to the next combination; false behind the last. */
+static bool next_choice(const run *r, const int32_t *events, int32_t count)
+{
+    int32_t i;
+    for (i = count - 1; i >= 0; i--) {
+        r->chosen[events[i]]++;
+        if (r->chosen[events[i]] < r->payloads[events[i]].count) {
+            return true;
+        }
+        r->chosen[events[i]] = 0;
+    }
+    return false;
+}
+
+/* The best of all combinations of occurrences; of none it is infinitely far from true. */
+static margin_range of_occurrences(const run *r, const atom_plan *a, double factor)
+{
+    const int32_t *events = LIST(PLAN(r), a->events);
+    margin_range found = {-INFINITE, -INFINITE};
+    bool lacks = false;
+    bool may_occur = true;
+    int32_t i;
+    for (i = 0; i < a->events.count; i++) {
+        const bool silent = r->silent[events[i]] == IS_UNKNOWN;
+        lacks = lacks || silent;
+        may_occur = may_occur && (silent || (r->payloads[events[i]].count > 0));
+        r->chosen[events[i]] = 0;
+    }
+    if (!may_occur) {
+        return found;
+    }
+    if (lacks) {
+        return ANYTHING;
+    }
+    do {
+        margin_range one = ANYTHING;
+        bool known = true;
+        for (i = 0; i < a->events.count; i++) {
+            known = known && (r->payloads[events[i]].known[r->chosen[events[i]]] != 0U);
+        }
+        if (known) {
+            one = of_programs(r, a, factor, r->chosen);
+        }
+        found.low = fmax(found.low, one.low);
+        found.high = fmax(found.high, one.high);
+    } while (next_choice(r, events, a->events.count));
+    return found;
+}
+
+/* The distance of the comparison that a leaf shows. */
+static margin_range distance_of(const run *r, const measure_plan *m)
+{
+    const atom_plan *a = &r->part->atoms[r->part->nodes[m->node].a];
+    margin_range found = ANYTHING;
+    if (a->op == ATOM_REAL) {
+        const rv_number *x = &r->value[a->input];
+        if (x->kind == RV_REAL) {
+            const double distance = (x->as.real == a->constant) ? 0.0 : x->as.real - a->constant;
+            return exactly(signed_by(a->compare, distance * m->factor));
+        }
+    } else if (a->op == ATOM_COMPARE) {
+        found = of_programs(r, a, m->factor, NULL);
+    } else {
+        found = of_occurrences(r, a, m->factor);
+    }
+    /* What is not born is what it is taken for. Once all is, nobody follows the truth of what has a
+     * distance. */
+    if (is_anything(&found) && ((r->at.phase == 0) || (a->op == ATOM_PAYLOAD))) {
+        found = of_truth(r->truth[m->node]);
+    }
+    return found;
+}
+
+margin_range measured_leaf(const run *r, const measure_plan *m)
+{
+    margin_range found = {INFINITE, INFINITE};
+    switch (m->kind) {
+    case MEASURE_CONSTANT: break;
+    case MEASURE_TRUTH: found = of_truth(r->truth[m->node]); break;
+    case MEASURE_DENIED: found = of_truth(truth_if(r->truth[m->node] == IS_FALSE)); break;
+    default: found = distance_of(r, m); break;
+    }
+    if (m->turned != 0) {
+        const double low = found.low;
+        found.low = 0.0 - found.high;
+        found.high = 0.0 - low;
+    }
+    return found;
+}
+
+/* Whether a leaf is another behind the position at hand though none comes: it speaks of what occurs
+ * there, by however much it is false. */
+bool passes_on(const run *r, const measure_plan *m, margin_range *then)
+{
+    const node_plan *n;
+    const atom_plan *a;
+    if ((m->kind != MEASURE_DISTANCE) || (GAP(r) == 0)) {
+        return false;
+    }
+    n = &r->part->nodes[m->node];
+    a = &r->part->atoms[n->a];
+    if ((a->op != ATOM_PAYLOAD) || (r->momentary[n->a] == 0U)) {
+        return false;
+    }
+    *then = exactly((m->turned != 0) ? INFINITE : -INFINITE);
+    return true;
+}

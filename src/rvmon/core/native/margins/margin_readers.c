@@ -1,0 +1,183 @@
+/* What is worked out and made once: which judges measure what, so that a sample costs what it changes;
+ * what a run has where it is measured. */
+#include "formulas/formulas.h"
+#include "margins/margins.h"
+
+/* Readers while they are found: counted, then listed. */
+typedef struct {
+    const plan *plan;
+    const part *of;
+    int32_t *counts;           /* by what is read */
+    int32_t *judges;           /* NULL: they are counted */
+    const int32_t *first;
+} finding;
+
+static void found_reader(finding *f, int32_t what, int32_t judge_number)
+{
+    if (f->judges != NULL) {
+        f->judges[f->first[what] + f->counts[what]] = judge_number;
+    }
+    f->counts[what]++;
+}
+
+/* The signals whose values a program reads, or their updates. */
+static void find_in_program(finding *f, int32_t place, int32_t judge_number)
+{
+    const int32_t *word = &f->plan->code[place];
+    for (; (*word & 255) != CODE_END; word++) {
+        switch (*word & 255) {
+        case CODE_SIGNAL:
+        case CODE_PREV:
+        case CODE_DELTA:
+        case CODE_RATE: found_reader(f, *word >> 8, judge_number); break;
+        case CODE_FIELD: word++; break;
+        default: break;
+        }
+    }
+}
+
+/* What a distance is read off: signals and events; whether all is born its node tells. */
+static void find_in_atom(finding *f, const atom_plan *a, int32_t judge_number)
+{
+    const int32_t *events = LIST(f->plan, a->events);
+    int32_t i;
+    if (a->op == ATOM_REAL) {
+        found_reader(f, a->input, judge_number);
+        return;
+    }
+    find_in_program(f, a->left, judge_number);
+    find_in_program(f, a->right, judge_number);
+    for (i = 0; i < a->events.count; i++) {
+        found_reader(f, f->of->plan->signals.count + events[i], judge_number);
+    }
+}
+
+static void find_readers(finding *f)
+{
+    const part_plan *p = f->of->plan;
+    int32_t judge_number;
+    int32_t i;
+    for (judge_number = 0; judge_number < p->judges.count; judge_number++) {
+        const list own = f->plan->margins[p->judges.first + judge_number].measures;
+        for (i = own.first; i < own.first + own.count; i++) {
+            const measure_plan *m = &f->plan->measures[i];
+            if (m->kind == MEASURE_DISTANCE) {
+                find_in_atom(f, &f->of->atoms[f->of->nodes[m->node].a], judge_number);
+            }
+            if (m->kind != MEASURE_CONSTANT) {
+                found_reader(f, p->signals.count + p->events.count + m->node, judge_number);
+            }
+        }
+    }
+}
+
+/* Work out who measures what a part reads; false if memory is short. */
+static bool prepare_readers(rv_monitor *m, part *of)
+{
+    const part_plan *p = of->plan;
+    const int32_t count = p->signals.count + p->events.count + p->nodes.count;
+    const size_t size = (size_t)(count + 1) * sizeof(int32_t);
+    int32_t *counts = arena_take(&m->memory, size);
+    int32_t *first = arena_take(&m->memory, size);
+    finding f = {&m->plan, of, counts, NULL, first};
+    int32_t i;
+    if ((counts == NULL) || (first == NULL)) {
+        return false;
+    }
+    find_readers(&f);
+    for (i = 0; i < count; i++) {
+        first[i + 1] = first[i] + counts[i];
+        counts[i] = 0;
+    }
+    f.judges = arena_take(&m->memory, (size_t)(first[count] + 1) * sizeof *f.judges);
+    if (f.judges == NULL) {
+        return false;
+    }
+    find_readers(&f);
+    of->readers.first = first;
+    of->readers.judges = f.judges;
+    arena_give(&m->memory, counts, size);
+    return true;
+}
+
+/* Work out once what is measured has which shape, and who measures what. */
+bool margins_prepare(rv_monitor *m)
+{
+    const int64_t count = m->plan.counts[SEC_MARGINS];
+    int64_t i;
+    if (count == 0) {
+        return true;
+    }
+    m->shapes = arena_take(&m->memory, (size_t)count * sizeof *m->shapes);
+    for (i = 0; (m->shapes != NULL) && (i < count); i++) {
+        if (!make_shape(m, &m->plan.margins[i], &m->shapes[i])) {
+            return false;
+        }
+    }
+    for (i = 0; (m->shapes != NULL) && (i < m->plan.part_count); i++) {
+        if (!prepare_readers(m, &m->parts[i])) {
+            return false;
+        }
+    }
+    return m->shapes != NULL;
+}
+
+/* Have a run that is new be measured. */
+bool margins_make(run *r)
+{
+    rv_monitor *m = r->home->monitor;
+    const int32_t judges = r->part->plan->judges.count;
+    int32_t i;
+    int32_t k;
+    if (m->shapes == NULL) {
+        return true;
+    }
+    r->margins = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->margins);
+    r->changed_inputs = arena_take(&m->memory, (size_t)(judges + 1) * sizeof *r->changed_inputs);
+    r->margins_due.due = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int64_t));
+    r->margins_due.ids = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
+    r->margins_due.place = arena_take(&m->memory, (size_t)(judges + 1) * sizeof(int32_t));
+    if ((r->changed_inputs == NULL) || (r->margins_due.due == NULL) || (r->margins_due.ids == NULL)
+        || (r->margins_due.place == NULL)) {
+        return false;
+    }
+    for (i = 0; (r->margins != NULL) && (i < judges); i++) {
+        const margin_shape *s = shape_of(r, i);
+        measuring *q = &r->margins[i];
+        const size_t size = (size_t)(s->plan->measures.count + 1) * sizeof(double);
+        for (k = 0; k < 2; k++) {
+            q->letters[k].low = arena_take(&m->memory, size);
+            q->letters[k].high = arena_take(&m->memory, size);
+            if ((q->letters[k].low == NULL) || (q->letters[k].high == NULL)) {
+                return false;
+            }
+        }
+        if (!gauge_make(m, s, &q->readings[0])) {
+            return false;
+        }
+    }
+    return r->margins != NULL;
+}
+
+/* Have nothing be asked for, and nothing be known. */
+void margins_clear(run *r)
+{
+    int32_t i;
+    r->asked = 0;
+    r->changed_count = 0;
+    r->measured_at = -LIMIT;
+    if (r->margins != NULL) {
+        timers_clear(&r->margins_due, r->part->plan->judges.count);
+    }
+    for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
+        measuring *q = &r->margins[i];
+        q->asks_first = 0;
+        q->asks_end = 0;
+        q->letter_count = 0;
+        q->position = -LIMIT;
+        q->active = false;
+        q->parted = false;
+        q->blind = false;
+        q->changed_inputs = false;
+    }
+}

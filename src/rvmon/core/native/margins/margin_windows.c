@@ -1,0 +1,316 @@
+/* Operators that look along the trace: windows, and what is moved.
+ *
+ * Of a window the values that may be its extreme are kept in a wedge, the best one first, each with the
+ * last position whose window holds it: a change costs what it drops, however long the window is.
+ *
+ * Source: Lemire 2006. */
+#include "margins/margins.h"
+
+/* A window at work. */
+typedef struct {
+    gauging *w;
+    margin_node *o;
+    margin_edge *edge;
+    const margin_steps *from;  /* NULL: no window holds anything */
+    int32_t place;
+    bool every;
+    bool closes;               /* whether what lies behind the end is still to be taken */
+    double nothing;            /* where there is nothing in the window */
+    int64_t low;
+    int64_t high;
+} windowing;
+
+static int64_t exit_of(const margin_steps *wedge)
+{
+    return step_at(wedge, wedge->first)->at;
+}
+
+static void drop_exits(margin_steps *wedge, int64_t position)
+{
+    while ((wedge->first < wedge->end) && (exit_of(wedge) < position)) {
+        wedge->first++;
+    }
+}
+
+/* Tell what windows are up to a position. */
+static void tell_windows(windowing *x, int64_t stop)
+{
+    margin_steps *wedge = &x->o->wedge;
+    while (x->o->next <= stop) {
+        double best = x->nothing;
+        int64_t right = stop;
+        drop_exits(wedge, x->o->next);
+        if (wedge->first < wedge->end) {
+            best = step_at(wedge, wedge->first)->value;
+            right = least(exit_of(wedge), stop);
+        }
+        if (!x->o->begun || (best != x->o->carried)) {
+            x->o->begun = true;
+            x->o->carried = best;
+            tell_step(x->w, x->place, x->o->next, best);
+        }
+        x->o->next = right + 1;
+    }
+}
+
+/* The same where only samples are positions. */
+static void tell_windows_of_samples(windowing *x, int64_t stop)
+{
+    const margin_steps *stamps = &x->w->g->stamps;
+    margin_steps *wedge = &x->o->wedge;
+    while ((x->o->positions < stamps->end) && (step_at(stamps, x->o->positions)->at <= stop)) {
+        const int64_t position = step_at(stamps, x->o->positions)->at;
+        x->o->positions++;
+        drop_exits(wedge, position);
+        tell_step(x->w, x->place, position,
+                  (wedge->first < wedge->end) ? step_at(wedge, wedge->first)->value : x->nothing);
+    }
+    if (x->o->next <= stop) {
+        x->o->next = stop + 1;
+    }
+}
+
+/* Take a step of the operand into the wedge. */
+static void enter_wedge(windowing *x, int64_t at, double value)
+{
+    margin_steps *wedge = &x->o->wedge;
+    if (!x->w->sparse && (wedge->first < wedge->end)) {
+        step_at(wedge, wedge->end - 1)->at = at - x->low - 1;
+    }
+    while ((wedge->first < wedge->end)
+           && (x->every ? (step_at(wedge, wedge->end - 1)->value >= value)
+                        : (step_at(wedge, wedge->end - 1)->value <= value))) {
+        wedge->end--;
+    }
+    if (!room_for_step(x->w, wedge, wedge->first)) {
+        return;
+    }
+    step_at(wedge, wedge->end)->at = x->w->sparse ? at - x->low : NEVER;
+    step_at(wedge, wedge->end)->value = value;
+    wedge->end++;
+}
+
+/* The next step of the operand that some window up to a position holds; behind the end, nothing. */
+static bool next_entry(windowing *x, int64_t most, margin_step *found)
+{
+    if ((x->from != NULL) && (x->edge->read < x->from->end)) {
+        const margin_step *next = step_at(x->from, x->edge->read);
+        found->at = next->at;
+        found->value = next->value;
+        x->edge->read += (next->at <= most) ? 1 : 0;
+        return next->at <= most;
+    }
+    if (x->closes && (x->w->end->last + 1 <= most)) {
+        x->closes = false;
+        found->at = x->w->end->last + 1;
+        found->value = x->every ? INFINITE : -INFINITE;
+        return true;
+    }
+    return false;
+}
+
+/* Take in what the operand is and tell all values, up to where windows are known. */
+static void slide_window(windowing *x, int64_t until)
+{
+    bool more = true;
+    while (more) {
+        margin_step entry = {0, 0.0};
+        int64_t stop = until;
+        more = next_entry(x, until + x->high + 1, &entry);
+        if (more) {
+            stop = entry.at - x->high - 1;
+        }
+        if (x->w->sparse) {
+            tell_windows_of_samples(x, stop);
+        } else {
+            tell_windows(x, stop);
+        }
+        if (more) {
+            enter_wedge(x, entry.at, entry.value);
+        }
+    }
+}
+
+/* What windows are that lie behind the end in part is not known. */
+static void give_up(windowing *x)
+{
+    x->nothing = margin_behind(x->w->end, false);
+    x->o->wedge.first = x->o->wedge.end;
+    x->closes = false;
+    if (x->from != NULL) {
+        x->edge->read = x->from->end;
+    }
+}
+
+void gauge_window(gauging *w, int32_t place)
+{
+    const operator_plan *n = node_plan_of(w, place);
+    const int32_t operand = w->shape->places[place].edge;
+    const int64_t limit = (n->over < 0) ? w->now : floored(w->reached - n->over, w->step);
+    int64_t until = limit;
+    windowing x;
+    x.w = w;
+    x.o = &w->g->nodes[place];
+    x.edge = &w->g->edges[operand];
+    x.from = (n->low <= n->high) ? &w->g->nodes[n->left].out : NULL;
+    x.place = place;
+    x.every = n->turned != 0;
+    x.closes = w->end != NULL;
+    x.nothing = x.every ? INFINITE : -INFINITE;
+    x.low = n->low;
+    x.high = n->high;
+    if (w->end == NULL) {
+        if (x.from != NULL) {
+            until = least(until, operand_known(w, n->left) - n->high);
+        } else {
+            x.edge->read = w->g->nodes[n->left].out.end;
+        }
+        slide_window(&x, until);
+    } else {
+        const bool unknown = (n->over >= 0) && (margin_behind(w->end, false) != x.nothing);
+        slide_window(&x, least(limit, w->end->last));
+        if (unknown) {
+            give_up(&x);
+        }
+        slide_window(&x, w->end->last);
+    }
+    x.o->known = x.o->next - 1;
+}
+
+/* What is moved, at work: steps of the operand, then what lies behind the end. */
+typedef struct {
+    const margin_steps *from;
+    margin_edge *edge;
+    int64_t offset;
+    margin_step ends[2];
+    int32_t ends_first;
+    int32_t ends_count;
+} shifting;
+
+static bool next_moved(const shifting *x, margin_step *found)
+{
+    if (x->edge->read < x->from->end) {
+        *found = *step_at(x->from, x->edge->read);
+        found->at -= x->offset;
+        return true;
+    }
+    if (x->ends_first < x->ends_count) {
+        *found = x->ends[x->ends_first];
+        return true;
+    }
+    return false;
+}
+
+static void take_moved(shifting *x)
+{
+    if (x->edge->read < x->from->end) {
+        x->edge->read++;
+    } else {
+        x->ends_first++;
+    }
+}
+
+/* What is assumed of the operand behind the end, up to where its windows opened. */
+static void add_ends(const gauging *w, shifting *x, const operator_plan *n)
+{
+    const bool kept = n->kept != 0;
+    const int64_t opened = floored(w->end->instant - n->over, w->step);
+    const bool by_rule = w->end->rest == REST_END;
+    if (w->sparse) {
+        if (by_rule) {
+            x->ends[0].at = opened;
+            x->ends[0].value = margin_behind(w->end, kept);
+        }
+        x->ends[by_rule ? 1 : 0].at = LIMIT;
+        x->ends[by_rule ? 1 : 0].value = by_rule ? -INFINITE : margin_behind(w->end, false);
+    } else {
+        x->ends[0].at = w->end->last - x->offset + 1;
+        x->ends[0].value = margin_behind(w->end, kept);
+        x->ends[1].at = opened + 1;
+        x->ends[1].value = -INFINITE;
+    }
+    x->ends_count = by_rule ? 2 : 1;
+}
+
+/* Where every integer is a position. */
+static void move_all(gauging *w, int32_t place, shifting *x, int64_t until, double before)
+{
+    margin_node *o = &w->g->nodes[place];
+    const int64_t first = w->g->first;
+    margin_step one = {first, before};
+    bool some = !o->begun && (x->offset < 0);
+    if (until < first) {
+        return;
+    }
+    o->begun = true;
+    if (!some && next_moved(x, &one) && (one.at <= until)) {
+        take_moved(x);
+        some = true;
+    }
+    while (some) {
+        margin_step next = {0, 0.0};
+        const bool follows = next_moved(x, &next) && (next.at <= until);
+        const int64_t right = follows ? next.at - 1 : until;
+        const int64_t at = (one.at < first) ? first : one.at;
+        if (at <= right) {
+            tell_step(w, place, at, one.value);
+        }
+        if (follows) {
+            take_moved(x);
+        }
+        one = next;
+        some = follows;
+    }
+    o->joined = until;
+}
+
+/* Where only samples are: an `until` has the value of the next position, a `since` that of the last. */
+static void move_samples(gauging *w, int32_t place, shifting *x, int64_t known, double before)
+{
+    margin_node *o = &w->g->nodes[place];
+    const margin_steps *stamps = &w->g->stamps;
+    const bool ahead = x->offset > 0;
+    int64_t until = known;
+    margin_step one = {0, 0.0};
+    if (!o->begun) {
+        o->begun = true;
+        o->carried = before;
+    }
+    if (ahead && (x->ends_count > 0)) {
+        until = x->ends[x->ends_count - 1].at;
+    } else if (ahead && (x->from->end > x->edge->read)) {
+        until = step_at(x->from, x->from->end - 1)->at - x->offset;
+    } else {
+        /* It is known as far as its operand. */
+    }
+    until = least(until, w->now);
+    while ((o->positions < stamps->end) && (step_at(stamps, o->positions)->at <= until)) {
+        const int64_t position = step_at(stamps, o->positions)->at;
+        o->positions++;
+        while (next_moved(x, &one) && (ahead ? (one.at < position) : (one.at <= position))) {
+            o->carried = one.value;
+            take_moved(x);
+        }
+        tell_step(w, place, position, ahead ? one.value : o->carried);
+    }
+    o->joined = until;
+}
+
+/* An `until` or `since` so many integers further on. */
+void gauge_shift(gauging *w, int32_t place)
+{
+    const operator_plan *n = node_plan_of(w, place);
+    const double before = (node_plan_of(w, n->left)->turned != 0) ? INFINITE : -INFINITE;
+    const int64_t known = (w->end != NULL) ? LIMIT : w->g->nodes[n->left].known - n->low;
+    shifting x = {&w->g->nodes[n->left].out, &w->g->edges[w->shape->places[place].edge], n->low,
+                {{0, 0.0}, {0, 0.0}}, 0, 0};
+    if ((w->end != NULL) && (x.offset > 0)) {
+        add_ends(w, &x, n);
+    }
+    if (w->sparse) {
+        move_samples(w, place, &x, known, before);
+    } else {
+        move_all(w, place, &x, least(known, w->now), before);
+    }
+    w->g->nodes[place].known = w->g->nodes[place].joined;
+}

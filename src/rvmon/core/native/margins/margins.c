@@ -1,0 +1,374 @@
+/* What is measured of the attempts of a run: the leaves are read at each position, and given to gauges;
+ * what these answer is the figure of an attempt that begins at that position. */
+#include "formulas/formulas.h"
+#include "margins/margins.h"
+#include "runs/runs.h"
+
+#include <string.h>
+
+/* Whether each position of a sample is asked for. */
+static bool is_streamed(const run *r, int32_t index)
+{
+    return r->home->monitor->measures_positions && (r->part->plan->captured == 0)
+           && (index < r->part->plan->requirements);
+}
+
+/* Whether what is measured has to be followed though nothing is asked for. */
+static bool is_kept_up(const run *r, int32_t index)
+{
+    return (shape_of(r, index)->plan->looks_back != 0) || is_streamed(r, index);
+}
+
+/* Whether its attempts begin at the end: the last position may be asked for when all is over. */
+static bool awaits_the_end(const run *r, int32_t index)
+{
+    return r->part->judges[index].trigger < 0;
+}
+
+/* Filled in where it is used: a copy at once would wait for what was just written. */
+void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached)
+{
+    measuring *q = &r->margins[index];
+    w->monitor = r->home->monitor;
+    w->shape = shape_of(r, index);
+    w->g = &q->readings[0];
+    w->q = q;
+    w->answers = NULL;
+    w->side = 0;
+    w->end = NULL;
+    w->step = step_of(r);
+    w->now = now;
+    w->reached = reached;
+    w->sparse = GAP(r) == 0;
+    w->thin = !is_streamed(r, index);
+}
+
+/* Take it that what judges measure may be another: what a name says, signals first, then events, or the
+ * truth of a node, behind them. */
+void margins_mark_changed(run *r, int32_t what)
+{
+    const margin_readers *readers = &r->part->readers;
+    int32_t i;
+    if (r->margins == NULL) {
+        return;
+    }
+    for (i = readers->first[what]; i < readers->first[what + 1]; i++) {
+        const int32_t index = readers->judges[i];
+        if (!r->margins[index].changed_inputs) {
+            r->margins[index].changed_inputs = true;
+            r->changed_inputs[r->changed_count] = index;
+            r->changed_count++;
+        }
+    }
+}
+
+static void mark_all_changed(run *r)
+{
+    int32_t i;
+    r->changed_count = 0;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        r->margins[i].changed_inputs = true;
+        r->changed_inputs[i] = i;
+    }
+    r->changed_count = r->part->plan->judges.count;
+}
+
+/* Give the letters up to a position to the gauges. */
+static void give_letters(gauging *w, int64_t last)
+{
+    measuring *q = w->q;
+    int32_t given = 0;
+    for (; (given < q->letter_count) && (q->letters[given].at <= last); given++) {
+        w->g = &q->readings[0];
+        gauge_take(w, q->letters[given].at, q->letters[given].low);
+        if (q->parted) {
+            w->g = &q->readings[1];
+            gauge_take(w, q->letters[given].at, q->letters[given].high);
+        }
+    }
+    if ((given == 1) && (q->letter_count == 2)) {
+        const margin_letter one = q->letters[0];
+        q->letters[0] = q->letters[1];
+        q->letters[1] = one;
+    }
+    q->letter_count -= given;
+}
+
+/* What is known of an attempt by what its formula is at least and at most, and by the rule for the end.
+ * What it owes with values that nobody knows may be anything. */
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept)
+{
+    const bool cut = r->cut < NEVER;
+    made->t = one->position * step_of(r);
+    made->low = cut ? -INFINITE : one->low;
+    made->high = one->high;
+    made->kept = cut ? -INFINITE : kept;
+    made->requirement = r->part->judges[index].requirement;
+    made->number = 0;
+    made->in_doubt = 0;
+    made->of_position = (one->record == 0) ? 1 : 0;
+}
+
+/* Tell a figure that nothing can change any more. */
+static void tell_figure(const run *r, int32_t index, const margin_ask *one, double kept)
+{
+    rv_margin *made = figure_found(r->home->monitor, one->record);
+    if (made != NULL) {
+        fill_figure(made, r, index, one, kept);
+    }
+}
+
+/* Tell the figures that are answered in both readings. */
+static void tell_answers(run *r, int32_t index)
+{
+    measuring *q = &r->margins[index];
+    const int64_t first = q->readings[0].answered;
+    const int64_t answered = q->parted ? least(first, q->readings[1].answered) : first;
+    while (q->asks_first < answered) {
+        const margin_ask *one = ask_at(q, q->asks_first);
+        q->asks_first++;
+        r->asked -= (one->record != 0) ? 1 : 0;
+        tell_figure(r, index, one, one->low);
+    }
+    if ((q->asks_first == q->asks_end) && !is_kept_up(r, index) && !awaits_the_end(r, index)) {
+        q->active = false;
+        q->letter_count = 0;
+    }
+}
+
+/* Set when time alone may settle the first position that is asked for, the leaves being known up to a
+ * position; NEVER: it cannot. */
+static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
+{
+    const margin_shape *s = shape_of(r, index);
+    const measuring *q = &r->margins[index];
+    int64_t due = NEVER;
+    if (q->active && (q->asks_first < q->asks_end) && !awaits_the_end(r, index)) {
+        due = sum(ask_at(q, q->asks_first)->position * step_of(r), s->lag);
+        if ((due <= reached) && !s->passes && (q->letter_count == 0)
+            && (now >= floored(reached, step_of(r)))) {
+            due = NEVER; /* all that is known was looked at */
+        }
+    }
+    timers_set(&r->margins_due, index, due);
+}
+
+/* Let the leaves be known up to a position. */
+static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
+{
+    gauging w;
+    measuring *q = &r->margins[index];
+    begin_gauging(&w, r, index, now, reached);
+    give_letters(&w, now);
+    w.g = &q->readings[0];
+    gauge_run(&w);
+    if (q->parted) {
+        w.g = &q->readings[1];
+        w.side = 1;
+        gauge_run(&w);
+    }
+    tell_answers(r, index);
+    set_margin_due(r, index, now, reached);
+}
+
+/* What is at most is another from the first letter on in which something is unknown. */
+static void part_margins(run *r, int32_t index)
+{
+    measuring *q = &r->margins[index];
+    q->parted = gauge_copy(r->home->monitor, shape_of(r, index), &q->readings[1], &q->readings[0]);
+}
+
+/* Read the leaves at a position, up to which they are given to the gauges. */
+static void read_measures(run *r, int32_t index, int64_t position)
+{
+    const margin_shape *s = shape_of(r, index);
+    measuring *q = &r->margins[index];
+    bool differs = false;
+    bool passes = false;
+    int32_t i;
+    for (i = 0; i < s->plan->measures.count; i++) {
+        const margin_range now = measured_leaf(r, &s->measures[i]);
+        margin_range then = now;
+        q->letters[0].low[i] = now.low;
+        q->letters[0].high[i] = now.high;
+        differs = differs || (now.low != now.high);
+        passes = passes_on(r, &s->measures[i], &then) || passes;
+        q->letters[1].low[i] = then.low;
+        q->letters[1].high[i] = then.high;
+    }
+    q->letters[0].at = position;
+    q->letters[1].at = position + 1;
+    q->letter_count = passes ? 2 : 1;
+    if (differs && !q->parted) {
+        part_margins(r, index);
+    }
+}
+
+/* Come to a position: up to the one before it, the leaves are known. */
+static void enter_position(run *r, int32_t index, int64_t t)
+{
+    const margin_shape *s = shape_of(r, index);
+    measuring *q = &r->margins[index];
+    const int64_t position = floored(t, step_of(r));
+    const bool asked = q->asks_first < q->asks_end;
+    if (q->active && !asked && !is_kept_up(r, index)) {
+        q->active = false; /* it awaits the end */
+    }
+    if (!q->active) {
+        q->active = true;
+        q->parted = false;
+        q->letter_count = 0;
+        gauge_begin(s, &q->readings[0], position, q->asks_first);
+    } else if (awaits_the_end(r, index)) {
+        come_to_margin(r, index, position - 1, t);
+    } else if (q->letter_count > 0) {
+        gauging w;
+        begin_gauging(&w, r, index, position - 1, t);
+        give_letters(&w, position - 1);
+    } else {
+        /* They are given. */
+    }
+    read_measures(r, index, position);
+    q->position = t;
+    timers_set(&r->margins_due, index, awaits_the_end(r, index) ? NEVER : -LIMIT);
+}
+
+/* Ask for a position of which the letter is not given yet. */
+static void ask_for(run *r, int32_t index, int64_t position, int32_t record)
+{
+    measuring *q = &r->margins[index];
+    rv_monitor *m = r->home->monitor;
+    margin_ask *one;
+    int64_t i;
+    if (q->asks_end - q->asks_first == q->asks_room) {
+        const int32_t room = (q->asks_room > 0) ? 2 * q->asks_room : 4;
+        margin_ask *made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made)
+                                                  : NULL;
+        if (made == NULL) {
+            m->spoilt = true;
+            return;
+        }
+        for (i = q->asks_first; i < q->asks_end; i++) {
+            made[i & (room - 1)] = *ask_at(q, i);
+        }
+        arena_give(&m->memory, q->asks, (size_t)q->asks_room * sizeof *made);
+        q->asks = made;
+        q->asks_room = room;
+    }
+    one = ask_at(q, q->asks_end);
+    q->asks_end++;
+    one->position = position;
+    one->low = -INFINITE;
+    one->high = INFINITE;
+    one->record = record;
+    r->asked += (record != 0) ? 1 : 0;
+    if ((q->asks_end == q->asks_first + 1) && !awaits_the_end(r, index)) {
+        const int64_t due = sum(position * step_of(r), shape_of(r, index)->lag);
+        timers_set(&r->margins_due, index, least(due, r->margins_due.due[index]));
+    }
+}
+
+/* Measure an attempt that begins at the position at `t`. */
+void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
+{
+    measuring *q;
+    if ((r->margins == NULL) || (record == 0)) {
+        return;
+    }
+    q = &r->margins[index];
+    if (q->blind || (r->at.presence != ARE_THERE) || r->at.dense) {
+        const margin_ask none = {floored(t, step_of(r)), -INFINITE, INFINITE, record};
+        tell_figure(r, index, &none, -INFINITE);
+        return;
+    }
+    /* At the end, the letter of the last position stands; a later sample may have been taken. */
+    if (!q->active
+        || ((q->position < t) && (q->changed_inputs || (GAP(r) == 0)) && !awaits_the_end(r, index))) {
+        enter_position(r, index, t);
+    }
+    ask_for(r, index, floored(t, step_of(r)), record);
+}
+
+/* Read what a judge measures at the position at `t`, if it is asked for. */
+static void visit_measured(run *r, int32_t index, int64_t t)
+{
+    measuring *q = &r->margins[index];
+    const bool wanted = q->active || is_kept_up(r, index) || awaits_the_end(r, index);
+    q->changed_inputs = false;
+    if (!q->blind && wanted && (!q->active || (q->position < t))) {
+        enter_position(r, index, t);
+    }
+}
+
+/* Read what is measured at the position at `t`, when attempts have begun there: where samples are
+ * positions of all, else of those whose leaves may be others. */
+void margins_visit(run *r, int64_t t)
+{
+    const int32_t streamed = r->home->monitor->measures_positions ? r->part->plan->requirements : 0;
+    int32_t i;
+    if ((GAP(r) == 0) || (r->measured_at == -LIMIT)) {
+        mark_all_changed(r);
+    }
+    r->measured_at = t;
+    for (i = 0; i < r->changed_count; i++) {
+        visit_measured(r, r->changed_inputs[i], t);
+    }
+    r->changed_count = 0;
+    for (i = 0; i < streamed; i++) {
+        if (is_streamed(r, i) && !r->margins[i].blind && (t - step_of(r) < r->at.after)) {
+            ask_for(r, i, floored(t, step_of(r)), 0);
+        }
+    }
+}
+
+/* Tell what has become known in a run now that time has come to an instant: where leaves were read, or
+ * time alone may do. */
+static void settle_run(run *r, int64_t reached)
+{
+    const int64_t seen = (r->measured_at == reached) ? reached : reached - 1;
+    while (timers_next(&r->margins_due) <= reached) {
+        const int32_t index = r->margins_due.ids[0];
+        come_to_margin(r, index, floored(seen, step_of(r)), reached);
+        if (r->margins_due.due[index] <= reached) {
+            timers_set(&r->margins_due, index, reached + 1);
+        }
+    }
+}
+
+void margins_settle(home *h, int64_t reached)
+{
+    run *r;
+    bool over = false;
+    if (h->monitor->shapes == NULL) {
+        return;
+    }
+    for (r = h->root; r != NULL; r = following(h, r)) {
+        const int32_t asked = r->asked;
+        settle_run(r, reached);
+        if ((asked > 0) && (r->asked == 0) && (h->part->plan->captured > 0)) {
+            touch_run(r); /* it may be let go of */
+            over = true;
+        }
+    }
+    if (over) {
+        rest_all(h);
+    }
+}
+
+/* Positions are missed in an outage: what was measured may be anything, and what looks back stays so. */
+void margins_miss(run *r)
+{
+    int32_t i;
+    for (i = 0; (r->margins != NULL) && (i < r->part->plan->judges.count); i++) {
+        measuring *q = &r->margins[i];
+        q->blind = shape_of(r, i)->plan->looks_back != 0;
+        for (; q->asks_first < q->asks_end; q->asks_first++) {
+            const margin_ask *one = ask_at(q, q->asks_first);
+            const margin_ask none = {one->position, -INFINITE, INFINITE, one->record};
+            r->asked -= (one->record != 0) ? 1 : 0;
+            tell_figure(r, i, &none, -INFINITE);
+        }
+        q->active = false;
+    }
+    r->measured_at = -LIMIT;
+}

@@ -1,0 +1,141 @@
+/* What the files of margins call of each other. */
+#ifndef RVMON_MARGINS_H
+#define RVMON_MARGINS_H
+
+#include "basics.h"
+
+#include <math.h>
+
+/* ---- margins.c, margin_results.c: by how much what attempts owe holds; nothing where that is not asked
+ * for */
+bool margins_prepare(rv_monitor *m);
+void margins_reset(rv_monitor *m);
+bool margins_make(run *r);
+void margins_clear(run *r);
+void margins_begin(run *r, int32_t index, int64_t t, int32_t record);
+void margins_visit(run *r, int64_t t);
+void margins_settle(home *h, int64_t reached);
+void margins_miss(run *r);
+void margins_close(home *h, int64_t end, int64_t reached);
+int32_t measured_attempt(run *r, int64_t triggered, uint32_t number);
+void margin_numbered(rv_monitor *m, int32_t record, bool sure, uint32_t number);
+void margin_vanished(rv_monitor *m, int32_t record);
+
+#define INFINITE ((double)INFINITY)
+
+/* What is assumed of what lies behind the end of a trace: the least, the greatest, or the rule for the
+ * end: the greatest for an unbounded `R` that has begun, else the least. */
+enum { REST_LEAST, REST_GREATEST, REST_END };
+
+typedef struct {
+    int64_t instant;           /* the last one, ticks */
+    int64_t last;              /* the last integer that may be a position */
+    int32_t rest;
+} margin_end;
+
+/* A gauge at work. */
+typedef struct {
+    rv_monitor *monitor;
+    const margin_shape *shape;
+    gauge *g;
+    measuring *q;              /* says what is asked for */
+    double *answers;           /* of all that is asked for; NULL: they stand there */
+    int32_t side;              /* 0: at least; 1: at most */
+    const margin_end *end;     /* NULL: the trace goes on */
+    int64_t step;              /* ticks from one position to the next */
+    int64_t now;               /* up to where leaves are known */
+    int64_t reached;           /* the instant that time has come to */
+    bool sparse;               /* whether only samples are positions */
+    bool thin;                 /* whether few positions are asked for */
+} gauging;
+
+/* Least and greatest value. */
+typedef struct {
+    double low;
+    double high;
+} margin_range;
+
+static inline margin_step *step_at(const margin_steps *s, int64_t number)
+{
+    return &s->ring[number & (s->room - 1)];
+}
+
+static inline const operator_plan *node_plan_of(const gauging *w, int32_t place)
+{
+    return &w->shape->nodes[place];
+}
+
+static inline double within(double value, double least_one, double most)
+{
+    return (value < least_one) ? least_one : ((value > most) ? most : value);
+}
+
+/* What lies behind the end; `kept`: the end counts as true for it. */
+static inline double margin_behind(const margin_end *end, bool kept)
+{
+    const bool good = (end->rest == REST_GREATEST) || ((end->rest == REST_END) && kept);
+    return good ? INFINITE : -INFINITE;
+}
+
+/* Whether the value of an operator matters at positions alone that are asked for, and these are few. */
+static inline bool is_thin(const gauging *w, int32_t place)
+{
+    return w->thin && w->shape->places[place].alone;
+}
+
+static inline const margin_shape *shape_of(const run *r, int32_t index)
+{
+    return &r->home->monitor->shapes[r->part->plan->judges.first + index];
+}
+
+/* Up to where an operand is known. */
+static inline int64_t operand_known(const gauging *w, int32_t place)
+{
+    return (w->shape->nodes[place].kind == OP_LEAF) ? w->now : w->g->nodes[place].known;
+}
+
+static inline margin_ask *ask_at(const measuring *q, int64_t number)
+{
+    return &q->asks[number & (q->asks_room - 1)];
+}
+
+/* ---- margin_steps.c */
+bool room_for_step(gauging *w, margin_steps *s, int64_t oldest);
+void tell_step(gauging *w, int32_t place, int64_t at, double value);
+bool is_asked(const gauging *w, int64_t left, int64_t right);
+void note_position(gauging *w, int64_t at);
+bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s);
+bool parts_copy(rv_monitor *m, margin_parts *made, const margin_parts *s);
+void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high, bool alone);
+bool parts_settled(const margin_parts *s, double *value);
+void parts_leave(margin_parts *s);
+
+/* ---- margin_nodes.c */
+void gauge_join(gauging *w, int32_t place);
+
+/* ---- margin_windows.c */
+void gauge_window(gauging *w, int32_t place);
+void gauge_shift(gauging *w, int32_t place);
+
+/* ---- gauge.c */
+bool gauge_make(rv_monitor *m, const margin_shape *s, gauge *g);
+void gauge_begin(const margin_shape *s, gauge *g, int64_t first, int64_t answered);
+bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *g);
+void gauge_take(gauging *w, int64_t at, const double *values);
+void gauge_run(gauging *w);
+
+bool make_shape(rv_monitor *m, const margin_plan *g, margin_shape *s);
+
+/* ---- margin_leaves.c */
+margin_range measured_leaf(const run *r, const measure_plan *m);
+bool passes_on(const run *r, const measure_plan *m, margin_range *then);
+
+/* ---- margins.c, of a run */
+void begin_gauging(gauging *w, const run *r, int32_t index, int64_t now, int64_t reached);
+void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, double kept);
+
+/* ---- margin_results.c */
+rv_margin *figure_found(rv_monitor *m, int32_t record);
+rv_margin as_told(const rv_monitor *m, const rv_margin *figure, int32_t record);
+
+#endif

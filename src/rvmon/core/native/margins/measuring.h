@@ -1,0 +1,153 @@
+/* What is kept of a formula that is measured: the part of the state that margins have. */
+#ifndef RVMON_MEASURING_H
+#define RVMON_MEASURING_H
+
+#include "plan/plan.h"
+
+/* From a position on a function has a value. */
+typedef struct {
+    int64_t at;
+    double value;
+} margin_step;
+
+/* Steps in order, as a ring; each has its number from the first that ever was. */
+typedef struct {
+    margin_step *ring;
+    int32_t room;              /* a power of two, or 0 */
+    int64_t first;             /* the oldest that is kept */
+    int64_t end;
+} margin_steps;
+
+/* A stretch of positions at which an `until` is what follows, kept between two bounds. */
+typedef struct {
+    int64_t first;
+    double least;
+    double most;
+    double low;                /* the bounds of several together: in the front half, of it and all */
+    double high;               /* behind it there; in the back half, of all before it there and it */
+} margin_part;
+
+typedef struct {
+    margin_part *at;
+    int32_t room;
+    int32_t begin;
+    int32_t middle;            /* where the back half begins */
+    int32_t end;
+} margin_parts;
+
+/* An operand of an operator. */
+typedef struct {
+    int64_t read;              /* the number of its first step that was not taken */
+    double value;              /* what it is where that was taken */
+} margin_edge;
+
+typedef struct {
+    margin_steps out;          /* what it is, as far as somebody has not read it */
+    margin_steps wedge;        /* of a window: values that may be its extreme, the best one first, and
+                                * where the last window is that holds each */
+    margin_parts parts;        /* of an `until`: what is not settled */
+    int64_t known;             /* up to where it is known */
+    int64_t joined;            /* up to where its operands are brought together */
+    int64_t next;              /* of a window, the first position that is not told */
+    int64_t positions;         /* the number of the first position that is not told of */
+    double carried;            /* what it was last */
+    bool begun;
+} margin_node;
+
+/* One bound of the robustness of a formula while a trace goes by. */
+typedef struct {
+    margin_node *nodes;
+    margin_edge *edges;
+    double *letter;            /* what the leaves were last */
+    margin_steps stamps;       /* the positions, if only samples are some */
+    int64_t first;             /* the first position */
+    int64_t read;              /* of the steps of the formula */
+    int64_t answered;          /* the number of the first position that is asked for still */
+    double reported;
+    bool begun;
+} gauge;
+
+/* A position that is asked for. */
+typedef struct {
+    int64_t position;
+    double low;
+    double high;
+    int32_t record;            /* of the attempt that begins there, 1 for the first; 0: of none */
+} margin_ask;
+
+/* What the leaves are from a position on, at least and at most. */
+typedef struct {
+    int64_t at;
+    double *low;
+    double *high;
+} margin_letter;
+
+/* What is measured of the attempts of a judge. */
+typedef struct {
+    gauge readings[2];         /* at least, and at most from the first unknown letter on */
+    gauge scratch;             /* where the end of a trace is tried */
+    margin_letter letters[2];  /* that the gauges do not know yet */
+    margin_ask *asks;          /* a ring of those not answered, by number */
+    int64_t asks_first;
+    int64_t asks_end;
+    int64_t position;          /* of the letter that was read last */
+    int32_t asks_room;
+    int32_t letter_count;
+    bool active;
+    bool parted;
+    bool blind;                /* whether it missed positions that matter */
+    bool changed_inputs;              /* whether its leaves may be others than was read */
+} measuring;
+
+/* An attempt that is measured, until its figure is taken. */
+typedef struct {
+    int64_t triggered;
+    uint32_t number;
+    uint32_t doubt_number;
+    int32_t next;              /* of those that are free */
+    bool sure;
+    bool vanished;             /* it was in doubt, and met: it leaves no figure */
+} margin_record;
+
+/* Of a formula that is measured, what of its shape is worked out once. */
+typedef struct {
+    int32_t edge;              /* its first operand */
+    int32_t edge_count;
+    bool alone;                /* whether its value matters where that of the formula is asked for alone */
+} margin_place;
+
+typedef struct {
+    const margin_plan *plan;
+    const operator_plan *nodes;
+    const measure_plan *measures;
+    margin_place *places;
+    int32_t *operands;         /* by edge; -1: one that never changes */
+    double *fixed;             /* by edge, what it is then */
+    int32_t count;
+    int32_t edges;
+    int32_t *leaves;           /* by measure, the place of its leaf; -1: nobody reads its steps */
+    int64_t lag;               /* no position is settled less than so many ticks behind it */
+    bool passes;               /* whether time alone can make something known */
+} margin_shape;
+
+/* Which judges measure what a name says, or a node. */
+typedef struct {
+    int32_t *first;            /* by name of a part, signals first, then by node; the end */
+    int32_t *judges;
+} margin_readers;
+
+/* Figures that were found, and attempts that wait for theirs. */
+typedef struct {
+    rv_margin *found;
+    margin_record *records;
+    int32_t *owners;           /* by figure, the record; 0: none */
+    int32_t found_count;
+    int32_t found_room;
+    int32_t owners_room;
+    int32_t ready;             /* so many of them stand in order, to be taken */
+    int32_t record_count;
+    int32_t record_room;
+    int32_t free_record;
+} margin_results;
+
+#endif

@@ -1,0 +1,123 @@
+/* Networks as judges: what network_judge.c and network_attempts.c share. */
+#ifndef RVMON_NETWORK_H
+#define RVMON_NETWORK_H
+
+#include "attempts/attempts.h"
+#include "networks/ranges.h"
+
+/* ---- network_nodes.c, network_state.c: what is known of a formula */
+typedef struct {
+    const plan *plan;
+    const form_plan *form;
+    const operator_plan *nodes;
+    int64_t gap;
+    int64_t step;
+    rv_monitor *monitor;
+} form;
+
+form form_at(const run *r, int32_t number);
+form form_of(const run *r, int32_t index); /* of a judge */
+networks *made_networks(const form *f);
+bool read_leaves(const run *r, const form *f, networks *net, bool *parted);
+int64_t instant_of(const form *f, const network *w, int64_t position);
+int64_t position_by(const form *f, const network *w, int64_t t);
+int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance);
+int64_t up_to(const form *f, const network *w, int64_t position, int64_t distance);
+bool knows(const operator_state *o, uint8_t value, int64_t position);
+void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t last);
+void unlearn(const form *f, network *w);
+void start_over(const form *f, network *w, int64_t t, int64_t position);
+void copy_network(const form *f, network *made, const network *w);
+bool networks_agree(const form *f, const network *one, const network *other);
+void tidy(const form *f, network *w, int64_t position);
+
+/* ---- network_ahead.c: the first instant at which something new of a formula can be known, or before */
+int64_t earliest_change(const form *f, networks *net, int32_t reading);
+
+/* ---- network_judge.c: attempts that a network judges */
+bool is_networked(const run *r, int32_t index);
+void network_pass(run *r, int32_t index, int64_t now, bool is_position);
+void network_put_off(run *r, int32_t index, int64_t until);
+void network_foresee(run *r, int32_t index, int64_t now);
+void network_come_to(run *r, int32_t index, int64_t t);
+bool network_enter(run *r, int32_t index, int32_t at, int64_t t);
+void network_close(run *r, int32_t index, int64_t end, int64_t reached);
+bool network_outlasts(run *r, int32_t index, const attempt *x);
+
+/* A judge with its network. */
+typedef struct {
+    run *r;
+    judge *j;
+    networks *net;
+    int32_t index;
+    form f;
+    int32_t root;              /* the operator that is the whole formula */
+} judging;
+
+static inline bool is_spoilt(const judging *g)
+{
+    return g->f.monitor->spoilt;
+}
+
+/* How many networks there are at present. */
+static inline int32_t readings(const judging *g)
+{
+    return g->net->parted ? 2 : 1;
+}
+
+/* Whether nothing more is asked of a judge: memory was short, what its networks hold may be torn, or
+ * there are none. */
+static inline bool is_given_up(judging *g)
+{
+    if ((g->net == NULL) || is_spoilt(g)) {
+        g->j->lag = 0;
+        set_rule_due(g->r, g->index, NEVER);
+        return true;
+    }
+    return false;
+}
+
+static inline attempt *attempt_of(const judging *g, int32_t at)
+{
+    return attempt_at(g->r->home, at);
+}
+
+static inline int64_t position_of(const attempt *x)
+{
+    return x->clocks[0];
+}
+
+static inline void set_due(judging *g, int64_t due)
+{
+    g->j->lag = 0;
+    set_rule_due(g->r, g->index, due);
+}
+
+static inline int64_t due_of(const judging *g)
+{
+    return g->r->rules.due[g->index];
+}
+
+/* ---- network_judge.c */
+judging judging_of(run *r, int32_t index);
+
+/* ---- network_nodes.c, network_sweeps.c */
+void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last);
+void lead(const form *f, const network *w, const operator_plan *n, operator_state *o);
+void follow(const form *f, const network *w, const operator_plan *n, operator_state *o);
+
+/* ---- network_search.c */
+void learn_all(judging *g, int64_t now, int64_t last);
+void unlearn_all(judging *g);
+int64_t last_at(const judging *g, int64_t t);
+int64_t step_to_decision(judging *g, int64_t now, int64_t last);
+
+/* ---- network_judge.c */
+int64_t earliest(const judging *g, int64_t now);
+
+/* ---- network_attempts.c */
+bool weigh(judging *g, int32_t at, int64_t t);
+int64_t decided_one(const judging *g);
+void hear_news(judging *g, int64_t t);
+
+#endif

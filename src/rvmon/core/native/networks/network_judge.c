@@ -1,0 +1,314 @@
+/* Attempts that a delay network judges: each is a position of it, and the network is shared by all
+ * attempts of a judge. From the first unknown letter on there are two, the unknown taken for the worse
+ * and for the better. */
+#include "networks/network.h"
+#include "networks/ranges.h"
+
+#include <string.h>
+
+/* A letter is taken to stay so many times as long as it has: what would be decided then is looked up
+ * once, and not at each position until it is another one. */
+#define STAYS 16
+/* Letters after which what nobody can ask for is dropped. */
+#define TIDY_EVERY 8
+
+bool is_networked(const run *r, int32_t index)
+{
+    return r->part->judges[index].automaton < 0;
+}
+
+form form_at(const run *r, int32_t number)
+{
+    form f;
+    f.plan = PLAN(r);
+    f.form = &r->part->forms[number];
+    f.nodes = &f.plan->operators[f.form->operators.first];
+    f.gap = GAP(r);
+    f.step = step_of(r);
+    f.monitor = r->home->monitor;
+    return f;
+}
+
+form form_of(const run *r, int32_t index)
+{
+    return form_at(r, r->part->judges[index].form);
+}
+
+judging judging_of(run *r, int32_t index)
+{
+    judging g;
+    g.r = r;
+    g.j = &r->judges[index];
+    g.net = g.j->net;
+    g.index = index;
+    g.f = form_of(r, index);
+    g.root = g.f.form->operators.count - 1;
+    return g;
+}
+
+/* The networks of a form, made when they are used first; NULL: memory is short. */
+networks *made_networks(const form *f)
+{
+    const size_t size = (size_t)f->form->operators.count * sizeof(operator_state);
+    arena *a = &f->monitor->memory;
+    networks *made = arena_take(a, sizeof *made);
+    int32_t i;
+    if (made != NULL) {
+        made->turn = NEVER;
+        made->leaf = arena_take(a, (size_t)f->form->leaves + 1);
+        made->next_leaf = arena_take(a, (size_t)f->form->leaves + 1);
+        for (i = 0; i < 2; i++) {
+            made->readings[i].nodes = arena_take(a, size);
+        }
+    }
+    if ((made == NULL) || (made->leaf == NULL) || (made->next_leaf == NULL)
+        || (made->readings[0].nodes == NULL) || (made->readings[1].nodes == NULL)) {
+        f->monitor->spoilt = true;
+        return NULL;
+    }
+    return made;
+}
+
+/* Whether the letter that stays is another for the better than for the worse. */
+static bool parts(const judging *g)
+{
+    int32_t i;
+    for (i = 0; i < g->f.form->leaves; i++) {
+        if (g->net->leaf[i] == 2U) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Tidy up now and then. The networks may still have to be told of the letter up to here. */
+static void tidy_up(judging *g, int64_t position)
+{
+    const int32_t at = g->j->first;
+    int32_t i;
+    g->net->visits++;
+    if (g->net->visits < TIDY_EVERY) {
+        return;
+    }
+    g->net->visits = 0;
+    for (i = 0; i < readings(g); i++) {
+        tidy(&g->f, &g->net->readings[i], (at >= 0) ? position_of(attempt_of(g, at)) : position);
+    }
+    if (g->net->parted && !parts(g)
+        && networks_agree(&g->f, &g->net->readings[0], &g->net->readings[1])) {
+        g->net->parted = false;
+    }
+}
+
+/* The instant from `now` on before which nothing is decided if the letter stays. */
+int64_t earliest(const judging *g, int64_t now)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; i < readings(g); i++) {
+        found = least(found, earliest_change(&g->f, g->net, i));
+    }
+    return (found > now) ? found : now;
+}
+
+/* How far a letter is looked ahead for. */
+static int64_t ahead_of(const judging *g, int64_t now)
+{
+    const int64_t stayed = now - g->j->position;
+    if (g->f.gap == 0) {
+        return now;
+    }
+    return (stayed < LIMIT / (2 * STAYS)) ? least(now + STAYS * stayed, LIMIT - 1) : LIMIT - 1;
+}
+
+/* Have a judge due at the next instant at which an attempt is decided if the letter stays, or behind
+ * `until`; the networks stay where they are. */
+static void foresee(judging *g, int64_t until)
+{
+    const int64_t decided = step_to_decision(g, until, last_at(g, until));
+    unlearn_all(g);
+    set_due(g, (decided < NEVER) ? decided : until + 1);
+}
+
+/* Have a judge that may decide something by `now` due at the instant at which it does, if the letter
+ * stays. */
+void network_foresee(run *r, int32_t index, int64_t now)
+{
+    judging g = judging_of(r, index);
+    if ((g.j->first >= 0) && (due_of(&g) <= now) && !is_given_up(&g)) {
+        foresee(&g, ahead_of(&g, now));
+    }
+}
+
+/* Let time come to `now`, and the letter to positions up to `last`; attempts are decided meanwhile. If the
+ * letter is known up to `now` it is looked ahead for until later. */
+static void pass(judging *g, int64_t now, int64_t last, int64_t until)
+{
+    const bool complete = last == last_at(g, now); /* else the position there is still to come */
+    if ((g->f.gap > 0) && complete) {
+        const int64_t due = earliest(g, now);
+        if (due > now) {
+            set_due(g, due);
+            return;
+        }
+    }
+    while (g->j->first >= 0) {
+        const int64_t decided = step_to_decision(g, until, complete ? last_at(g, until) : last);
+        if (decided > now) {
+            unlearn_all(g);
+            set_due(g, !complete ? now : (decided < NEVER) ? decided : until + 1);
+            return;
+        }
+        hear_news(g, decided);
+        set_due(g, decided);
+    }
+    set_due(g, NEVER);
+}
+
+void network_pass(run *r, int32_t index, int64_t now, bool is_position)
+{
+    judging g = judging_of(r, index);
+    if (!is_given_up(&g)) {
+        pass(&g, now, last_at(&g, is_position ? now : now - 1),
+             is_position ? ahead_of(&g, now) : now);
+    }
+}
+
+/* Leave what is decided by `until` to the visit that follows: it finds when that was. It does not where
+ * an attempt may begin meanwhile, as the one of the episode that runs fails. */
+void network_put_off(run *r, int32_t index, int64_t until)
+{
+    judge *j = &r->judges[index];
+    const int64_t due = r->rules.due[index];
+    const bool alone = (j->current < 0) || (r->part->judges[index].again < 0);
+    if (alone && (j->first >= 0) && (due <= until)) {
+        j->lag += until + 1 - due;
+        set_rule_due(r, index, until + 1);
+    }
+}
+
+/* Take the letters; tells whether they are others. */
+bool read_leaves(const run *r, const form *f, networks *net, bool *parted)
+{
+    bool changed = false;
+    int32_t i;
+    for (i = 0; i < f->form->operators.count; i++) {
+        const operator_plan *n = &f->nodes[i];
+        if (n->kind == OP_LEAF) {
+            const int32_t truth = (n->right < 0) ? 0 : (int32_t)r->truth[n->right];
+            const uint8_t value = (uint8_t)n->values[truth];
+            net->next_leaf[n->left] = value;
+            changed = changed || (value != net->leaf[n->left]);
+            *parted = *parted || (value == 1U) || (value == 2U);
+        }
+    }
+    return changed;
+}
+
+/* Have the letters that were read stay. */
+static void turn_to_next(judging *g)
+{
+    (void)memcpy(g->net->leaf, g->net->next_leaf, (size_t)g->f.form->leaves);
+    g->net->turn = NEVER;
+}
+
+/* Come to the position at `t`, at which the truths are. */
+static void come_to(judging *g, int64_t t)
+{
+    network *w = &g->net->readings[0];
+    const bool fresh = !g->net->begun || ((g->j->first < 0) && (g->f.form->looks_back == 0));
+    bool parted = false;
+    const bool changed = read_leaves(g->r, &g->f, g->net, &parted);
+    int64_t position = (g->f.gap > 0) ? floored(t, g->f.step) : 0;
+    int32_t i;
+    if (fresh) {
+        start_over(&g->f, w, t, position);
+        g->net->begun = true;
+        g->net->parted = false;
+        set_due(g, t);
+    } else if (g->j->position == t) {
+        return;
+    } else if ((g->f.gap > 0) && !changed) {
+        pass(g, t, position, ahead_of(g, t));
+        return;
+    } else {
+        position = (g->f.gap > 0) ? position : w->last + 1;
+        tidy_up(g, position);
+    }
+    g->j->position = t;
+    g->j->restless = false;
+    if (g->f.gap == 0) {
+        set_restless(g->r, g->index);
+    }
+    if (parted && !g->net->parted) {
+        copy_network(&g->f, &g->net->readings[1], w);
+        g->net->parted = true;
+    }
+    for (i = 0; (g->f.gap == 0) && (i < readings(g)); i++) {
+        ranges *samples = &g->net->readings[i].samples;
+        ranges_put(g->f.monitor, samples, samples->end, t, t);
+    }
+    if (is_spoilt(g)) {
+        return;
+    }
+    g->net->turn = position;
+    learn_all(g, t, position);
+    if ((due_of(g) - g->j->lag < t) && (decided_one(g) < NEVER)) {
+        /* See first what was decided by the letter that was. */
+        unlearn_all(g);
+        g->net->turn = NEVER;
+        pass(g, t - 1, position - 1, t - 1);
+        g->net->turn = position;
+        learn_all(g, t, position);
+    }
+    turn_to_next(g);
+    hear_news(g, t);
+    set_due(g, (g->j->first < 0) ? NEVER : earliest(g, t + 1));
+}
+
+void network_come_to(run *r, int32_t index, int64_t t)
+{
+    judging g = judging_of(r, index);
+    if (g.net == NULL) {
+        g.net = made_networks(&g.f);
+        g.j->net = g.net;
+    }
+    if (!is_given_up(&g)) {
+        come_to(&g, t);
+    }
+}
+
+/* Let an attempt begin at the position at `t`, at which the letter is. */
+bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
+{
+    judging g = judging_of(r, index);
+    if (is_given_up(&g)) {
+        return true;
+    }
+    if (g.net->readings[0].last < last_at(&g, t)) {
+        learn_all(&g, t, last_at(&g, t));
+        hear_news(&g, t);
+    }
+    attempt_of(&g, at)->due = earliest(&g, t + 1);
+    attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
+    return weigh(&g, at, t);
+}
+
+/* Apply the rule for the end of a trace, when time has come to `reached`. */
+void network_close(run *r, int32_t index, int64_t end, int64_t reached)
+{
+    judging g = judging_of(r, index);
+    if ((g.j->first >= 0) && !is_given_up(&g)) {
+        learn_all(&g, reached, last_at(&g, end));
+        hear_news(&g, reached); /* who stays open for good */
+        g.net->readings[0].closed = end;
+        learn(&g.f, g.net, 0, g.net->readings[0].now, g.net->readings[0].last);
+    }
+}
+
+bool network_outlasts(run *r, int32_t index, const attempt *x)
+{
+    const judging g = judging_of(r, index);
+    return (g.net != NULL) && (x->location != FAILED) && !is_spoilt(&g)
+           && knows(&g.net->readings[0].nodes[g.root], 1U, position_of(x));
+}

@@ -1,0 +1,311 @@
+/* What is known of each part of a formula at each position.
+ *
+ * A step says how far time and letters have come; each node takes from its operands what is new of
+ * them. What is known depends on that alone, not on the steps that led there: so a step can be taken
+ * back, and when something was known first is found by smaller steps. */
+#include "networks/network.h"
+#include "networks/ranges.h"
+
+/* The instant of a clock's position, within the bounds of time. */
+static int64_t ticks_of(int64_t position, int64_t step)
+{
+    const int64_t most = positions_within(step);
+    return (position >= most) ? LIMIT : ((position <= -most) ? -LIMIT : position * step);
+}
+
+/* Where positions are samples they count from 0, and these are kept by instant. */
+int64_t instant_of(const form *f, const network *w, int64_t position)
+{
+    int64_t t = -LIMIT;
+    if (f->gap > 0) {
+        t = (f->step == 1) ? position : ticks_of(position, f->step);
+    } else if (position > w->last) {
+        t = moved(w->samples.at[w->samples.end - 1].last, position - w->last);
+    } else if (position >= w->oldest) {
+        t = w->samples.at[w->samples.first + (int32_t)(position - w->oldest)].last;
+    } else {
+        /* Long ago. */
+    }
+    return t;
+}
+
+/* The last position not behind an instant. */
+int64_t position_by(const form *f, const network *w, int64_t t)
+{
+    if (f->gap > 0) {
+        return floored(t, f->step);
+    }
+    return w->oldest + (range_from(&w->samples, t + 1) - w->samples.first) - 1;
+}
+
+/* The first position so far behind another, or the last one that is not farther. */
+int64_t from_on(const form *f, const network *w, int64_t position, int64_t distance)
+{
+    return (f->gap > 0) ? moved(position, distance)
+                     : position_by(f, w, moved(instant_of(f, w, position), distance) - 1) + 1;
+}
+
+int64_t up_to(const form *f, const network *w, int64_t position, int64_t distance)
+{
+    return (f->gap > 0) ? moved(position, distance)
+                     : position_by(f, w, moved(instant_of(f, w, position), distance));
+}
+
+bool knows(const operator_state *o, uint8_t value, int64_t position)
+{
+    return range_around(&o->known[value], position) >= 0;
+}
+
+/* Take it that a node has a value at some positions, of which some may be known. */
+void note(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last)
+{
+    ranges *known = &o->known[value];
+    ranges *news = &o->news[value];
+    int64_t at = (first > o->base) ? first : o->base;
+    if ((at <= last) && (known->first < known->end) && (known->at[known->end - 1].last + 1 == at)) {
+        known->at[known->end - 1].last = last; /* as mostly */
+        ranges_put(f->monitor, news, news->end, at, last);
+        return;
+    }
+    while (at <= last) {
+        const int32_t i = range_from(known, at);
+        int64_t end = last;
+        if ((i < known->end) && (known->at[i].first <= at)) {
+            at = known->at[i].last + 1;
+            continue;
+        }
+        if (i < known->end) {
+            end = least(last, known->at[i].first - 1);
+        }
+        ranges_insert(f->monitor, known, i, at, end);
+        ranges_put(f->monitor, news, news->end, at, end);
+        at = end + 1;
+    }
+}
+
+/* Tell of those of some positions at which all operands of a junction have a value. */
+static void meet(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
+                 const range *on)
+{
+    const int32_t *operands = LIST(f->plan, n->operands);
+    int64_t at = on->first;
+    while (at <= on->last) {
+        int64_t end = on->last;
+        bool all = true;
+        int32_t i;
+        for (i = 0; all && (i < n->operands.count); i++) {
+            const ranges *known = &w->nodes[operands[i]].known[value];
+            const int32_t found = range_from(known, at);
+            all = (found < known->end) && (known->at[found].first <= at);
+            if (all) {
+                end = least(end, known->at[found].last);
+            } else {
+                end = (found < known->end) ? known->at[found].first - 1 : on->last;
+            }
+        }
+        if (all) {
+            note(f, o, value, at, end);
+        }
+        at = end + 1;
+    }
+}
+
+static void join(const form *f, const network *w, const operator_plan *n, operator_state *o)
+{
+    const int32_t *operands = LIST(f->plan, n->operands);
+    const uint8_t some = (uint8_t)(n->turned ^ 1);
+    int32_t i;
+    int32_t j;
+    for (i = 0; i < n->operands.count; i++) {
+        const ranges *news = &w->nodes[operands[i]].news[some];
+        for (j = news->first; j < news->end; j++) {
+            note(f, o, some, news->at[j].first, news->at[j].last);
+        }
+    }
+    for (i = 0; i < n->operands.count; i++) {
+        const ranges *news = &w->nodes[operands[i]].news[n->turned];
+        for (j = news->first; j < news->end; j++) {
+            meet(f, w, n, o, (uint8_t)n->turned, &news->at[j]);
+        }
+    }
+}
+
+/* Tell of the windows, from one to another, that have one of some positions. */
+static void spread(const form *f, const network *w, const operator_plan *n, operator_state *o, const range *found,
+                   int64_t first, int64_t last)
+{
+    const uint8_t some = (uint8_t)(n->turned ^ 1);
+    /* A window in which no tick of a clock lies has none of them. */
+    int64_t position = (n->low <= n->high) ? found->first : found->last + 1;
+    /* Those of samples may lie apart. */
+    const int64_t step = (f->gap > 0) ? found->last - found->first + 1 : 1;
+    while (position <= found->last) {
+        const int64_t start = from_on(f, w, position, -n->high);
+        note(f, o, some, (start > first) ? start : first,
+             least(up_to(f, w, position + step - 1, -n->low), last));
+        position += step;
+    }
+}
+
+/* Tell of the windows, from one to another, of which all positions have a value; none comes to lie in
+ * them any more. */
+static void exhaust(const form *f, const network *w, const operator_plan *n, operator_state *o, int64_t begin,
+                    int64_t last)
+{
+    const ranges *known = &w->nodes[n->left].known[n->turned];
+    int64_t at = (begin > o->base) ? begin : o->base;
+    while (at <= last) {
+        int64_t first = from_on(f, w, at, n->low);
+        const int64_t end = least(up_to(f, w, at, n->high), w->last);
+        int64_t until = at;
+        bool all = true;
+        first = (first > w->first) ? first : w->first;
+        if (first > end) {
+            if (f->gap > 0) {
+                until = (end < w->first) ? w->first - 1 - n->high : last;
+            }
+        } else {
+            int32_t i = range_from(known, first);
+            const bool begun = (i < known->end) && (known->at[i].first <= first);
+            all = begun && (known->at[i].last >= end);
+            if (all) {
+                until = (known->at[i].last >= w->last)
+                    ? last : up_to(f, w, known->at[i].last + 1, -n->high - 1);
+            } else if ((f->gap > 0) || ((n->low <= 0) && (n->high >= 0))) {
+                /* None is empty: the next one begins behind the last that is not known. */
+                i += begun ? 1 : 0;
+                until = from_on(f, w, (i < known->end) ? known->at[i].first - 1 : w->last,
+                                1 - n->low) - 1;
+            } else {
+                /* The next one. */
+            }
+        }
+        if (all) {
+            note(f, o, (uint8_t)n->turned, at, least(until, last));
+        }
+        at = ((until > at) ? until : at) + 1;
+    }
+}
+
+/* A window: some position decides, or all do together. */
+static void slide(const form *f, const network *w, const operator_plan *n, operator_state *o)
+{
+    const operator_state *operand = &w->nodes[n->left];
+    const ranges *news = &operand->news[(uint8_t)(n->turned ^ 1)];
+    const bool past = n->over < 0;
+    const int64_t front = past ? w->last : position_by(f, w, w->now - n->over);
+    const int64_t before = past ? w->was_last : position_by(f, w, w->was_now - n->over);
+    int32_t i;
+    for (i = news->first; i < news->end; i++) {
+        spread(f, w, n, o, &news->at[i], w->first, w->last);
+    }
+    if (past && (w->was_last < w->last)) {
+        /* What was known before is in the windows of positions that have come. */
+        const ranges *known = &operand->known[(uint8_t)(n->turned ^ 1)];
+        const int64_t begin = from_on(f, w, w->was_last + 1, n->low);
+        /* What is taken of a `since` before the first position is in none. */
+        const int64_t first = (begin > w->first) ? begin : w->first;
+        const int64_t last = up_to(f, w, w->last, n->high);
+        for (i = range_from(known, first); (i < known->end) && (known->at[i].first <= last); i++) {
+            range found = known->at[i];
+            found.first = (found.first > first) ? found.first : first;
+            found.last = least(found.last, last);
+            spread(f, w, n, o, &found, w->was_last + 1, w->last);
+        }
+    }
+    news = &operand->news[n->turned];
+    for (i = news->first; i < news->end; i++) {
+        exhaust(f, w, n, o, from_on(f, w, news->at[i].first, -n->high),
+                least(up_to(f, w, news->at[i].last, -n->low), before));
+    }
+    exhaust(f, w, n, o, before + 1, front);
+}
+
+/* Tell of the positions that stand at one of some others, so far ahead or back. */
+static void stand(const form *f, const network *w, const operator_plan *n, operator_state *o, uint8_t value,
+                  const range *found)
+{
+    if (n->low >= 0) {
+        note(f, o, value, from_on(f, w, found->first - 1, 1 - n->low), up_to(f, w, found->last, -n->low));
+    } else {
+        const bool ends = (f->gap == 0) && (found->last >= w->last);
+        note(f, o, value, from_on(f, w, found->first, -n->low),
+             ends ? w->last : least(w->last, up_to(f, w, found->last + 1, -n->low - 1)));
+    }
+}
+
+static void displace(const form *f, const network *w, const operator_plan *n, operator_state *o)
+{
+    const operator_state *operand = &w->nodes[n->left];
+    uint8_t value;
+    int32_t i;
+    for (value = 0; value < 2U; value++) {
+        const ranges *news = &operand->news[value];
+        for (i = news->first; i < news->end; i++) {
+            stand(f, w, n, o, value, &news->at[i]);
+        }
+        if ((n->low < 0) && (w->was_last < w->last)) {
+            const ranges *known = &operand->known[value];
+            const int64_t last = up_to(f, w, w->last, n->low);
+            i = range_from(known, up_to(f, w, w->was_last + 1, n->low));
+            for (; (i < known->end) && (known->at[i].first <= last); i++) {
+                stand(f, w, n, o, value, &known->at[i]);
+            }
+        }
+    }
+    if ((w->closed < NEVER) && (n->kept != 0)) {
+        note(f, o, 1U, from_on(f, w, w->last, 1 - n->low),
+             least(w->last, position_by(f, w, w->closed - n->over)));
+    }
+}
+
+/* Let time come to `now`, and the letters of `reading` to the positions up to `last`: from `turn` on
+ * it is the next one. */
+void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t last)
+{
+    network *w = &net->readings[reading];
+    int32_t i;
+    w->was_now = w->now;
+    w->was_last = w->last;
+    w->now = (now > w->now) ? now : w->now;
+    w->last = (last > w->last) ? last : w->last;
+    for (i = 0; i < f->form->operators.count; i++) {
+        const operator_plan *n = &f->nodes[i];
+        operator_state *o = &w->nodes[i];
+        ranges_empty(&o->news[0]);
+        ranges_empty(&o->news[1]);
+        switch (n->kind) {
+        case OP_LEAF:
+            note(f, o, (uint8_t)((net->leaf[n->left] >> reading) & 1), w->was_last + 1,
+                 least(w->last, net->turn - 1));
+            note(f, o, (uint8_t)((net->next_leaf[n->left] >> reading) & 1),
+                 (net->turn > w->was_last) ? net->turn : w->was_last + 1, w->last);
+            break;
+        case OP_JUNCTION: join(f, w, n, o); break;
+        case OP_WINDOW: slide(f, w, n, o); break;
+        case OP_SHIFT: displace(f, w, n, o); break;
+        case OP_UNTIL: lead(f, w, n, o); break;
+        default: follow(f, w, n, o); break;
+        }
+    }
+}
+
+/* Take the last step back. */
+void unlearn(const form *f, network *w)
+{
+    int32_t i;
+    int32_t j;
+    uint8_t value;
+    for (i = 0; i < f->form->operators.count; i++) {
+        operator_state *o = &w->nodes[i];
+        for (value = 0; value < 2U; value++) {
+            for (j = o->news[value].first; j < o->news[value].end; j++) {
+                ranges_cut(f->monitor, &o->known[value], o->news[value].at[j].first,
+                           o->news[value].at[j].last);
+            }
+            ranges_empty(&o->news[value]);
+        }
+    }
+    w->now = w->was_now;
+    w->last = w->was_last;
+}

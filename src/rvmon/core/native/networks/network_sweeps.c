@@ -1,0 +1,118 @@
+/* What becomes known of `until` and `since` without bounds, which reach as far as their left side. */
+#include "networks/network.h"
+#include "networks/ranges.h"
+
+/* `left until right`; of the dual, all is said of the other values. */
+void lead(const form *f, const network *w, const operator_plan *n, operator_state *o)
+{
+    const uint8_t yes = (uint8_t)(n->turned ^ 1);
+    const uint8_t no = (uint8_t)n->turned;
+    const operator_state *left = &w->nodes[n->left];
+    const operator_state *right = &w->nodes[n->right];
+    const ranges *news = &right->news[yes];
+    int32_t i;
+    int32_t j;
+    for (i = news->first; i < news->end; i++) {
+        const int64_t first = news->at[i].first;
+        j = range_around(&left->known[yes], first - 1);
+        note(f, o, yes, (j < 0) ? first : left->known[yes].at[j].first, news->at[i].last);
+    }
+    news = &left->news[yes];
+    for (i = news->first; i < news->end; i++) {
+        const int64_t met = last_up_to(&o->known[yes], news->at[i].last + 1);
+        j = range_around(&left->known[yes], news->at[i].first);
+        if (j >= 0) {
+            note(f, o, yes, left->known[yes].at[j].first, met - 1);
+        }
+    }
+    news = &right->news[no];
+    for (i = news->first; i < news->end; i++) {
+        int64_t last = news->at[i].last;
+        if (!knows(o, no, last + 1)) {
+            last = last_up_to(&left->known[no], last);
+        }
+        j = range_around(&right->known[no], news->at[i].first);
+        if ((j >= 0) && (last >= news->at[i].first)) {
+            note(f, o, no, right->known[no].at[j].first, last);
+        }
+    }
+    news = &left->news[no];
+    for (i = news->first; i < news->end; i++) {
+        const ranges *unmet = &right->known[no];
+        j = range_from(unmet, news->at[i].first);
+        for (; (j < unmet->end) && (unmet->at[j].first <= news->at[i].last); j++) {
+            note(f, o, no, unmet->at[j].first, least(unmet->at[j].last, news->at[i].last));
+        }
+    }
+    if ((w->closed < NEVER) && (n->kept != 0)) {
+        /* Behind the end nothing is missed any more. */
+        j = range_around(&right->known[no], w->last);
+        note(f, o, no, (j < 0) ? w->last + 1 : right->known[no].at[j].first, w->last);
+        if (o->swept > w->last) {
+            note(f, o, no, o->base, w->last);
+        }
+    }
+    if (o->swept > o->base) {
+        /* What lies before only leads there. */
+        if (knows(o, yes, o->swept)) {
+            note(f, o, yes, o->base, o->swept - 1);
+        } else if (knows(o, no, o->swept)) {
+            note(f, o, no, o->base, o->swept - 1);
+        } else {
+            /* It is open. */
+        }
+    }
+}
+
+/* `left since right`: its mirror image. */
+void follow(const form *f, const network *w, const operator_plan *n, operator_state *o)
+{
+    const uint8_t yes = (uint8_t)(n->turned ^ 1);
+    const uint8_t no = (uint8_t)n->turned;
+    const operator_state *left = &w->nodes[n->left];
+    const operator_state *right = &w->nodes[n->right];
+    const ranges *news = &right->news[yes];
+    int32_t i;
+    int32_t j;
+    for (i = news->first; i < news->end; i++) {
+        const int64_t last = news->at[i].last;
+        j = range_around(&left->known[yes], last + 1);
+        note(f, o, yes, news->at[i].first, (j < 0) ? last : left->known[yes].at[j].last);
+    }
+    news = &left->news[yes];
+    for (i = news->first; i < news->end; i++) {
+        const int64_t first = news->at[i].first - 1;
+        const int32_t met = range_from(&o->known[yes], first);
+        j = range_around(&left->known[yes], news->at[i].first);
+        if ((j >= 0) && (met < o->known[yes].end)) {
+            const int64_t since = o->known[yes].at[met].first;
+            note(f, o, yes, ((since > first) ? since : first) + 1, left->known[yes].at[j].last);
+        }
+    }
+    news = &right->news[no];
+    for (i = news->first; i < news->end; i++) {
+        int64_t first = news->at[i].first;
+        if (!knows(o, no, first - 1)) {
+            j = range_from(&left->known[no], first);
+            if (j < left->known[no].end) {
+                first = (left->known[no].at[j].first > first) ? left->known[no].at[j].first : first;
+            } else {
+                first = NEVER;
+            }
+        }
+        j = range_around(&right->known[no], news->at[i].last);
+        if ((j >= 0) && (first <= news->at[i].last)) {
+            note(f, o, no, first, right->known[no].at[j].last);
+        }
+    }
+    news = &left->news[no];
+    for (i = news->first; i < news->end; i++) {
+        const ranges *unmet = &right->known[no];
+        j = range_from(unmet, news->at[i].first);
+        for (; (j < unmet->end) && (unmet->at[j].first <= news->at[i].last); j++) {
+            const int64_t first = unmet->at[j].first;
+            note(f, o, no, (first > news->at[i].first) ? first : news->at[i].first,
+                 unmet->at[j].last);
+        }
+    }
+}

@@ -1,0 +1,300 @@
+/* The letters by which a network judges, kept for notes: where the truths of propositions changed, or
+ * stood at a sample, from the begin of the oldest attempt on.
+ *
+ * They stand in pieces of a fixed size. A note refers to the pieces between the begin of its attempt and
+ * its decision, so a decision copies none; a piece goes when no open attempt needs it, and no note. */
+#include "networks/network.h"
+#include "notes/notes.h"
+#include "runs/runs.h"
+
+#include <string.h>
+
+/* So many pieces are kept at most: what lasts longer is explained by its last part. */
+#define PIECES_MOST 4096
+
+const int64_t *rv_piece_words(const rv_piece *piece, int32_t *count)
+{
+    *count = piece->count;
+    return piece->words;
+}
+
+rv_piece *rv_piece_next(const rv_piece *piece)
+{
+    return piece->next;
+}
+
+void **rv_piece_held(rv_piece *piece, int32_t which)
+{
+    return &piece->held[which];
+}
+
+static size_t size_of_piece(int32_t stride)
+{
+    return sizeof(rv_piece) + (size_t)LETTERS_IN_PIECE * (size_t)stride * sizeof(int64_t);
+}
+
+/* Let go of a piece that nobody needs. */
+static void drop_piece(rv_monitor *m, rv_piece *piece)
+{
+    int32_t i;
+    for (i = 0; i < 2; i++) {
+        if ((piece->held[i] != NULL) && (m->let_go != NULL)) {
+            m->let_go(m->let_go_user, piece->held[i]);
+        }
+    }
+    arena_give(&m->memory, piece, size_of_piece(piece->stride));
+}
+
+/* The oldest piece is needed by no open attempt. */
+static void leave_first(rv_monitor *m, noting *n)
+{
+    rv_piece *piece = n->first;
+    n->first = piece->next;
+    n->last = (n->first == NULL) ? NULL : n->last;
+    n->pinned = (n->pinned == piece) ? NULL : n->pinned;
+    n->pieces--;
+    if (piece->pinned == m->pins) {
+        if ((piece->next != NULL) && (piece->next->pinned != m->pins)) {
+            drop_told_open(m);  /* these may refer to both */
+            piece->next = NULL; /* that may go before this one */
+        }
+        piece->next_left = m->left;
+        m->left = piece;
+    } else {
+        drop_told_open(m); /* these may refer to it */
+        drop_piece(m, piece);
+    }
+}
+
+/* A piece without letters; NULL: memory is short. */
+rv_piece *made_piece(rv_monitor *m, int32_t stride)
+{
+    rv_piece *piece = arena_take(&m->memory, size_of_piece(stride));
+    if (piece == NULL) {
+        m->spoilt = true;
+        return NULL;
+    }
+    piece->stride = stride;
+    return piece;
+}
+
+/* The same behind the others of a judge. */
+rv_piece *next_piece(rv_monitor *m, noting *n, int32_t stride)
+{
+    rv_piece *piece = made_piece(m, stride);
+    if (piece == NULL) {
+        return NULL;
+    }
+    if (n->last == NULL) {
+        n->first = piece;
+    } else {
+        n->last->next = piece;
+    }
+    n->last = piece;
+    n->pieces++;
+    return piece;
+}
+
+void forget_letters(rv_monitor *m, noting *n)
+{
+    while (n->first != NULL) {
+        leave_first(m, n);
+    }
+}
+
+/* The first instant of which the letter is needed: from the begin of the oldest attempt on, or as long
+ * before the last letter as a position matters. */
+static int64_t needed_from(const run *r, int32_t index)
+{
+    const judge *j = &r->judges[index];
+    const noting *n = j->noting;
+    const int64_t reach = r->part->forms[r->part->judges[index].form].reach;
+    int64_t found = RV_NO_TIME;
+    if ((reach < LIMIT) && (n->last != NULL) && (n->last->before != NULL)) {
+        found = n->last->before[0] - reach;
+    }
+    if (!watches(r, index) && (j->first >= 0)) {
+        const int64_t begin = attempt_at(r->home, j->first)->triggered;
+        found = (begin > found) ? begin : found;
+    }
+    return found;
+}
+
+/* Drop the pieces that no open attempt needs, all its letters being from an instant on. */
+static void drop_letters(rv_monitor *m, noting *n, int64_t needed)
+{
+    while ((n->first != n->last)
+           && ((n->pieces > PIECES_MOST)
+               || ((n->first->next->count > 0) && (n->first->next->words[0] <= needed)))) {
+        leave_first(m, n);
+    }
+}
+
+/* Whether one of the truths in some words is UNKNOWN. */
+static bool is_doubtful(const int64_t *packed, int32_t words)
+{
+    int32_t i;
+    for (i = 0; i < words; i++) {
+        if (((uint64_t)packed[i] & (UINT64_MAX / 3U)) != 0U) { /* the lower bit of each */
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Take the letter at the position `t`; if it is not known, attempts that are open hang on that. */
+void keep_letter(run *r, int32_t index, int64_t t)
+{
+    rv_monitor *m = r->home->monitor;
+    judge *j = &r->judges[index];
+    noting *n = j->noting;
+    const list propositions = r->part->judges[index].propositions;
+    const int32_t words = words_for(propositions.count);
+    const int32_t stride = words + 1;
+    int64_t *made;
+    if ((j->first < 0) && !watches(r, index)) {
+        forget_letters(m, n);
+    }
+    if (n->first != n->last) {
+        drop_letters(m, n, needed_from(r, index));
+    }
+    if ((n->last == NULL) || (n->last->count == LETTERS_IN_PIECE * stride)) {
+        const rv_piece *last = n->last;
+        rv_piece *piece = next_piece(m, n, stride);
+        if (piece == NULL) {
+            return;
+        }
+        piece->before = (last != NULL) ? &last->words[last->count - stride] : NULL;
+    }
+    made = &n->last->words[n->last->count];
+    made[0] = t;
+    pack_truths(r, propositions, false, &made[1]);
+    if ((j->first >= 0) && is_doubtful(&made[1], words)
+        && ((n->doubts.count == 0) || (n->doubted_at < n->began_at))) {
+        note_doubt(r, index, t);
+    }
+    if (n->last->count > 0) {
+        n->last->before = made - stride;
+    }
+    if ((n->last->before != NULL)
+        && ((n->last->before[0] == t)
+            || ((GAP(r) > 0)
+                && (memcmp(&n->last->before[1], &made[1], (size_t)words * sizeof *made) == 0)))) {
+        return; /* it stays */
+    }
+    n->last->count += stride;
+}
+
+/* Have letters from one piece on be kept as long as notes are. Between two of a judge that are kept so
+ * are all. */
+static void pin(const rv_monitor *m, noting *n, rv_piece *first)
+{
+    rv_piece *one = first;
+    while ((one != NULL) && (one->pinned != m->pins)) {
+        one->pinned = m->pins;
+        one = one->next;
+    }
+    one = ((n->pinned != NULL) && (n->pinned->pinned == m->pins)) ? n->pinned->next : NULL;
+    while (one != NULL) {
+        one->pinned = m->pins;
+        one = one->next;
+    }
+    n->pinned = n->last;
+}
+
+/* Refer to the letters from `begin` on; -1: there are none. */
+int32_t span_from(rv_monitor *m, noting *n, int64_t begin)
+{
+    rv_piece *first = n->first;
+    span_of_letters *made;
+    if (first == NULL) {
+        return -1;
+    }
+    while ((first->next != NULL) && (first->next->count > 0) && (first->next->words[0] <= begin)) {
+        first = first->next;
+    }
+    made = (m->span_count > 0) ? &m->spans[m->span_count - 1] : NULL;
+    if ((made == NULL) || (made->first != first) || (made->last != n->last)
+        || (made->last_count != n->last->count)) {
+        made = enlarged(m, m->spans, &m->span_room, (int64_t)m->span_count + 1, sizeof *made);
+        if (made == NULL) {
+            return -1;
+        }
+        m->spans = made;
+        made = &m->spans[m->span_count];
+        made->first = first;
+        made->last = n->last;
+        made->last_count = n->last->count;
+        m->span_count++;
+    }
+    if (!m->tells_open) { /* what is told of open attempts is over with the call */
+        pin(m, n, first);
+    }
+    return m->span_count - 1;
+}
+
+/* Have a span be kept; its new number. The old one says that it is. */
+int32_t keep_span(rv_monitor *m, kept_notes *to, int32_t number)
+{
+    span_of_letters *old = &m->spans[number];
+    if (old->last_count >= 0) {
+        to->spans[to->span_count] = *old;
+        old->last_count = -1 - to->span_count;
+        to->span_count++;
+    }
+    return -1 - old->last_count;
+}
+
+/* Let go of the letters that no note refers to any more, after notes were dropped.
+ *
+ * Of each judge, what is pinned goes up to the end of its last span: so that a piece that is ends a walk
+ * from the last span back to the first. */
+void pin_kept_letters(rv_monitor *m)
+{
+    rv_piece **link = &m->left;
+    const run *r;
+    int32_t i;
+    m->pins++;
+    for (i = m->span_count - 1; i >= 0; i--) {
+        const span_of_letters *own = &m->spans[i];
+        rv_piece *one = own->first;
+        while ((one != own->last) && (one->pinned != m->pins)) {
+            one->pinned = m->pins;
+            one = one->next;
+        }
+        one->pinned = m->pins;
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        for (r = m->homes[i].root; r != NULL; r = following(&m->homes[i], r)) {
+            int32_t k;
+            for (k = 0; k < r->part->plan->judges.count; k++) {
+                noting *n = r->judges[k].noting;
+                rv_piece *one;
+                n->pinned = NULL;
+                for (one = n->first; one != NULL; one = one->next) {
+                    n->pinned = (one->pinned == m->pins) ? one : n->pinned;
+                }
+            }
+        }
+    }
+    while (*link != NULL) {
+        rv_piece *piece = *link;
+        if (piece->pinned == m->pins) {
+            link = &piece->next_left;
+        } else {
+            *link = piece->next_left;
+            drop_piece(m, piece);
+        }
+    }
+}
+
+/* No note refers to letters any more. */
+void unpin_letters(rv_monitor *m)
+{
+    while (m->left != NULL) {
+        rv_piece *piece = m->left;
+        m->left = piece->next_left;
+        drop_piece(m, piece);
+    }
+    m->pins++;
+}

@@ -1,0 +1,406 @@
+/* What is kept so that notes can be told (told.c): since when propositions have their truths, what the
+ * leaves were at triggers, and where something was unknown. Nothing of it has a say in verdicts.
+ *
+ * Of a run: of each node that notes tell of, since when it has its truth, and when it had the others
+ * last; also how that was before the last position at which one changed, since a network may find a
+ * little later what was decided before. Of a judge: rings of truths at instants, in which an entry
+ * stands for all triggers up to the next one, so that attempts need not keep theirs. */
+#include "input/input.h"
+#include "networks/network.h"
+#include "notes/notes.h"
+
+#include <string.h>
+
+/* Number the nodes of a part that notes tell of. */
+static void number_logged(const rv_monitor *m, part *p)
+{
+    int32_t i;
+    int32_t k;
+    int32_t l;
+    for (i = 0; i < p->plan->nodes.count; i++) {
+        p->slots[i] = -1;
+    }
+    p->logged = 0;
+    for (i = 0; i < p->plan->judges.count; i++) {
+        const list lists_of[2] = {p->judges[i].propositions, p->judges[i].leaves};
+        for (k = 0; k < 2; k++) {
+            const int32_t *nodes = LIST(&m->plan, lists_of[k]);
+            for (l = 0; l < lists_of[k].count; l++) {
+                if (p->slots[nodes[l]] < 0) {
+                    p->slots[nodes[l]] = p->logged;
+                    p->logged++;
+                }
+            }
+        }
+    }
+}
+
+/* Have what a run stands at be noted; false: memory is short. */
+bool make_notes(run *r)
+{
+    arena *a = &r->home->monitor->memory;
+    const int32_t logged_count = r->part->logged;
+    int32_t i;
+    if (r->truth_log == NULL) {
+        r->truth_log = arena_take(a, sizeof *r->truth_log);
+        if (r->truth_log == NULL) {
+            return false;
+        }
+        r->truth_log->nodes = arena_take(a, ((size_t)logged_count + 1U) * sizeof *r->truth_log->nodes);
+        if (r->truth_log->nodes == NULL) {
+            return false;
+        }
+    }
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        if (r->judges[i].noting == NULL) {
+            r->judges[i].noting = arena_take(a, sizeof *r->judges[i].noting);
+            if (r->judges[i].noting == NULL) {
+                return false;
+            }
+        }
+        clear_noting(r, i);
+    }
+    r->truth_log->begun = RV_NO_TIME;
+    stand_at_first(r, RV_NO_TIME);
+    return true;
+}
+
+/* Have nothing be noted of a run: not all of it could be made. */
+static void drop_notes(run *r)
+{
+    int32_t i;
+    r->truth_log = NULL;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        r->judges[i].noting = NULL;
+    }
+}
+
+int rv_keep_notes(rv_monitor *m, rv_let_go let_piece_go, void *user)
+{
+    int32_t i;
+    bool done = true;
+    m->let_go = let_piece_go;
+    m->let_go_user = user;
+    for (i = 0; !m->keeps_notes && done && (i < m->plan.part_count); i++) {
+        part *p = &m->parts[i];
+        p->slots = arena_take(&m->memory, (size_t)(p->plan->nodes.count + 1) * sizeof *p->slots);
+        done = p->slots != NULL;
+        if (done) {
+            number_logged(m, p);
+            done = make_notes(m->homes[i].root) && begin_unknowns(&m->homes[i]);
+        }
+    }
+    if (!done) {
+        for (i = 0; i < m->plan.part_count; i++) {
+            drop_notes(m->homes[i].root);
+        }
+        m->spoilt = true;
+        return RV_NO_MEMORY;
+    }
+    m->keeps_notes = true;
+    return RV_OK;
+}
+
+/* Forget what a judge remembers. */
+void clear_noting(run *r, int32_t index)
+{
+    noting *n = r->judges[index].noting;
+    if (n != NULL) {
+        forget_letters(r->home->monitor, n);
+        n->triggers.head = n->triggers.count = 0;
+        n->doubts.head = n->doubts.count = 0;
+        n->state = -1;
+        n->undecidable_since = NEVER;
+        n->began_at = RV_NO_TIME;
+    }
+}
+
+/* All truths are as from the first position on, at `t`. */
+void stand_at_first(run *r, int64_t t)
+{
+    truth_log *s = r->truth_log;
+    int32_t i;
+    for (i = 0; i < r->part->logged; i++) {
+        logged_node *own = &s->nodes[i];
+        own->now.since = t;
+        own->now.last[0] = own->now.last[1] = RV_NO_TIME;
+        own->moved_at = RV_NO_TIME;
+    }
+    s->moved_at = t;
+}
+
+/* Have a run that goes on as another one does stand as that does. */
+void stand_like(run *made, const run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->logged; i++) {
+        made->truth_log->nodes[i].now = r->truth_log->nodes[i].now;
+        made->truth_log->nodes[i].moved_at = RV_NO_TIME;
+    }
+    made->truth_log->moved_at = r->truth_log->moved_at;
+    made->truth_log->begun = r->truth_log->begun;
+}
+
+/* Take it that a node becomes another one than it `was` at the position `t`. */
+void note_node(run *r, int32_t node, uint8_t was, int64_t t)
+{
+    const int32_t slot = r->part->slots[node];
+    logged_node *own;
+    if (slot < 0) {
+        return;
+    }
+    own = &r->truth_log->nodes[slot];
+    r->truth_log->moved_at = t;
+    if (own->moved_at != t) {
+        own->moved_at = t;
+        own->was = own->now;
+        own->truth = was;
+    }
+    own->now.since = t;
+    if (was != IS_UNKNOWN) {
+        own->now.last[was / IS_TRUE] = r->at.before;
+    }
+}
+
+/* How a node was before the last position at which one changed, if it did there; else NULL. */
+static const logged_node *moved_last(const run *r, int32_t node)
+{
+    const logged_node *own = &r->truth_log->nodes[r->part->slots[node]];
+    return ((own->moved_at == r->truth_log->moved_at) && (own->moved_at != RV_NO_TIME)) ? own : NULL;
+}
+
+truth_times truth_times_of(const run *r, int32_t node, bool before)
+{
+    const logged_node *own = &r->truth_log->nodes[r->part->slots[node]];
+    return (before && (moved_last(r, node) != NULL)) ? own->was : own->now;
+}
+
+/* The truths of some nodes, now or before the last position at which one changed. */
+void pack_truths(const run *r, list nodes, bool before, int64_t *words)
+{
+    const int32_t *node = LIST(PLAN(r), nodes);
+    const int32_t *end = node + nodes.count;
+    int64_t *to = words;
+    while (node < end) {
+        uint64_t word = 0;
+        int32_t shift;
+        for (shift = 0; (shift < 2 * TRUTHS_IN_WORD) && (node < end); shift += 2) {
+            const logged_node *was = before ? moved_last(r, *node) : NULL;
+            word |= (uint64_t)((was != NULL) ? was->truth : r->truth[*node]) << shift;
+            node++;
+        }
+        (void)memcpy(to, &word, sizeof word);
+        to++;
+    }
+}
+
+/* ---- rings of truths */
+
+/* The entry that stands for an instant: the last one not behind it. NULL: there is none. */
+const int64_t *truths_at(const truths *ring, int32_t words, int64_t t)
+{
+    int32_t low = 0;
+    int32_t high = ring->count;
+    if ((high > 0) && (entry_of(ring, high - 1, words)[0] <= t)) { /* as mostly */
+        return entry_of(ring, high - 1, words);
+    }
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        if (entry_of(ring, middle, words)[0] <= t) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return (low > 0) ? entry_of(ring, low - 1, words) : NULL;
+}
+
+/* Drop the entries that stand for nothing from `oldest` on. */
+static void drop_truths(truths *ring, int32_t words, int64_t oldest)
+{
+    while ((ring->count > 1) && (entry_of(ring, 1, words)[0] <= oldest)) {
+        ring->head = (ring->head + 1) & (ring->room - 1);
+        ring->count--;
+    }
+}
+
+/* Make room for as many entries again; false: memory is short. */
+static bool grow_truths(rv_monitor *m, truths *ring, int32_t words)
+{
+    const int32_t room = (ring->room > 0) ? 2 * ring->room : 4;
+    const size_t each = ((size_t)words + 1U) * sizeof *ring->words;
+    int64_t *made = (room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * each) : NULL;
+    int32_t i;
+    if (made == NULL) {
+        m->spoilt = true;
+        return false;
+    }
+    for (i = 0; i < ring->count; i++) {
+        (void)memcpy(&made[(int64_t)i * (words + 1)], entry_of(ring, i, words), each);
+    }
+    arena_give(&m->memory, ring->words, (size_t)ring->room * each);
+    ring->words = made;
+    ring->room = room;
+    ring->head = 0;
+    return true;
+}
+
+/* Add an entry; NULL: memory is short. */
+int64_t *next_truths(rv_monitor *m, truths *ring, int32_t words)
+{
+    if ((ring->count == ring->room) && !grow_truths(m, ring, words)) {
+        return NULL;
+    }
+    ring->count++;
+    return entry_of(ring, ring->count - 1, words);
+}
+
+/* The trigger of the oldest attempt of a judge that is open. */
+static int64_t oldest_trigger(const run *r, int32_t index)
+{
+    const judge *j = &r->judges[index];
+    int64_t found = j->noting->undecidable_since;
+    if (!queue_is_empty(j)) {
+        found = least(found, queue_item(j, 0)->triggered);
+    }
+    if (j->first >= 0) {
+        found = least(found, attempt_at(r->home, j->first)->triggered);
+    }
+    return found;
+}
+
+/* Add an entry of a judge for the instant `t`; NULL: memory is short. */
+static int64_t *add_truths(const run *r, int32_t index, truths *ring, int32_t words, int64_t t)
+{
+    rv_monitor *m = r->home->monitor;
+    int64_t *made;
+    if (ring->count == ring->room) {
+        drop_truths(ring, words, least(oldest_trigger(r, index), t));
+        if ((2 * (int64_t)ring->count > ring->room) /* else it would be full again soon */
+            && !grow_truths(m, ring, words)) {
+            return NULL;
+        }
+    }
+    made = next_truths(m, ring, words);
+    if (made != NULL) {
+        made[0] = t;
+    }
+    return made;
+}
+
+/* Take it that an attempt begins that is triggered at `t`, at which the leaves are. */
+void note_trigger(run *r, int32_t index, int64_t t)
+{
+    noting *n = r->judges[index].noting;
+    const list leaves = r->part->judges[index].leaves;
+    const int32_t words = words_for(leaves.count);
+    int64_t *made = add_truths(r, index, &n->triggers, words, t);
+    const int64_t *last;
+    n->began_at = t;
+    if (made == NULL) {
+        return;
+    }
+    pack_truths(r, leaves, false, &made[1]);
+    last = (n->triggers.count > 1) ? entry_of(&n->triggers, n->triggers.count - 2, words) : NULL;
+    if ((last != NULL) && (memcmp(&last[1], &made[1], (size_t)words * sizeof *made) == 0)) {
+        n->triggers.count--; /* the one before stands for this, too */
+    }
+}
+
+/* Take it that something is unknown at `t` that attempts may hang on. */
+void note_doubt(run *r, int32_t index, int64_t t)
+{
+    noting *n = r->judges[index].noting;
+    const list leaves = r->part->judges[index].leaves;
+    const int32_t words = words_for(leaves.count);
+    truths *ring = &n->doubts;
+    int64_t *made;
+    if ((ring->count > 0) && (entry_of(ring, ring->count - 1, words)[0] >= t)) {
+        return;
+    }
+    made = add_truths(r, index, ring, words, t);
+    n->doubted_at = t;
+    if (made != NULL) {
+        pack_truths(r, leaves, false, &made[1]);
+    }
+}
+
+/* The position at which an attempt began: what the end triggers begins at the last one. */
+int64_t begin_of(const run *r, int32_t index, const attempt *x)
+{
+    return (r->part->judges[index].trigger < 0) ? r->at.position : x->triggered;
+}
+
+/* Where and what an open attempt may hang on that was not known: the instant, and the leaves. */
+const int64_t *doubt_of(const run *r, int32_t index, const attempt *x)
+{
+    const truths *ring = &r->judges[index].noting->doubts;
+    const int32_t words = words_for(r->part->judges[index].leaves.count);
+    int32_t i;
+    if (x->doubted_at != RV_NO_TIME) {
+        return truths_at(ring, words, x->doubted_at);
+    }
+    for (i = 0; is_networked(r, index) && (i < ring->count); i++) {
+        if (entry_of(ring, i, words)[0] >= begin_of(r, index, x)) {
+            return entry_of(ring, i, words);
+        }
+    }
+    return NULL;
+}
+
+/* Take it that the two readings of an attempt part at the position of its judge, or meet. */
+void note_parting(run *r, int32_t index, attempt *x)
+{
+    if ((r->part->judges[index].flags & JUDGE_HIDDEN) == 0) {
+        x->doubted_at = x->parted ? r->judges[index].position : RV_NO_TIME;
+        if (x->parted) {
+            note_doubt(r, index, x->doubted_at);
+        }
+    }
+}
+
+/* Whether something is unknown that a judge's attempts may hang on. */
+static bool is_in_doubt(const run *r, int32_t index)
+{
+    const list propositions = r->part->judges[index].propositions;
+    const int32_t *nodes = LIST(PLAN(r), propositions);
+    int32_t i;
+    for (i = 0; i < propositions.count; i++) {
+        if (r->truth[nodes[i]] == IS_UNKNOWN) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Take it that an attempt that is in no queue begins at the position `t`. */
+void note_begin(run *r, int32_t index, attempt *x, int64_t t)
+{
+    if ((r->part->judges[index].flags & JUDGE_HIDDEN) != 0) {
+        x->doubted_at = t;
+        note_doubt(r, index, t);
+    } else if (is_networked(r, index) && is_in_doubt(r, index)) {
+        note_doubt(r, index, t);
+    } else {
+        /* Nothing is in doubt. */
+    }
+}
+
+/* Take it that an attempt that stays open for good was triggered at `t`. */
+void note_undecidable(run *r, int32_t index, int64_t t)
+{
+    noting *n = r->judges[index].noting;
+    n->undecidable_since = least(n->undecidable_since, t);
+}
+
+/* Count the open attempts of a judge, before they are told of. */
+void note_open_count(run *r, int32_t index)
+{
+    int32_t at;
+    if (is_networked(r, index)) {
+        r->judges[index].noting->open_count = 0;
+        for (at = next_open(r, index, -1); at >= 0; at = next_open(r, index, at)) {
+            r->judges[index].noting->open_count++;
+        }
+    }
+}

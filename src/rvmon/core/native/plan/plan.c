@@ -1,0 +1,294 @@
+/* The plan is checked before anything reads it: every index, size and bound, so that no bytes can
+ * make the core read or write outside of its memory. */
+#include "plan/plan_check.h"
+
+#include <string.h>
+
+/* The size of the records of each section. */
+static const size_t RECORD[SECTIONS] = {
+    sizeof(int32_t),       sizeof(int32_t),        sizeof(subscription), sizeof(part_plan),
+    sizeof(signal_plan),   sizeof(event_plan),     sizeof(atom_plan),    sizeof(node_plan),
+    sizeof(link_plan),     sizeof(judge_plan),     sizeof(automaton_plan), sizeof(form_plan),
+    sizeof(operator_plan), sizeof(watch_plan),     sizeof(group_plan),   sizeof(number_plan),
+    sizeof(int32_t),       sizeof(int32_t),        sizeof(int32_t),      sizeof(int64_t),
+    sizeof(margin_plan),   sizeof(measure_plan)};
+
+/* Where no record was found wrong. */
+#define FINE (-1)
+
+static uint64_t hash_of_words(const uint64_t *words, size_t count)
+{
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    size_t i;
+    for (i = 0; i < count; i++) {
+        hash = (hash ^ words[i]) * UINT64_C(0x100000001b3);
+    }
+    return hash;
+}
+
+static const section *table_of(const plan_header *h)
+{
+    return (const section *)(const void *)(h + 1);
+}
+
+/* Whether the bytes are a plan of this version, and each section lies within them. */
+static bool is_whole(const void *bytes, size_t size)
+{
+    const plan_header *h = bytes;
+    const size_t head = sizeof *h + SECTIONS * sizeof(section);
+    const section *table;
+    int32_t i;
+    if ((bytes == NULL) || ((uintptr_t)bytes % 8 != 0) || (size % 8 != 0) || (size < head)
+        || (memcmp(h->magic, PLAN_MAGIC, sizeof h->magic) != 0) || (h->order != PLAN_ORDER)
+        || (h->sections != SECTIONS) || (h->size < 0) || ((uint64_t)h->size != size)) {
+        return false;
+    }
+    if (h->hash != hash_of_words((const uint64_t *)(const void *)(h + 1), (size - sizeof *h) / 8)) {
+        return false;
+    }
+    table = table_of(h);
+    for (i = 0; i < SECTIONS; i++) {
+        const section *s = &table[i];
+        if ((s->offset < (int64_t)head) || (s->offset % 8 != 0) || (s->count < 0)
+            || (s->count >= MOST) || ((uint64_t)s->offset > size)
+            || ((uint64_t)s->count > (size - (uint64_t)s->offset) / RECORD[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static const void *section_at(const plan_header *h, int32_t which)
+{
+    return (const char *)h + table_of(h)[which].offset;
+}
+
+bool plan_view(plan *p, const void *bytes, size_t size)
+{
+    const plan_header *h = bytes;
+    int32_t i;
+    if (!is_whole(bytes, size)) {
+        return false;
+    }
+    p->header = h;
+    p->field_first = section_at(h, SEC_FIELD_FIRST);
+    p->subscription_first = section_at(h, SEC_SUBSCRIPTION_FIRST);
+    p->subscriptions = section_at(h, SEC_SUBSCRIPTIONS);
+    p->parts = section_at(h, SEC_PARTS);
+    p->signals = section_at(h, SEC_SIGNALS);
+    p->events = section_at(h, SEC_EVENTS);
+    p->atoms = section_at(h, SEC_ATOMS);
+    p->nodes = section_at(h, SEC_NODES);
+    p->links = section_at(h, SEC_LINKS);
+    p->judges = section_at(h, SEC_JUDGES);
+    p->automata = section_at(h, SEC_AUTOMATA);
+    p->forms = section_at(h, SEC_FORMS);
+    p->operators = section_at(h, SEC_OPERATORS);
+    p->watches = section_at(h, SEC_WATCHES);
+    p->groups = section_at(h, SEC_GROUPS);
+    p->numbers = section_at(h, SEC_NUMBERS);
+    p->code = section_at(h, SEC_CODE);
+    p->lists = section_at(h, SEC_LISTS);
+    p->ints = section_at(h, SEC_INTS);
+    p->ticks = section_at(h, SEC_TICKS);
+    p->margins = section_at(h, SEC_MARGINS);
+    p->measures = section_at(h, SEC_MEASURES);
+    for (i = 0; i < SECTIONS; i++) {
+        p->counts[i] = table_of(h)[i].count;
+    }
+    p->part_count = (int32_t)p->counts[SEC_PARTS];
+    return true;
+}
+
+machine machine_view(const plan *p, const automaton_plan *a)
+{
+    machine made;
+    made.class_of = &p->ints[a->class_of];
+    made.bases = &p->ints[a->bases];
+    made.widths = &p->ints[a->widths];
+    made.strides = &p->ints[a->strides];
+    made.cut_first = &p->ints[a->cut_first];
+    made.cuts = &p->ticks[a->cuts];
+    made.edges = &p->ints[a->edges];
+    made.targets = &p->ints[a->targets];
+    made.sources = &p->ints[a->sources];
+    made.time_values = &p->ints[a->time_values];
+    made.clause_first = &p->ints[a->clause_first];
+    made.test_first = &p->ints[a->test_first];
+    made.tests = &p->ints[a->tests];
+    made.ages = &p->ticks[a->ages];
+    made.gap = p->header->gap;
+    made.step = (made.gap > 0) ? made.gap : 1;
+    made.initial = a->initial;
+    made.locations = a->locations;
+    made.clocks = a->clocks;
+    made.classes = a->classes;
+    return made;
+}
+
+static bool check_header(const plan *p)
+{
+    const plan_header *h = p->header;
+    return (h->gap >= 0) && (h->gap < LIMIT) && (h->signals >= 0) && (h->events >= 0)
+           && is_within(h->fields, 0, FIELDS_MOST + 1) && (h->requirements >= 0)
+           && is_within(h->captured, 0, CAPTURED_MOST + 1)
+           && (h->filling == 0)
+           && (h->signals < MOST / 4) && (h->events < MOST / 4)
+           && (p->counts[SEC_FIELD_FIRST] == h->events + 1)
+           && (p->counts[SEC_SUBSCRIPTION_FIRST] == (int64_t)h->signals + h->events + 1)
+           && ascends(p->field_first, h->events, h->fields)
+           && ascends(p->subscription_first, (int64_t)h->signals + h->events,
+                      p->counts[SEC_SUBSCRIPTIONS]);
+}
+
+static bool check_subscriptions(const plan *p)
+{
+    int32_t name;
+    int32_t i;
+    for (name = 0; name < p->header->signals + p->header->events; name++) {
+        const bool event = name >= p->header->signals;
+        for (i = p->subscription_first[name]; i < p->subscription_first[name + 1]; i++) {
+            const subscription *s = &p->subscriptions[i];
+            const part_plan *owner;
+            int32_t own;
+            if (!is_within(s->part, 0, p->part_count)) {
+                return false;
+            }
+            owner = &p->parts[s->part];
+            if (!is_within(s->local, 0, event ? owner->events.count : owner->signals.count)) {
+                return false;
+            }
+            own = event ? p->events[owner->events.first + s->local].name
+                        : p->signals[owner->signals.first + s->local].name;
+            if (own != name) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* The sizes of a part. */
+static bool check_part(const plan *p, const part_plan *x)
+{
+    const int32_t nodes = x->nodes.count;
+    const int32_t judges = x->judges.count;
+    return has(p, SEC_SIGNALS, x->signals.first, x->signals.count)
+           && has(p, SEC_EVENTS, x->events.first, x->events.count)
+           && has(p, SEC_ATOMS, x->atoms.first, x->atoms.count)
+           && has(p, SEC_NODES, x->nodes.first, nodes)
+           && has(p, SEC_JUDGES, x->judges.first, judges)
+           && has(p, SEC_FORMS, x->forms.first, x->forms.count)
+           && has(p, SEC_WATCHES, x->watches.first, x->watches.count)
+           && has(p, SEC_GROUPS, x->groups.first, x->groups.count)
+           && is_within(x->requirements, 0, (int64_t)judges + 1) && (x->fields >= 0)
+           && is_within(x->timers, 0, (int64_t)nodes + 1) && is_within(x->seen, 0, (int64_t)nodes + 1)
+           && is_within(x->edges, 0, (int64_t)nodes + 1)
+           && is_within(x->stretches, 0, (int64_t)nodes + 1)
+           && is_within(x->perishable, 0, (int64_t)x->signals.count + 1)
+           && is_within(x->clocks, 1, CLOCKS_MOST + 1) && (x->undetermined >= 0) && (x->births >= 0)
+           && lists(p, x->stateful, 0, nodes) && lists(p, x->networked, 0, judges)
+           && lists(p, x->dead_timers, 0, nodes) && is_within(x->captured, 0, (int64_t)p->header->captured + 1)
+           && is_within(x->each, 0, 2) && (x->each <= x->captured)
+           && is_within(x->requirement, (x->captured > 0) ? 0 : -1, p->header->requirements)
+           && lists(p, x->captures, 0, p->counts[SEC_CODE])
+           && (x->each + x->captures.count == x->captured)
+           && lists(p, x->varying_atoms, 0, x->atoms.count) && lists(p, x->varying_nodes, 0, nodes)
+           && lists(p, x->varying, 0, nodes) && lists(p, x->lapsed, 0, nodes)
+           && ((x->captured == 0) || (is_within(judges, 1, 31) && (x->requirements == 1)))
+           && is_within(x->truths, -1, (x->captured == 0) ? x->forms.count : 0)
+           && ((x->captured == 0) || (x->watches.count == 0))
+           && ((x->each == 0)
+               || (is_within(x->each_event, 0, x->events.count)
+                   && is_within(x->each_field, 0, p->events[x->events.first + x->each_event].fields)));
+}
+
+static bool check_numbers(const plan *p)
+{
+    int64_t i;
+    for (i = 0; i < p->counts[SEC_NUMBERS]; i++) {
+        if (!is_within(p->numbers[i].kind, RV_WHOLE, RV_REAL + 1)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether each requirement with captured values has one part, in their order. */
+static bool check_parts(const plan *p)
+{
+    int32_t last = -1;
+    int32_t i;
+    for (i = 0; i < p->part_count; i++) {
+        if (p->parts[i].captured > 0) {
+            if (p->parts[i].requirement <= last) {
+                return false;
+            }
+            last = p->parts[i].requirement;
+        }
+    }
+    return true;
+}
+
+/* The section of a part that is wrong. */
+static int32_t wrong_in_part(const plan *p, const part_plan *x)
+{
+    int32_t i;
+    if (!check_part(p, x)) {
+        return SEC_PARTS;
+    }
+    if (!check_inputs(p, x)) {
+        return SEC_SIGNALS;
+    }
+    if (!check_atoms(p, x)) {
+        return SEC_ATOMS;
+    }
+    if (!check_nodes(p, x)) {
+        return SEC_NODES;
+    }
+    if (!check_forms(p, x)) {
+        return SEC_FORMS;
+    }
+    for (i = 0; i < x->judges.count; i++) {
+        if (!check_judge(p, x, i)) {
+            return SEC_JUDGES;
+        }
+    }
+    if (!check_watches(p, x)) {
+        return SEC_WATCHES;
+    }
+    if (!check_groups(p, x)) {
+        return SEC_GROUPS;
+    }
+    return check_margins(p, x) ? FINE : SEC_MARGINS;
+}
+
+int32_t rv_plan_check(const void *bytes, size_t size)
+{
+    plan p;
+    int32_t i;
+    if (!plan_view(&p, bytes, size) || !check_header(&p)) {
+        return 0;
+    }
+    if (!check_numbers(&p)) {
+        return SEC_NUMBERS;
+    }
+    if (!check_parts(&p)) {
+        return SEC_PARTS;
+    }
+    if ((p.counts[SEC_MARGINS] != 0) && (p.counts[SEC_MARGINS] != p.counts[SEC_JUDGES])) {
+        return SEC_MARGINS;
+    }
+    for (i = 0; i < (int32_t)p.counts[SEC_AUTOMATA]; i++) {
+        if (!check_automaton(&p, &p.automata[i])) {
+            return SEC_AUTOMATA;
+        }
+    }
+    for (i = 0; i < p.part_count; i++) {
+        const int32_t wrong = wrong_in_part(&p, &p.parts[i]);
+        if (wrong != FINE) {
+            return wrong;
+        }
+    }
+    return check_subscriptions(&p) ? FINE : SEC_SUBSCRIPTIONS;
+}

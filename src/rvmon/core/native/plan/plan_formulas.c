@@ -1,0 +1,216 @@
+/* The check of what a part reads: inputs, programs, atoms, nodes. */
+#include "input/input.h"
+#include "plan/plan_check.h"
+
+bool check_inputs(const plan *p, const part_plan *x)
+{
+    int32_t i;
+    int32_t fields = 0;
+    for (i = 0; i < x->signals.count; i++) {
+        const signal_plan *s = &p->signals[x->signals.first + i];
+        if (!is_within(s->name, 0, p->header->signals) || !is_within(s->births, 0, 3)
+            || !is_within(s->stale_after, 0, LIMIT) || !is_within(s->perishable, -1, x->perishable)
+            || !both(p, s->on_change, 0, x->atoms.count) || !both(p, s->on_update, 0, x->atoms.count)
+            || !lists(p, s->on_birth, 0, x->nodes.count) || !lists(p, s->needs, 0, x->atoms.count)) {
+            return false;
+        }
+    }
+    for (i = 0; i < x->events.count; i++) {
+        const event_plan *e = &p->events[x->events.first + i];
+        const int64_t number = (int64_t)e->name - p->header->signals;
+        if (!is_within(number, 0, p->header->events) || (e->field != fields)
+            || (e->fields != p->field_first[number + 1] - p->field_first[number])
+            || (((e->flags & EVENT_KEY) != 0) && ((x->each == 0) || (i != x->each_event)))
+            || !both(p, e->on_occurrence, 0, x->atoms.count)
+            || !lists(p, e->needs, 0, x->atoms.count)
+            || !is_within(e->key, -1, e->fields)) {
+            return false;
+        }
+        fields += e->fields;
+    }
+    return fields == x->fields;
+}
+
+/* Walk a program: its stack neither runs empty nor over. `allowed`: the events of which it may read
+ * fields; NULL: all. */
+static bool check_program(const plan *p, const part_plan *x, int64_t place)
+{
+    int32_t depth = 0;
+    int64_t at;
+    for (at = place; is_within(at, 0, p->counts[SEC_CODE]); at++) {
+        const int32_t op = p->code[at] & 255;
+        const int32_t arg = p->code[at] >> 8;
+        switch (op) {
+        case CODE_END: return depth == 1;
+        case CODE_NUMBER:
+            if (!is_within(arg, 0, p->counts[SEC_NUMBERS])) {
+                return false;
+            }
+            depth++;
+            break;
+        case CODE_SIGNAL:
+        case CODE_PREV:
+        case CODE_DELTA:
+        case CODE_RATE:
+            if (!is_within(arg, 0, x->signals.count)) {
+                return false;
+            }
+            depth++;
+            break;
+        case CODE_CAPTURED:
+            if (!is_within(arg, 0, x->captured)) {
+                return false;
+            }
+            depth++;
+            break;
+        case CODE_FIELD:
+            at++;
+            if (!is_within(arg, 0, x->events.count) || (at >= p->counts[SEC_CODE])
+                || !is_within(p->code[at], 0, p->events[x->events.first + arg].fields)) {
+                return false;
+            }
+            depth++;
+            break;
+        default:
+            if (!is_within(op, CODE_ADD, CODES) || (depth < arguments_of(op))) {
+                return false;
+            }
+            depth -= arguments_of(op) - 1;
+            break;
+        }
+        if (depth >= PROGRAM_DEPTH) {
+            return false;
+        }
+    }
+    return false;
+}
+
+bool check_atoms(const plan *p, const part_plan *x)
+{
+    int32_t i;
+    for (i = 0; i < x->atoms.count; i++) {
+        const atom_plan *a = &p->atoms[x->atoms.first + i];
+        const bool of_event = (a->op == ATOM_EVENT) || (a->op == ATOM_KNOWN_EVENT)
+                              || (a->op == ATOM_UPDATED_EVENT);
+        const bool of_programs = (a->op == ATOM_COMPARE) || (a->op == ATOM_PAYLOAD);
+        const bool of_signal = !of_event && !of_programs && (a->op != ATOM_START);
+        if (!is_within(a->op, 0, ATOMS) || !is_within(a->compare, 0, CMPS)
+            || !is_within(a->momentary, 0, 256) || !both(p, a->nodes, 0, x->nodes.count)
+            || (of_event && !is_within(a->input, 0, x->events.count))
+            || (of_signal && !is_within(a->input, 0, x->signals.count))
+            || (of_programs
+                && (!check_program(p, x, a->left) || !check_program(p, x, a->right)))
+            || !lists(p, a->events, 0, x->events.count)
+            || (a->events.count > PAYLOAD_EVENTS_MOST)
+            || ((a->op == ATOM_PAYLOAD) != (a->events.count > 0))) {
+            return false;
+        }
+    }
+    for (i = 0; i < x->captures.count; i++) {
+        if (!check_program(p, x, p->lists[x->captures.first + i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* How many operands an operator has: at least, and at most. */
+static bool check_operands(const plan *p, const part_plan *x, const node_plan *n, int32_t place)
+{
+    switch (n->op) {
+    case NODE_LEAF:
+    case NODE_UNBORN: return lists(p, n->operands, 0, 2 * (int64_t)x->signals.count);
+    case NODE_CONSTANT:
+    case NODE_LAPSED:
+    case NODE_ELAPSED: return n->operands.count == 0;
+    case NODE_AND:
+    case NODE_OR: return (n->operands.count >= 1) && lists(p, n->operands, 0, place);
+    case NODE_EVER:
+    case NODE_EDGE:
+    case NODE_STRETCH: return (n->operands.count == 2) && lists(p, n->operands, 0, place);
+    default: return (n->operands.count == 1) && lists(p, n->operands, 0, place);
+    }
+}
+
+/* The memory that a node has, and its timer; each timer is one node's. */
+static bool check_memory(const part_plan *x, const node_plan *n, int32_t *timed_nodes)
+{
+    int32_t slots = 0;
+    bool timed = true;
+    switch (n->op) {
+    case NODE_DOUBT:
+    case NODE_PREVIOUS: slots = x->seen; break;
+    case NODE_EVER:
+        slots = x->seen;
+        timed = false;
+        break;
+    case NODE_EDGE: slots = x->edges; break;
+    case NODE_STRETCH:
+    case NODE_AMOUNT: slots = x->stretches; break;
+    case NODE_ELAPSED: break;
+    default: timed = false; break;
+    }
+    if ((slots > 0) ? !is_within(n->slot, 0, slots) : (n->op == NODE_DOUBT) || (n->op > NODE_DOUBT)) {
+        return false;
+    }
+    if (!timed) {
+        return n->timer == -1;
+    }
+    (*timed_nodes)++;
+    return n->timer == *timed_nodes - 1;
+}
+
+/* What a node adds to the letter of a judge, if that has a table of letters; else nothing. So no sum
+ * of them leaves 32 bits; see `check_letters`. */
+static bool check_weights(const plan *p, const part_plan *x, const link_plan *l)
+{
+    const judge_plan *j = &p->judges[x->judges.first + l->judge];
+    const int64_t behind = ((j->automaton >= 0) && (j->diagram < 0)) ? MOST : 1;
+    int32_t v;
+    for (v = 0; v < 3; v++) {
+        if (!is_within(l->worse[v], 0, behind) || !is_within(l->better[v], 0, behind)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check_links(const plan *p, const part_plan *x, list links)
+{
+    int32_t i;
+    if (!has(p, SEC_LINKS, links.first, links.count)) {
+        return false;
+    }
+    for (i = links.first; i < links.first + links.count; i++) {
+        const link_plan *l = &p->links[i];
+        const bool watches = l->kind == LINK_WATCH;
+        if (!is_within(l->judge, 0, watches ? x->watches.count : x->judges.count)
+            || (!watches && (((l->kind & LINK_WATCH) != 0) || !check_weights(p, x, l)))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool check_nodes(const plan *p, const part_plan *x)
+{
+    int32_t timed_nodes = 0;
+    int32_t i;
+    for (i = 0; i < x->nodes.count; i++) {
+        const node_plan *n = &p->nodes[x->nodes.first + i];
+        if (!is_within(n->op, 0, NODES) || !check_operands(p, x, n, i)
+            || !check_memory(x, n, &timed_nodes) || !both(p, n->parents, (int64_t)i + 1, x->nodes.count)
+            || !check_links(p, x, n->links) || (n->low < 0) || (n->high < 0)
+            || ((n->op == NODE_LEAF)
+                && (!is_within(n->a, 0, x->atoms.count) || !is_within(n->b, 0, 3)))
+            || ((n->op == NODE_CONSTANT) && !is_within(n->a, 0, 3))) {
+            return false;
+        }
+    }
+    for (i = 0; i < x->dead_timers.count; i++) {
+        if (p->nodes[x->nodes.first + p->lists[x->dead_timers.first + i]].timer < 0) {
+            return false;
+        }
+    }
+    return timed_nodes == x->timers;
+}

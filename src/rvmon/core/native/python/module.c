@@ -1,0 +1,410 @@
+/* rvmon.native._core for CPython: the type Monitor, which takes samples as dictionaries, or rows as
+ * columns, and gives out attempts. The only file of the core that knows of Python. */
+#include "python/module.h"
+
+#ifndef RVMON_SOURCE_HASH
+#define RVMON_SOURCE_HASH "" /* compiled by hand */
+#endif
+
+enum { TAKEN, LEFT, FAILED };
+
+/* Take a sample of plain values that is in order; if it is left nothing happened. No code in Python
+ * runs in here, so that no other call of its thread can come in between. */
+static int take(monitor *c, int64_t t, PyObject *values, bool looked)
+{
+    int code = RV_FINISHED;
+    bool laid;
+    c->busy = true;
+    Py_BEGIN_CRITICAL_SECTION(values);
+    laid = lay(&c->in, values, looked);
+    Py_END_CRITICAL_SECTION();
+    c->busy = false;
+    if (laid) {
+        code = rv_step(c->m, t, c->in.updates, (int32_t)c->in.count);
+    }
+    if (code == RV_OK) {
+        note_arrivals(&c->in, t);
+    }
+    if (code == RV_NO_MEMORY) {
+        (void)PyErr_NoMemory();
+        return FAILED;
+    }
+    return (code == RV_OK) ? TAKEN : (PyErr_Occurred() != NULL) ? FAILED : LEFT;
+}
+
+/* Have Python take a sample. */
+static PyObject *looked_closer(PyObject *function, PyObject *const *args, Py_ssize_t count,
+                               PyObject *names)
+{
+    const Py_ssize_t named = (names == NULL) ? 0 : PyTuple_Size(names);
+    PyObject *by_place = PyTuple_New(count);
+    PyObject *by_name = PyDict_New();
+    PyObject *made = NULL;
+    bool done = (by_place != NULL) && (by_name != NULL);
+    Py_ssize_t i;
+    if (function == NULL) {
+        PyErr_SetString(PyExc_RuntimeError, "this monitor was collected");
+        done = false;
+    }
+    for (i = 0; done && (i < count); i++) {
+        done = PyTuple_SetItem(by_place, i, Py_NewRef(args[i])) == 0;
+    }
+    for (i = 0; done && (i < named); i++) {
+        done = PyDict_SetItem(by_name, PyTuple_GetItem(names, i), args[count + i]) == 0;
+    }
+    if (done) {
+        Py_INCREF(function);
+        made = PyObject_Call(function, by_place, by_name);
+        Py_DECREF(function);
+    }
+    Py_XDECREF(by_place);
+    Py_XDECREF(by_name);
+    return made;
+}
+
+/* Take a sample quickly, and give out what it decided; NULL without an error if it is left. */
+static PyObject *step_quickly(monitor *c, int64_t t, PyObject *values)
+{
+    PyObject *made = NULL;
+    Py_BEGIN_CRITICAL_SECTION(c);
+    if (!c->held && !c->busy && PyDict_CheckExact(values) && (take(c, t, values, false) == TAKEN)) {
+        made = (c->figures != NULL) ? figures_since(c) : decided_since(c);
+    }
+    Py_END_CRITICAL_SECTION();
+    return made;
+}
+
+static PyObject *monitor_step_ns(PyObject *self, PyObject *const *args, Py_ssize_t count,
+                                 PyObject *names)
+{
+    monitor *c = (monitor *)self;
+    if ((count == 2) && (names == NULL) && PyLong_CheckExact(args[0])) {
+        int beyond = 0;
+        const long long t = PyLong_AsLongLongAndOverflow(args[0], &beyond);
+        if (beyond == 0) {
+            PyObject *made = step_quickly(c, (int64_t)t, args[1]);
+            if ((made != NULL) || (PyErr_Occurred() != NULL)) {
+                return made;
+            }
+        }
+    }
+    return looked_closer(c->look_closer_ns, args, count, names);
+}
+
+/* The same in seconds, where it is certain what the nearest nanosecond is; the difference is exact,
+ * the product nearly. */
+static PyObject *monitor_step(PyObject *self, PyObject *const *args, Py_ssize_t count,
+                              PyObject *names)
+{
+    monitor *c = (monitor *)self;
+    if ((count == 2) && (names == NULL) && PyFloat_CheckExact(args[0])) {
+        const double seconds = PyFloat_AsDouble(args[0]);
+        if ((seconds > -4e9) && (seconds < 4e9)) {
+            const int64_t whole = (int64_t)seconds;
+            const double part = (seconds - (double)whole) * 1e9;
+            const int64_t rest = (int64_t)(part + ((part < 0.0) ? -0.5 : 0.5));
+            const double off = part - (double)rest;
+            if ((off > -0.4999) && (off < 0.4999)) {
+                const int64_t t = whole * INT64_C(1000000000) + rest;
+                PyObject *made = step_quickly(c, t, args[1]);
+                if ((made != NULL) || (PyErr_Occurred() != NULL)) {
+                    return made;
+                }
+            }
+        }
+    }
+    return looked_closer(c->look_closer, args, count, names);
+}
+
+/* Calls of one thread at a time: each of these functions as a method. */
+#define METHOD(name)                                            \
+    static PyObject *monitor_##name(PyObject *self, PyObject *arg) \
+    {                                                           \
+        PyObject *made = NULL;                                  \
+        Py_BEGIN_CRITICAL_SECTION(self);                        \
+        if (is_free((monitor *)self)) {                         \
+            made = name##_of((monitor *)self, arg);             \
+        }                                                       \
+        Py_END_CRITICAL_SECTION();                              \
+        return made;                                            \
+    }
+
+static bool is_free(const monitor *c)
+{
+    if (c->busy) {
+        PyErr_SetString(PyExc_RuntimeError, "another call is under way");
+    }
+    return !c->busy;
+}
+
+/* judge(t, values, looked): whether the sample was taken, at which Python has looked if it says so. */
+static PyObject *judge_of(monitor *c, PyObject *args)
+{
+    long long t;
+    PyObject *values;
+    int looked;
+    int done = LEFT;
+    if (!PyArg_ParseTuple(args, "LOp", &t, &values, &looked)) {
+        return NULL;
+    }
+    if (PyDict_CheckExact(values)) {
+        done = take(c, (int64_t)t, values, looked != 0);
+    }
+    return (done == FAILED) ? NULL : Py_NewRef((done == TAKEN) ? Py_True : Py_False);
+}
+
+static PyObject *advance_of(monitor *c, PyObject *until)
+{
+    const long long t = PyLong_AsLongLong(until);
+    int code;
+    if ((t == -1) && (PyErr_Occurred() != NULL)) {
+        return NULL;
+    }
+    code = rv_advance(c->m, (int64_t)t);
+    /* Time that has come already changes nothing. */
+    return ((code == RV_TOO_EARLY) || is_done(code)) ? Py_NewRef(Py_None) : NULL;
+}
+
+/* End the run, at an instant or None; gives the last instant, None if there is none. */
+static PyObject *finish_of(monitor *c, PyObject *until)
+{
+    int64_t t = RV_NO_TIME;
+    int64_t end;
+    int code;
+    if (until != Py_None) {
+        t = (int64_t)PyLong_AsLongLong(until);
+        if ((t == -1) && (PyErr_Occurred() != NULL)) {
+            return NULL;
+        }
+    }
+    end = rv_end(c->m, t);
+    code = rv_spoilt(c->m) ? RV_NO_MEMORY : rv_finish(c->m, t);
+    /* What comes after it may have been interrupted, and is done again. */
+    return ((code == RV_FINISHED) || is_done(code)) ? instant(end, RV_NO_TIME) : NULL;
+}
+
+static PyObject *reset_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    c->given = 0;
+    forget_arrivals(&c->in);
+    free_dropped(&c->notes);
+    rv_forget_records(c->m);
+    return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
+}
+
+/* The first sample's instant, the last one's, and the instant that time has come to. */
+static PyObject *times_of(monitor *c, PyObject *unused)
+{
+    const rv_times found = rv_times_of(c->m);
+    (void)unused;
+    return Py_BuildValue("NNN", instant(found.began, RV_NO_TIME), instant(found.last, RV_NO_TIME),
+                         instant(found.reached, RV_NO_TIME));
+}
+
+static PyObject *next_due_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return instant(rv_next_due(c->m), RV_NEVER);
+}
+
+METHOD(judge)
+METHOD(advance)
+METHOD(lose)
+METHOD(found)
+METHOD(late)
+METHOD(finish)
+METHOD(reset)
+METHOD(keep)
+METHOD(arrivals)
+METHOD(take_arrivals)
+METHOD(flush)
+METHOD(open)
+METHOD(records)
+METHOD(counts)
+METHOD(stale)
+METHOD(times)
+METHOD(next_due)
+METHOD(measure)
+METHOD(figures)
+METHOD(open_figures)
+METHOD(margins)
+METHOD(memory_used)
+METHOD(rows)
+METHOD(save)
+METHOD(load)
+METHOD(truths)
+METHOD(hits)
+METHOD(situation)
+METHOD(passages)
+
+/* Begin or end a call of which Python does a part; false amid another one. */
+static PyObject *monitor_hold(PyObject *self, PyObject *held)
+{
+    monitor *c = (monitor *)self;
+    bool done;
+    Py_BEGIN_CRITICAL_SECTION(self);
+    done = !c->busy;
+    if (done) {
+        c->held = held == Py_True;
+    }
+    Py_END_CRITICAL_SECTION();
+    return Py_NewRef(done ? Py_True : Py_False);
+}
+
+/* The type. */
+
+static int monitor_traverse(PyObject *self, visitproc visit, void *arg)
+{
+    Py_VISIT(Py_TYPE(self));
+    Py_VISIT(((monitor *)self)->owner);
+    if (((monitor *)self)->figures != NULL) {
+        Py_VISIT(((monitor *)self)->figures->owner);
+    }
+    return 0;
+}
+
+/* All that is borrowed goes with its owner: nothing but the end can be done any more. */
+static int monitor_clear(PyObject *self)
+{
+    monitor *c = (monitor *)self;
+    c->busy = true;
+    c->look_closer = NULL;
+    c->look_closer_ns = NULL;
+    Py_CLEAR(c->owner);
+    free_figures(c);
+    return 0;
+}
+
+static void monitor_dealloc(PyObject *self)
+{
+    monitor *c = (monitor *)self;
+    PyTypeObject *type = Py_TYPE(self);
+    PyObject_GC_UnTrack(self);
+    (void)monitor_clear(self);
+    if (c->m != NULL) {
+        (void)rv_reset(c->m); /* pieces give back what hangs on them */
+        rv_free(c->m);
+    }
+    free_dropped(&c->notes);
+    free(c->notes.dropped);
+    free_intake(&c->in);
+    PyMem_Free(c->captured);
+    free(c->plan);
+    Py_XDECREF(c->data);
+    PyObject_GC_Del(self);
+    Py_DECREF(type);
+}
+
+#define FUNCTION(name) (PyCFunction)(void (*)(void))monitor_##name
+
+static PyMethodDef monitor_methods[] = {
+    {"step", FUNCTION(step), METH_FASTCALL | METH_KEYWORDS,
+     "step(t, values)\n--\n\nTake one sample, at seconds; see `rvmon.Monitor`."},
+    {"step_ns", FUNCTION(step_ns), METH_FASTCALL | METH_KEYWORDS,
+     "step_ns(t_ns, values)\n--\n\nTake one sample, at ticks; see `rvmon.Monitor`."},
+    {"judge", monitor_judge, METH_VARARGS, NULL},
+    {"rows", monitor_rows, METH_VARARGS, NULL},
+    {"advance", monitor_advance, METH_O, NULL},
+    {"lose", monitor_lose, METH_VARARGS, NULL},
+    {"found", monitor_found, METH_VARARGS, NULL},
+    {"late", monitor_late, METH_VARARGS, NULL},
+    {"finish", monitor_finish, METH_O, NULL},
+    {"keep", monitor_keep, METH_O, NULL},
+    {"arrivals", monitor_arrivals, METH_NOARGS, NULL},
+    {"take_arrivals", monitor_take_arrivals, METH_O, NULL},
+    {"flush", monitor_flush, METH_NOARGS, NULL},
+    {"open", monitor_open, METH_NOARGS, NULL},
+    {"records", monitor_records, METH_NOARGS, NULL},
+    {"counts", monitor_counts, METH_NOARGS, NULL},
+    {"stale", monitor_stale, METH_NOARGS, NULL},
+    {"times", monitor_times, METH_NOARGS, NULL},
+    {"next_due", monitor_next_due, METH_NOARGS, NULL},
+    {"truths", monitor_truths, METH_O, NULL},
+    {"passages", monitor_passages, METH_O, NULL},
+    {"situation", monitor_situation, METH_O, NULL},
+    {"hits", monitor_hits, METH_NOARGS, NULL},
+    {"measure", monitor_measure, METH_VARARGS, NULL},
+    {"figures", monitor_figures, METH_NOARGS, NULL},
+    {"open_figures", monitor_open_figures, METH_NOARGS, NULL},
+    {"margins", monitor_margins, METH_NOARGS, NULL},
+    {"memory_used", monitor_memory_used, METH_NOARGS, NULL},
+    {"hold", monitor_hold, METH_O, NULL},
+    {"reset", monitor_reset, METH_NOARGS, NULL},
+    {"save", monitor_save, METH_NOARGS, NULL},
+    {"load", monitor_load, METH_O, NULL},
+    {NULL, NULL, 0, NULL},
+};
+
+static PyType_Slot monitor_slots[] = {
+    {Py_tp_new, RVMON_SLOT(monitor_new)},
+    {Py_tp_dealloc, RVMON_SLOT(monitor_dealloc)},
+    {Py_tp_traverse, RVMON_SLOT(monitor_traverse)},
+    {Py_tp_clear, RVMON_SLOT(monitor_clear)},
+    {Py_tp_methods, monitor_methods},
+    {0, NULL},
+};
+
+static PyType_Spec monitor_spec = {
+    "rvmon.native._core.Monitor", sizeof(monitor), 0,
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_IMMUTABLETYPE, monitor_slots,
+};
+
+/* memory_of(plan, attempts): the bytes of a block in which a run begins with room for so many. */
+static PyObject *core_memory_of(PyObject *module, PyObject *args)
+{
+    const rv_memory heap = {malloc, realloc, free, NULL, 0};
+    Py_buffer plan;
+    int attempts;
+    PyObject *made = NULL;
+    rv_monitor *m;
+    (void)module;
+    if (!PyArg_ParseTuple(args, "y*i", &plan, &attempts)) {
+        return NULL;
+    }
+    m = rv_new(plan.buf, (size_t)plan.len, heap);
+    if ((m != NULL) && (rv_reserve(m, attempts) == RV_OK)) {
+        made = PyLong_FromLongLong((long long)rv_memory_used(m));
+    } else if (rv_plan_check(plan.buf, (size_t)plan.len) >= 0) {
+        PyErr_SetString(PyExc_ValueError, "the plan is damaged");
+    } else {
+        (void)PyErr_NoMemory();
+    }
+    rv_free(m);
+    PyBuffer_Release(&plan);
+    return made;
+}
+
+static PyMethodDef core_methods[] = {
+    {"memory_of", core_memory_of, METH_VARARGS, NULL},
+    {NULL, NULL, 0, NULL},
+};
+
+static int execute(PyObject *module)
+{
+    PyObject *type = PyType_FromModuleAndSpec(module, &monitor_spec, NULL);
+    PyObject *base = record_type(module);
+    const bool done = (type != NULL) && (PyModule_AddObjectRef(module, "Monitor", type) == 0)
+                      && (base != NULL) && (PyModule_AddObjectRef(module, "Record", base) == 0);
+    Py_XDECREF(type);
+    Py_XDECREF(base);
+    return done ? PyModule_AddStringConstant(module, "source_hash", RVMON_SOURCE_HASH) : -1;
+}
+
+static PyModuleDef_Slot slots[] = {
+    {Py_mod_exec, RVMON_SLOT(execute)},
+#ifdef Py_GIL_DISABLED
+    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
+#endif
+    {0, NULL},
+};
+
+static PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT, "_core", NULL, 0, core_methods, slots, NULL, NULL, NULL,
+};
+
+PyMODINIT_FUNC PyInit__core(void);
+PyMODINIT_FUNC PyInit__core(void)
+{
+    return PyModuleDef_Init(&definition);
+}

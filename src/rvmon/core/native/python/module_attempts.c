@@ -1,0 +1,189 @@
+/* The monitor as an object of Python, and how module.c gives out its records: as attempts. */
+#include "python/module.h"
+
+/* Raises what it comes to that the core did not do something. */
+bool is_done(int code)
+{
+    if (code == RV_NO_MEMORY) {
+        (void)PyErr_NoMemory();
+    } else if (code != RV_OK) {
+        (void)PyErr_Format(PyExc_ValueError, "what was checked is refused (%d)", code);
+    } else {
+        return true;
+    }
+    return false;
+}
+
+void begin_gathering(gathering *g, monitor *c)
+{
+    g->c = c;
+    g->records = g->few;
+    g->captured = NULL;
+    g->count = 0;
+    g->room = (c->sizes.captured > 0) ? 0 : (int64_t)(sizeof g->few / sizeof *g->few);
+    g->failed = false;
+}
+
+static bool widen_gathering(gathering *g)
+{
+    const size_t most = (size_t)g->c->sizes.captured;
+    const bool few = g->records == g->few;
+    const size_t room = (g->room > 0) ? 2 * (size_t)g->room : 8;
+    rv_record *records = PyMem_Realloc(few ? NULL : g->records, room * sizeof *records);
+    rv_number *numbers = NULL;
+    if (records != NULL) {
+        if (few) {
+            (void)memcpy(records, g->few, (size_t)g->count * sizeof *records);
+        }
+        g->records = records;
+        numbers = PyMem_Realloc(g->captured, (room * most + 1U) * sizeof *numbers);
+    }
+    if (numbers == NULL) {
+        g->failed = true;
+        return false;
+    }
+    g->captured = numbers;
+    g->room = (int64_t)room;
+    return true;
+}
+
+/* Write down what an attempt captured, if anything; further places are left as they are. */
+void copy_captured(const monitor *c, const rv_record *record, const rv_number *captured,
+                          rv_number *to)
+{
+    if (captured != NULL) {
+        (void)memcpy(to, captured, (size_t)c->captured[record->requirement] * sizeof *to);
+    }
+}
+
+bool gather(void *user, const rv_record *record, const rv_number *captured)
+{
+    gathering *g = (gathering *)user;
+    if ((g->count == g->room) && !widen_gathering(g)) {
+        return false;
+    }
+    g->records[g->count] = *record;
+    g->records[g->count].captured = (captured != NULL) ? 0 : -1;
+    if (captured != NULL) {
+        copy_captured(g->c, record, captured,
+                      &g->captured[g->count * (int64_t)g->c->sizes.captured]);
+    }
+    g->count++;
+    return true;
+}
+
+static PyObject *object_of(const rv_number *number)
+{
+    switch (number->kind) {
+    case RV_WHOLE: return PyLong_FromLongLong((long long)number->as.whole);
+    case RV_REAL: return PyFloat_FromDouble(number->as.real);
+    default: return Py_NewRef(Py_None);
+    }
+}
+
+/* The values that an attempt captured, as a tuple. */
+static PyObject *values_of(const rv_number *values, int32_t count)
+{
+    PyObject *made = PyTuple_New((Py_ssize_t)count);
+    int32_t i;
+    for (i = 0; (made != NULL) && (i < count); i++) {
+        PyObject *value = object_of(&values[i]);
+        if ((value == NULL) || (PyTuple_SetItem(made, (Py_ssize_t)i, value) < 0)) {
+            Py_CLEAR(made);
+        }
+    }
+    return made;
+}
+
+static PyObject *attempt_of(const monitor *c, const rv_record *told, const rv_number *captured)
+{
+    const int32_t count = (captured == NULL) ? 0 : c->captured[told->requirement];
+    attempt_record *made = (attempt_record *)PyType_GenericAlloc(c->attempt, 0);
+    if (made == NULL) {
+        return NULL;
+    }
+    hide_record((PyObject *)made);
+    made->objects[REQUIREMENT] = Py_NewRef(PyTuple_GetItem(c->ids, told->requirement));
+    made->objects[VERDICT] = Py_NewRef(PyTuple_GetItem(c->verdicts, told->verdict));
+    made->objects[DECISION] = Py_NewRef(PyTuple_GetItem(c->decisions, told->decision));
+    made->objects[DETAILS] = Py_NewRef(c->details);
+    made->number = told->number;
+    made->triggered = told->triggered;
+    made->objects[DECIDED] = (told->decision == (uint8_t)RV_OPEN)
+        ? Py_NewRef(Py_None) : PyLong_FromLongLong(told->decided);
+    made->in_doubt = (told->in_doubt != 0U) ? 1 : 0;
+    if (count > 0) {
+        made->values = values_of(captured, count);
+    }
+    if ((made->objects[DECIDED] == NULL) || ((count > 0) && (made->values == NULL))
+        || !copy_note(&made->note, c->m, told)) {
+        Py_CLEAR(made);
+    }
+    return (PyObject *)made;
+}
+
+/* The attempts that were gathered; what holds them is given back. */
+PyObject *attempts_of(gathering *g)
+{
+    PyObject *made = g->failed ? PyErr_NoMemory() : PyTuple_New((Py_ssize_t)g->count);
+    int64_t i;
+    for (i = 0; (made != NULL) && (i < g->count); i++) {
+        const rv_record *record = &g->records[i];
+        const rv_number *captured =
+            (record->captured < 0) ? NULL : &g->captured[i * g->c->sizes.captured];
+        PyObject *one = attempt_of(g->c, record, captured);
+        if ((one == NULL) || (PyTuple_SetItem(made, (Py_ssize_t)i, one) < 0)) {
+            Py_CLEAR(made);
+        }
+    }
+    if (g->records != g->few) {
+        PyMem_Free(g->records);
+    }
+    PyMem_Free(g->captured);
+    free_dropped(&g->c->notes);
+    return made;
+}
+
+/* The attempts of which there are records from `first` on: those that are decided, or the others. */
+void gather_records(const monitor *c, int64_t first, bool open, gathering *g)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(c->m, &records);
+    int64_t i;
+    for (i = first; (i < count) && !g->failed; i++) {
+        if ((records[i].decision == (uint8_t)RV_OPEN) == open) {
+            (void)gather(g, &records[i], rv_captured(c->m, &records[i]));
+        }
+    }
+}
+
+/* Have records be dropped that are too many, all being given out. */
+static void trim_given(monitor *c)
+{
+    if ((c->keep >= 0) && rv_trim(c->m)) {
+        const rv_record *records;
+        c->given = rv_records(c->m, &records);
+        free_dropped(&c->notes);
+    }
+}
+
+/* The attempts that were decided since the last time. */
+PyObject *decided_since(monitor *c)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(c->m, &records);
+    const int64_t first = c->given;
+    PyObject *made;
+    gathering g;
+    if (count == first) {
+        trim_given(c);
+        return PyTuple_New(0); /* always the same one */
+    }
+    c->given = count;
+    begin_gathering(&g, c);
+    gather_records(c, first, false, &g);
+    made = attempts_of(&g);
+    trim_given(c);
+    return made;
+}
+

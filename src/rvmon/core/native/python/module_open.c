@@ -1,0 +1,105 @@
+/* How module.c makes a monitor: from a plan in bytes, the readings of its names and the type of attempts. */
+#include "python/module.h"
+
+/* Open the plan in some bytes; false with an error. */
+static bool open_plan(monitor *c, PyObject *data)
+{
+    const rv_memory heap = {malloc, realloc, free, NULL, 0};
+    const size_t size = (size_t)PyBytes_Size(data);
+    const void *plan = PyBytes_AsString(data);
+    c->data = Py_NewRef(data);
+    if ((uintptr_t)plan % 8U != 0U) {
+        c->plan = malloc(size + 1U);
+        if (c->plan == NULL) {
+            (void)PyErr_NoMemory();
+            return false;
+        }
+        plan = memcpy(c->plan, plan, size);
+    }
+    c->m = rv_new(plan, size, heap);
+    if (c->m == NULL) {
+        const int32_t wrong = rv_plan_check(plan, size);
+        if (wrong >= 0) {
+            (void)PyErr_Format(PyExc_ValueError, "the plan is damaged (section %d)", (int)wrong);
+        } else {
+            (void)PyErr_NoMemory();
+        }
+        return false;
+    }
+    c->sizes = rv_sizes_of(c->m);
+    if (rv_keep_notes(c->m, note_dropped, &c->notes) != RV_OK) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    return true;
+}
+
+/* Learn how many values each requirement captures; false with an error. */
+static bool find_captured(monitor *c)
+{
+    int32_t i;
+    if ((PyTuple_Size(c->ids) != c->sizes.requirements)
+        || (PyTuple_Size(c->verdicts) != RV_NOT_TRIGGERED + 1)
+        || (PyTuple_Size(c->decisions) != RV_OPEN + 1)) {
+        PyErr_SetString(PyExc_ValueError, "not the requirements, verdicts, decisions of the plan");
+        return false;
+    }
+    c->captured = PyMem_Calloc((size_t)c->sizes.requirements + 1U, sizeof *c->captured);
+    if (c->captured == NULL) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    for (i = 0; i < c->sizes.requirements; i++) {
+        c->captured[i] = rv_captured_of(c->m, i);
+    }
+    return true;
+}
+
+/* Say which names have no source; false with an error. */
+static bool set_absent(const monitor *c, PyObject *absent)
+{
+    int32_t i;
+    if (PyBytes_Size(absent) != c->in.names) {
+        PyErr_SetString(PyExc_ValueError, "not the names of the plan");
+        return false;
+    }
+    for (i = 0; i < c->in.names; i++) {
+        if (PyBytes_AsString(absent)[i] != 0) {
+            rv_set_absent(c->m, i);
+        }
+    }
+    return true;
+}
+
+/* Monitor(plan, (numbers, words, kinds, single), absent, (look_closer, look_closer_ns),
+ *         (attempt, ids, verdicts, decisions, details)) */
+PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
+{
+    PyObject *data;
+    PyObject *numbers;
+    PyObject *words;
+    PyObject *kinds;
+    PyObject *single;
+    PyObject *absent;
+    monitor *c = (monitor *)PyType_GenericAlloc(type, 0);
+    (void)unused;
+    if (c == NULL) {
+        return NULL;
+    }
+    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O)", &PyBytes_Type, &data,
+                         &PyDict_Type, &numbers, &PyTuple_Type, &words, &PyBytes_Type, &kinds,
+                         &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->look_closer,
+                         &c->look_closer_ns, &PyType_Type, &c->attempt,
+                         &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
+                         &c->decisions, &c->details)) {
+        c->owner = Py_NewRef(args);
+        c->keep = -1;
+        if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)
+            && is_record(c->attempt) && find_captured(c) && set_absent(c, absent)) {
+            return (PyObject *)c;
+        }
+    }
+    Py_DECREF(c);
+    return NULL;
+}
+

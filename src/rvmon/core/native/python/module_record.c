@@ -1,0 +1,182 @@
+/* What module.c makes of a decision: the type Record, which has all fields of an attempt at fixed places.
+ * Python's type of attempts derives from it and works out those that nobody has set when someone asks.
+ *
+ * The collector does not look at those that are made here: nothing that they refer to refers to them. */
+#include "python/module.h"
+
+/* Whether its type, as each that Python makes, is one that the collector looks at. */
+static bool is_collected(PyTypeObject *type)
+{
+    return (PyType_GetFlags(type) & Py_TPFLAGS_HAVE_GC) != 0U;
+}
+
+/* Hide a record that was just made from the collector, whose time it would take for nothing. */
+void hide_record(PyObject *self)
+{
+    if (is_collected(Py_TYPE(self))) {
+        PyObject_GC_UnTrack(self);
+    }
+}
+
+static void record_dealloc(PyObject *self)
+{
+    attempt_record *own = (attempt_record *)self;
+    PyTypeObject *type = Py_TYPE(self);
+    int32_t i;
+    for (i = 0; i < OBJECTS; i++) {
+        Py_XDECREF(own->objects[i]);
+    }
+    Py_XDECREF(own->values);
+    free_note(&own->note);
+    if (is_collected(type)) {
+        PyObject_GC_Del(self);
+    } else {
+        PyObject_Free(self);
+    }
+    Py_DECREF(type);
+}
+
+/* What was set; or the values that it captured, and behind them the note, if there is one. */
+static PyObject *get_noted(PyObject *self, void *unused)
+{
+    attempt_record *own = (attempt_record *)self;
+    (void)unused;
+    if (own->objects[NOTED] != NULL) {
+        return Py_NewRef(own->objects[NOTED]);
+    }
+    if (own->objects[DETAILS] == NULL) {
+        PyErr_SetString(PyExc_AttributeError, "_noted");
+        return NULL;
+    }
+    return noted_with(&own->note, (own->values != NULL) ? own->values : Py_None);
+}
+
+static int set_noted(PyObject *self, PyObject *value, void *unused)
+{
+    attempt_record *own = (attempt_record *)self;
+    PyObject *was = own->objects[NOTED];
+    (void)unused;
+    own->objects[NOTED] = (value != NULL) ? Py_NewRef(value) : NULL;
+    Py_XDECREF(was);
+    Py_CLEAR(own->values);
+    free_note(&own->note);
+    return 0;
+}
+
+/* The field at a place, which may be worked out now. */
+static PyObject *get_late(PyObject *self, void *place)
+{
+    PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
+    if (*field == NULL) {
+        PyObject *all = PyObject_GetAttrString(self, "_work_out");
+        PyObject *none = PyTuple_New(0);
+        PyObject *done = ((all != NULL) && (none != NULL)) ? PyObject_Call(all, none, NULL) : NULL;
+        Py_XDECREF(all);
+        Py_XDECREF(none);
+        if (done == NULL) {
+            return NULL;
+        }
+        Py_DECREF(done);
+    }
+    if (*field == NULL) {
+        PyErr_SetString(PyExc_AttributeError, "it was not worked out");
+        return NULL;
+    }
+    return Py_NewRef(*field);
+}
+
+static int set_late(PyObject *self, PyObject *value, void *place)
+{
+    PyObject **field = &((attempt_record *)self)->objects[(uintptr_t)place];
+    PyObject *was = *field;
+    *field = (value != NULL) ? Py_NewRef(value) : NULL;
+    Py_XDECREF(was);
+    return 0;
+}
+
+#define RVMON_LATE(name, place) {name, get_late, set_late, NULL, (void *)(uintptr_t)(place)}
+
+static PyGetSetDef record_getset[] = {
+    {"_noted", get_noted, set_noted, NULL, NULL},
+    RVMON_LATE("reason", REASON),
+    RVMON_LATE("deadline", DEADLINE),
+    RVMON_LATE("at_trigger", AT_TRIGGER),
+    RVMON_LATE("at_decision", AT_DECISION),
+    RVMON_LATE("owed", OWED),
+    RVMON_LATE("captured", CAPTURED),
+    RVMON_LATE("blame", BLAME),
+    RVMON_LATE("forecast", FORECAST),
+    RVMON_LATE("robustness", ROBUSTNESS),
+    {NULL, NULL, NULL, NULL, NULL},
+};
+
+#define RVMON_OBJECT(name, place) \
+    {name, T_OBJECT_EX, offsetof(attempt_record, objects) + (place) * sizeof(PyObject *), 0, NULL}
+
+static PyMemberDef record_members[] = {
+    {"number", T_LONGLONG, offsetof(attempt_record, number), 0, NULL},
+    {"triggered", T_LONGLONG, offsetof(attempt_record, triggered), 0, NULL},
+    {"in_doubt", T_BOOL, offsetof(attempt_record, in_doubt), 0, NULL},
+    RVMON_OBJECT("requirement", REQUIREMENT),
+    RVMON_OBJECT("decided", DECIDED),
+    RVMON_OBJECT("verdict", VERDICT),
+    RVMON_OBJECT("decision", DECISION),
+    RVMON_OBJECT("_details", DETAILS),
+    {NULL, 0, 0, 0, NULL},
+};
+
+static PyType_Slot record_slots[] = {
+    {Py_tp_dealloc, RVMON_SLOT(record_dealloc)},
+    {Py_tp_members, record_members},
+    {Py_tp_getset, record_getset},
+    {0, NULL},
+};
+
+static PyType_Spec record_spec = {
+    "rvmon.native._core.Record", sizeof(attempt_record), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE,
+    record_slots,
+};
+
+static bool add_name(PyObject *names, const char *text)
+{
+    PyObject *name = PyUnicode_FromString(text);
+    const bool done = (name != NULL) && (PyList_Append(names, name) == 0);
+    Py_XDECREF(name);
+    return done;
+}
+
+/* The type, which says of itself what a dataclass that derives from it need not find places for; NULL
+ * with an error. */
+PyObject *record_type(PyObject *module)
+{
+    PyObject *type = PyType_FromModuleAndSpec(module, &record_spec, NULL);
+    PyObject *names = PyList_New(0);
+    const PyMemberDef *set;
+    const PyGetSetDef *got;
+    bool done = (type != NULL) && (names != NULL);
+    for (set = record_members; done && (set->name != NULL); set++) {
+        done = add_name(names, set->name);
+    }
+    for (got = record_getset; done && (got->name != NULL); got++) {
+        done = add_name(names, got->name);
+    }
+    if (!done || (PyObject_SetAttrString(type, "__slots__", names) < 0)) {
+        Py_CLEAR(type);
+    }
+    Py_XDECREF(names);
+    return type;
+}
+
+/* Whether a type derives from Record; false with an error. */
+bool is_record(PyTypeObject *type)
+{
+    PyTypeObject *base = type;
+    while ((base != NULL) && (PyType_GetSlot(base, Py_tp_dealloc) != RVMON_SLOT(record_dealloc))) {
+        base = PyType_GetSlot(base, Py_tp_base);
+    }
+    if (base == NULL) {
+        PyErr_SetString(PyExc_TypeError, "attempts derive from Record");
+    }
+    return base != NULL;
+}
+

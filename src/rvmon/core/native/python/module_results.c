@@ -1,0 +1,160 @@
+/* What module.c says of a run: attempts that are decided or open, records, counts. */
+#include "python/module.h"
+
+/* arrivals(): what came of each name and field, as bytes of `arrival`. */
+PyObject *arrivals_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return PyBytes_FromStringAndSize((const char *)c->in.arrivals,
+                                     (Py_ssize_t)c->in.all * (Py_ssize_t)sizeof(arrival));
+}
+
+/* take_arrivals(bytes): go on from those; false, and nothing is done, if they are none of this plan. */
+PyObject *take_arrivals_of(monitor *c, PyObject *bytes)
+{
+    const Py_ssize_t size = PyBytes_Size(bytes);
+    if (size < 0) {
+        return NULL;
+    }
+    if (size != (Py_ssize_t)c->in.all * (Py_ssize_t)sizeof(arrival)) {
+        return Py_NewRef(Py_False);
+    }
+    (void)memcpy(c->in.arrivals, PyBytes_AsString(bytes), (size_t)size);
+    count_to_come(&c->in);
+    return Py_NewRef(Py_True);
+}
+
+/* keep(most): the newest records of each requirement and verdict. */
+PyObject *keep_of(monitor *c, PyObject *most)
+{
+    const long long count = PyLong_AsLongLong(most);
+    if ((count == -1) && (PyErr_Occurred() != NULL)) {
+        return NULL;
+    }
+    if (count < 0) {
+        PyErr_SetString(PyExc_ValueError, "so many cannot be kept");
+        return NULL;
+    }
+    c->keep = (int64_t)count;
+    return is_done(rv_keep(c->m, c->keep)) ? Py_NewRef(Py_None) : NULL;
+}
+
+PyObject *flush_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return rv_spoilt(c->m) ? PyErr_NoMemory() : decided_since(c);
+}
+
+/* The attempts that are undecided now, and those that will stay so. */
+PyObject *open_of(monitor *c, PyObject *unused)
+{
+    PyObject *made;
+    gathering g;
+    (void)unused;
+    begin_gathering(&g, c);
+    gather_records(c, 0, true, &g);
+    free_dropped(&c->notes);
+    if (!g.failed) {
+        rv_each_open(c->m, gather, &g);
+    }
+    made = attempts_of(&g);
+    free_dropped(&c->notes);
+    return made;
+}
+
+/* The letters of all notes of records, as they are numbered there. */
+static PyObject *spans_of(const monitor *c)
+{
+    PyObject *made = PyList_New(0);
+    int32_t i;
+    rv_note note;
+    for (i = 0; (made != NULL) && rv_span(c->m, i, &note); i++) {
+        PyObject *pieces = NULL;
+        PyObject *last = NULL;
+        PyObject *both = NULL;
+        if (letters_of(&note, &pieces, &last)) {
+            both = PyTuple_Pack(2, pieces, last);
+        }
+        Py_XDECREF(pieces);
+        Py_XDECREF(last);
+        if ((both == NULL) || (PyList_Append(made, both) < 0)) {
+            Py_CLEAR(made);
+        }
+        Py_XDECREF(both);
+    }
+    return made;
+}
+
+/* All records as bytes, and as many captured values for each of them as any has; the words of notes, and
+ * the letters that they refer to. */
+PyObject *records_of(monitor *c, PyObject *unused)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(c->m, &records);
+    const Py_ssize_t most = (Py_ssize_t)c->sizes.captured;
+    PyObject *one = PyBytes_FromStringAndSize((const char *)records,
+                                              (Py_ssize_t)count * (Py_ssize_t)sizeof *records);
+    PyObject *other = PyBytes_FromStringAndSize(
+        NULL, (Py_ssize_t)count * most * (Py_ssize_t)sizeof(rv_number));
+    const int64_t *words;
+    const int64_t word_count = rv_notes(c->m, &words);
+    PyObject *notes = bytes_of_words(words, word_count);
+    PyObject *spans = spans_of(c);
+    PyObject *made = NULL;
+    (void)unused;
+    if ((one != NULL) && (other != NULL) && (notes != NULL) && (spans != NULL)) {
+        rv_number *to = (rv_number *)(void *)PyBytes_AsString(other);
+        int64_t i;
+        (void)memset(to, 0, (size_t)PyBytes_Size(other));
+        for (i = 0; i < count; i++) {
+            copy_captured(c, &records[i], rv_captured(c->m, &records[i]), &to[i * most]);
+        }
+        made = PyTuple_Pack(4, one, other, notes, spans);
+    }
+    Py_XDECREF(notes);
+    Py_XDECREF(spans);
+    Py_XDECREF(one);
+    Py_XDECREF(other);
+    return made;
+}
+
+/* How many attempts of each requirement failed, passed, and stayed open, and whether its trigger was
+ * ever true or false, and nothing came too late for it. */
+PyObject *counts_of(monitor *c, PyObject *unused)
+{
+    PyObject *made = rv_spoilt(c->m) ? PyErr_NoMemory() : PyList_New(0);
+    int32_t i;
+    (void)unused;
+    for (i = 0; (made != NULL) && (i < c->sizes.requirements); i++) {
+        const rv_counts found = rv_count(c->m, i);
+        PyObject *own = Py_BuildValue("LLLi", (long long)found.failed, (long long)found.passed,
+                                      (long long)found.inconclusive,
+                                      (found.heard && !found.late) ? 1 : 0);
+        if ((own == NULL) || (PyList_Append(made, own) < 0)) {
+            Py_CLEAR(made);
+        }
+        Py_XDECREF(own);
+    }
+    return made;
+}
+
+/* Of each signal that went stale its number, how often it did, and when first. */
+PyObject *stale_of(monitor *c, PyObject *unused)
+{
+    PyObject *made = PyList_New(0);
+    int32_t i;
+    (void)unused;
+    for (i = 0; (made != NULL) && (i < c->sizes.signals); i++) {
+        const rv_staleness found = rv_stale(c->m, i);
+        PyObject *own;
+        if (found.count > 0) {
+            own = Py_BuildValue("iLL", (int)i, (long long)found.count, (long long)found.first);
+            if ((own == NULL) || (PyList_Append(made, own) < 0)) {
+                Py_CLEAR(made);
+            }
+            Py_XDECREF(own);
+        }
+    }
+    return made;
+}
+

@@ -1,0 +1,234 @@
+/* How module.c judges rows: buffers of columns become those of the core. */
+#include "python/module.h"
+
+/* The buffers of a call, which all have a value for each row. */
+typedef struct {
+    Py_buffer *held;
+    uint8_t *taken;            /* by name, whether it has a column */
+    int64_t count;
+    int64_t room;
+    int64_t rows;
+} buffers;
+
+/* The values of an object that has so many bytes for each row; NULL with an error. None has none. */
+static bool borrow_values(buffers *all, PyObject *object, size_t size, const void **values)
+{
+    Py_buffer *own;
+    *values = NULL;
+    if (object == Py_None) {
+        return true;
+    }
+    if (all->count == all->room) {
+        PyErr_SetString(PyExc_ValueError, "too many columns");
+        return false;
+    }
+    own = &all->held[all->count];
+    if (PyObject_GetBuffer(object, own, PyBUF_SIMPLE) < 0) {
+        return false;
+    }
+    all->count++;
+    if (((uint64_t)own->len != (uint64_t)all->rows * size) || ((uintptr_t)own->buf % size != 0U)) {
+        PyErr_SetString(PyExc_ValueError, "a column has other rows, or is not aligned");
+        return false;
+    }
+    *values = own->buf;
+    return true;
+}
+
+/* A field out of (kind, values, says); of one that is unknown the values are None. */
+static bool borrow_cells(buffers *all, PyObject *given, const reading *as, rv_column *column)
+{
+    static const size_t sizes[] = {sizeof(double), sizeof(int64_t), 1};
+    PyObject *values;
+    PyObject *says;
+    const void *states;
+    if (!PyTuple_CheckExact(given)
+        || !PyArg_ParseTuple(given, "iOO", &column->kind, &values, &says)) {
+        if (PyErr_Occurred() == NULL) {
+            PyErr_SetString(PyExc_TypeError, "cells are a tuple");
+        }
+        return false;
+    }
+    if ((column->kind < RV_COLUMN_REAL) || (column->kind > RV_COLUMN_BYTE)
+        || ((values != Py_None) && ((as->kind == IS_REAL) != (column->kind == RV_COLUMN_REAL)))) {
+        PyErr_SetString(PyExc_ValueError, "a column of another kind");
+        return false;
+    }
+    if (!borrow_values(all, values, sizes[column->kind], &column->values)
+        || !borrow_values(all, says, 1, &states)) {
+        return false;
+    }
+    column->says = states;
+    return true;
+}
+
+/* The columns of the fields of an event. */
+static bool borrow_fields(const monitor *c, buffers *all, PyObject *given, rv_column *column)
+{
+    const reading *event = &c->in.readings[column->name];
+    const reading *as = &c->in.readings[c->in.names + c->in.first_fields[column->name - c->in.signals]];
+    rv_column *fields;
+    bool good = true;
+    Py_ssize_t i;
+    if (!PyTuple_CheckExact(given) || (PyTuple_Size(given) != event->fields)) {
+        PyErr_SetString(PyExc_ValueError, "an event has a column for each field, or none");
+        return false;
+    }
+    fields = PyMem_Calloc((size_t)event->fields + 1U, sizeof *fields);
+    if (fields == NULL) {
+        (void)PyErr_NoMemory();
+        return false;
+    }
+    column->fields = fields; /* they are given back with all columns */
+    for (i = 0; good && (i < event->fields); i++) {
+        good = borrow_cells(all, PyTuple_GetItem(given, i), &as[i], &fields[i]);
+    }
+    return good;
+}
+
+/* A column out of (name, cells), or of an event (name, says, fields or None). */
+static bool borrow_column(const monitor *c, buffers *all, PyObject *given, rv_column *column)
+{
+    PyObject *cells;
+    PyObject *fields = Py_None;
+    const void *states;
+    if (!PyTuple_CheckExact(given)
+        || !PyArg_ParseTuple(given, "iO|O", &column->name, &cells, &fields)) {
+        if (PyErr_Occurred() == NULL) {
+            PyErr_SetString(PyExc_TypeError, "a column is a tuple");
+        }
+        return false;
+    }
+    if ((column->name < 0) || (column->name >= c->in.names) || (all->taken[column->name] != 0U)) {
+        PyErr_SetString(PyExc_ValueError, "no such name, or it has a column already");
+        return false;
+    }
+    all->taken[column->name] = 1;
+    if (column->name < c->in.signals) {
+        if (!borrow_cells(all, cells, &c->in.readings[column->name], column)) {
+            return false;
+        }
+        if (column->values == NULL) {
+            PyErr_SetString(PyExc_ValueError, "a signal has values");
+        }
+        return column->values != NULL;
+    }
+    if (!borrow_values(all, cells, 1, &states)) {
+        return false;
+    }
+    column->says = states;
+    return (fields == Py_None) || borrow_fields(c, all, fields, column);
+}
+
+/* Whether an event brings a payload in a row. */
+static bool brings_payload(const monitor *c, const rv_column *column, int64_t row)
+{
+    bool found = false;
+    int32_t i;
+    if ((column->says != NULL) && (column->says[row] != RV_SAYS_YES)) {
+        return false;
+    }
+    for (i = 0; !found && (i < c->in.readings[column->name].fields); i++) {
+        found = (column->fields[i].says == NULL) || (column->fields[i].says[row] <= RV_SAYS_YES);
+    }
+    return found;
+}
+
+/* The rows before the first instant with two payloads of an event of which only one can be judged. */
+static int64_t judged_alone(const monitor *c, const int64_t *times, int64_t rows,
+                            const rv_column *columns, int64_t count)
+{
+    int64_t found = rows;
+    int64_t i;
+    int64_t k;
+    for (i = 0; i < count; i++) {
+        const rv_column *column = &columns[i];
+        int64_t begin = 0; /* of the rows of one instant */
+        int64_t payloads = 0;
+        for (k = 0; (column->fields != NULL) && (c->in.readings[column->name].single != 0) && (k < found);
+             k++) {
+            if (times[k] != times[begin]) {
+                begin = k;
+                payloads = 0;
+            }
+            payloads += brings_payload(c, column, k) ? 1 : 0;
+            if (payloads > 1) {
+                found = begin;
+            }
+        }
+    }
+    return found;
+}
+
+/* Judge rows while other threads of Python run; nobody else can get at the monitor. */
+static int judge_rows(monitor *c, const buffers *all, const rv_column *columns, int64_t count,
+                      int64_t *done)
+{
+    const int64_t *times = all->held[0].buf;
+    int code;
+    Py_BEGIN_ALLOW_THREADS
+    code = rv_rows(c->m, times, judged_alone(c, times, all->rows, columns, count), columns,
+                   (int32_t)count, done);
+    Py_END_ALLOW_THREADS
+    return code;
+}
+
+/* rows(times, columns): how many were judged; fewer than given if one is before those above it, or one
+ * takes a closer look. */
+PyObject *rows_of(monitor *c, PyObject *args)
+{
+    PyObject *times;
+    PyObject *columns;
+    PyObject *made = NULL;
+    rv_column *laid;
+    buffers all = {NULL, NULL, 0, 0, 0};
+    int64_t done = 0;
+    Py_ssize_t count;
+    Py_ssize_t i;
+    bool good;
+    if (!PyArg_ParseTuple(args, "OO!", &times, &PyTuple_Type, &columns)) {
+        return NULL;
+    }
+    count = PyTuple_Size(columns);
+    all.room = 1 + 2 * ((int64_t)c->in.names + c->in.fields_most);
+    laid = PyMem_Calloc((size_t)c->in.names + 1U, sizeof *laid);
+    all.taken = PyMem_Calloc((size_t)c->in.names + 1U, 1);
+    all.held = PyMem_Calloc((size_t)all.room, sizeof *all.held);
+    good = (laid != NULL) && (all.held != NULL) && (all.taken != NULL);
+    if (!good) {
+        (void)PyErr_NoMemory();
+    } else if (PyObject_GetBuffer(times, &all.held[0], PyBUF_SIMPLE) < 0) {
+        good = false;
+    } else {
+        const Py_buffer *own = &all.held[0];
+        all.count = 1;
+        all.rows = (int64_t)(own->len / (Py_ssize_t)sizeof(int64_t));
+        good = ((uintptr_t)own->buf % sizeof(int64_t) == 0U) && (count <= c->in.names);
+        if (!good) {
+            PyErr_SetString(PyExc_ValueError, "times are not aligned, or too many columns");
+        }
+    }
+    for (i = 0; good && (i < count); i++) {
+        good = borrow_column(c, &all, PyTuple_GetItem(columns, i), &laid[i]);
+    }
+    if (good) {
+        int code;
+        c->busy = true;
+        code = judge_rows(c, &all, laid, (int64_t)count, &done);
+        c->busy = false;
+        made = ((code == RV_TOO_EARLY) || (code == RV_OUT_OF_RANGE) || is_done(code))
+                   ? PyLong_FromLongLong((long long)done)
+                   : NULL;
+    }
+    for (i = 0; i < all.count; i++) {
+        PyBuffer_Release(&all.held[i]);
+    }
+    for (i = 0; (laid != NULL) && (i < count) && (i < c->in.names); i++) {
+        PyMem_Free((void *)(uintptr_t)laid[i].fields);
+    }
+    PyMem_Free(all.held);
+    PyMem_Free(all.taken);
+    PyMem_Free(laid);
+    return made;
+}
+

@@ -1,0 +1,233 @@
+/* What a run hits of coverpoints and crosses. A hit is counted where it is sure.
+ *
+ * A group with an occasion is looked at where an attempt `upon` that would start. Any other is looked at
+ * everywhere: an item is hit at each position where it is true if a bin of it is a pulse, else once for
+ * each stretch on which it is true; that it is unknown in between ends no stretch, as it may have been
+ * true. An item is true where all of its bins are. */
+#include "results/results.h"
+
+#include <string.h>
+
+/* Room for what is kept of watches and groups; false: memory is short. */
+static bool make_covering(home *h)
+{
+    const part_plan *p = h->part->plan;
+    arena *a = &h->monitor->memory;
+    covering *c = arena_take(a, sizeof *c);
+    int32_t most = 0;
+    int32_t i;
+    int32_t k;
+    if (c == NULL) {
+        return false;
+    }
+    for (i = 0; i < p->groups.count; i++) {
+        const group_plan *g = &h->part->groups[i];
+        const int32_t *axes = LIST(&h->monitor->plan, g->axes);
+        int32_t items = 1;
+        int32_t bins = 0;
+        for (k = 0; k < g->axes.count; k += 2) {
+            items *= axes[k + 1];
+            bins += axes[k + 1];
+        }
+        c->items += items;
+        most = (bins > most) ? bins : most;
+    }
+    c->hits = arena_take(a, (size_t)(c->items + 1) * sizeof *c->hits);
+    c->current_items = arena_take(a, (size_t)(c->items + 1) * sizeof *c->current_items);
+    c->stands = arena_take(a, (size_t)c->items + 1);
+    c->groups = arena_take(a, (size_t)(p->groups.count + 1) * sizeof *c->groups);
+    c->groups_called = arena_take(a, (size_t)(p->groups.count + 1) * sizeof *c->groups_called);
+    c->called = arena_take(a, (size_t)p->watches.count * sizeof *c->called);
+    c->is_called = arena_take(a, (size_t)p->watches.count);
+    c->bins = arena_take(a, (size_t)(most + 1) * sizeof *c->bins);
+    if ((c->hits == NULL) || (c->current_items == NULL) || (c->stands == NULL) || (c->groups == NULL)
+        || (c->groups_called == NULL) || (c->called == NULL) || (c->is_called == NULL)
+        || (c->bins == NULL)) {
+        return false;
+    }
+    h->covering = c;
+    return true;
+}
+
+/* Begin a run: nothing was hit; false: memory is short. */
+bool begin_cover(home *h)
+{
+    const part_plan *p = h->part->plan;
+    covering *c;
+    if ((h->covering == NULL) && !make_covering(h)) {
+        return false;
+    }
+    c = h->covering;
+    (void)memset(c->hits, 0, (size_t)c->items * sizeof *c->hits);
+    (void)memset(c->stands, 0, (size_t)c->items);
+    (void)memset(c->groups, 0, (size_t)p->groups.count * sizeof *c->groups);
+    (void)memset(c->is_called, 0, (size_t)p->watches.count);
+    c->called_count = 0;
+    return true;
+}
+
+/* Have the groups of a watch look at the position at hand. */
+void call_watch(run *r, int32_t number)
+{
+    covering *c = r->home->covering;
+    if (c->is_called[number] == 0U) {
+        c->is_called[number] = 1;
+        c->called[c->called_count] = number;
+        c->called_count++;
+    }
+}
+
+static uint8_t truth_of(const run *r, int32_t number)
+{
+    return r->truth[r->part->watches[number].node];
+}
+
+/* Whether no bin of an item is known to be false. */
+static bool may_be_true(const run *r, const group_plan *g, int32_t item)
+{
+    const int32_t *axes = LIST(PLAN(r), g->axes);
+    int32_t rest = item - g->first;
+    int32_t i;
+    for (i = g->axes.count - 2; i >= 0; i -= 2) {
+        if (truth_of(r, axes[i] + rest % axes[i + 1]) == IS_FALSE) {
+            return false;
+        }
+        rest /= axes[i + 1];
+    }
+    return true;
+}
+
+/* Count an item that is true; one that stands was counted. A pulse is over at the next position. */
+static void meet_item(covering *c, const group_plan *g, covered *s, int32_t item, bool passes, int64_t t)
+{
+    if (c->stands[item] == 0U) {
+        rv_hit *hit = &c->hits[item];
+        hit->first = (hit->count == 0) ? t : hit->first;
+        hit->count++;
+        if (!passes && (g->occasion < 0)) {
+            c->stands[item] = 1;
+            c->current_items[g->first + s->current] = item;
+            s->current++;
+        }
+    }
+}
+
+/* Count the items that are true: of each axis the bins that are, in all ways together. */
+static void meet_items(run *r, const group_plan *g, covered *s, int64_t t)
+{
+    covering *c = r->home->covering;
+    const int32_t *axes = LIST(PLAN(r), g->axes);
+    int32_t begin[AXES_MOST];
+    int32_t end[AXES_MOST];
+    int32_t at[AXES_MOST];
+    int32_t count = 0;
+    int32_t used = 0;
+    int32_t k;
+    while (2 * count < g->axes.count) {
+        begin[count] = used;
+        for (k = 0; k < axes[2 * count + 1]; k++) {
+            if (truth_of(r, axes[2 * count] + k) == IS_TRUE) {
+                c->bins[used] = k;
+                used++;
+            }
+        }
+        at[count] = begin[count];
+        end[count] = used;
+        if (begin[count] == used) {
+            return;
+        }
+        count++;
+    }
+    for (;;) {
+        int32_t item = 0;
+        bool passes = false;
+        for (k = 0; k < count; k++) {
+            item = item * axes[2 * k + 1] + c->bins[at[k]];
+            passes = passes || (r->part->watches[axes[2 * k] + c->bins[at[k]]].is_pulse != 0);
+        }
+        meet_item(c, g, s, g->first + item, passes, t);
+        for (k = count - 1; (k >= 0) && (at[k] + 1 == end[k]); k--) {
+            at[k] = begin[k];
+        }
+        if (k < 0) {
+            break;
+        }
+        at[k]++;
+    }
+}
+
+/* Let those items stand no more that are known to be false. */
+static void drop_items(run *r, const group_plan *g, covered *s)
+{
+    covering *c = r->home->covering;
+    int32_t *items = &c->current_items[g->first];
+    int32_t kept = 0;
+    int32_t i;
+    for (i = 0; i < s->current; i++) {
+        if (may_be_true(r, g, items[i])) {
+            items[kept] = items[i];
+            kept++;
+        } else {
+            c->stands[items[i]] = 0;
+        }
+    }
+    s->current = kept;
+}
+
+static void look_at_group(run *r, int32_t number, int64_t t)
+{
+    const group_plan *g = &r->part->groups[number];
+    covered *s = &r->home->covering->groups[number];
+    bool looks = true;
+    if (g->occasion >= 0) {
+        const bool pulse = r->part->watches[g->occasion].is_pulse != 0;
+        const uint8_t truth = truth_of(r, g->occasion);
+        looks = (truth == IS_TRUE) && (pulse || (s->before == IS_FALSE));
+        s->before = truth;
+    } else {
+        drop_items(r, g, s);
+    }
+    if (looks) {
+        meet_items(r, g, s, t);
+    }
+}
+
+/* See the position at `t`: whose watches changed, and whose pulses go on, look at it. */
+void cover(run *r, int64_t t)
+{
+    covering *c = r->home->covering;
+    int32_t groups = 0;
+    int32_t kept = 0;
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < c->called_count; i++) {
+        const watch_plan *w = &r->part->watches[c->called[i]];
+        const int32_t *own = LIST(PLAN(r), w->groups);
+        for (k = 0; k < w->groups.count; k++) {
+            if (!c->groups[own[k]].called) {
+                c->groups[own[k]].called = true;
+                c->groups_called[groups] = own[k];
+                groups++;
+            }
+        }
+    }
+    for (i = 0; i < groups; i++) {
+        c->groups[c->groups_called[i]].called = false;
+        look_at_group(r, c->groups_called[i], t);
+    }
+    for (i = 0; i < c->called_count; i++) {
+        const int32_t number = c->called[i];
+        const bool goes_on = (r->part->watches[number].is_pulse != 0) && (truth_of(r, number) == IS_TRUE);
+        c->is_called[number] = goes_on ? 1 : 0;
+        c->called[kept] = number;
+        kept += goes_on ? 1 : 0;
+    }
+    c->called_count = kept;
+}
+
+const rv_hit *rv_hits(const rv_monitor *m, int32_t *items)
+{
+    const covering *c = (m->plan.part_count > 0) ? m->homes[0].covering : NULL;
+    *items = (c == NULL) ? 0 : c->items;
+    return (c == NULL) ? NULL : c->hits;
+}

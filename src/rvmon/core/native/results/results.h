@@ -1,0 +1,36 @@
+/* What is kept of decisions, and beside them. */
+#ifndef RVMON_RESULTS_H
+#define RVMON_RESULTS_H
+
+#include "basics.h"
+
+/* ---- records.c */
+bool grow_records(rv_monitor *m, int64_t wanted);
+void keep_record(rv_monitor *m, const rv_record *record);
+int64_t keep_captured(rv_monitor *m, const rv_number *values, int32_t count);
+void report(run *r, int32_t index, const attempt *x, uint32_t number, uint8_t verdict,
+            uint8_t decision, int64_t t, int64_t note);
+void sort_records(rv_monitor *m);
+
+/* ---- watch.c: what is kept beside what becomes of attempts */
+bool begin_watch(home *h);
+void watch(run *r, int64_t t);
+void end_watch(run *r, int64_t end, int64_t reached);
+
+/* ---- cover.c: what runs hit of coverpoints and crosses */
+bool begin_cover(home *h);
+void call_watch(run *r, int32_t number);
+void cover(run *r, int64_t t);
+
+/* ---- moves.c: where attempts go in automata */
+bool begin_moves(home *h);
+void count_move(const machine *a, rv_hit *moves, int32_t from, int32_t to, int64_t count, int64_t t);
+void count_begin(run *r, int32_t index, int64_t t);
+
+/* Where it is counted where the attempts of a judge go; NULL: it is not. */
+static inline rv_hit *moves_of(const run *r, int32_t index)
+{
+    return (r->home->moves != NULL) ? r->home->moves[index] : NULL;
+}
+
+#endif

@@ -1,0 +1,140 @@
+/* What is kept beside what becomes of attempts: where formulas are known, for who draws them, or asks
+ * when something came that was awaited. */
+#include "networks/network.h"
+#include "results/results.h"
+
+#include <string.h>
+
+/* The form of whose operators it is kept where they are known. */
+static form kept_form(const run *r)
+{
+    return form_at(r, r->part->plan->truths);
+}
+
+/* Forget what was kept of the run before; false: memory is short. */
+bool begin_watch(home *h)
+{
+    if (h->truths != NULL) {
+        h->truths->begun = false;
+    }
+    h->is_blind = false;
+    return ((h->part->plan->watches.count == 0) || begin_cover(h))
+           && (!h->part->is_traced || begin_moves(h));
+}
+
+/* How many readings there are at present. */
+static int32_t readings_of(const networks *net)
+{
+    return net->parted ? 2 : 1;
+}
+
+/* Let the letter that is stay up to a position, when time has come to `now`. */
+static void stay(const form *f, networks *net, int64_t now, int64_t last)
+{
+    int32_t i;
+    for (i = 0; i < readings_of(net); i++) {
+        learn(f, net, i, now, last);
+    }
+}
+
+/* Begin at the first position; false: memory is short. */
+static bool begin_truths(home *h, const form *f, int64_t t)
+{
+    if (h->truths == NULL) {
+        h->truths = made_networks(f);
+        if (h->truths == NULL) {
+            return false;
+        }
+    }
+    start_over(f, &h->truths->readings[0], t, (f->gap > 0) ? floored(t, f->step) : 0);
+    h->truths->begun = true;
+    h->truths->parted = false;
+    h->truths->turn = NEVER;
+    return true;
+}
+
+/* Where only samples are positions, the one at `t` is another. */
+static void add_sample(const form *f, networks *net, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < readings_of(net); i++) {
+        ranges *samples = &net->readings[i].samples;
+        ranges_put(f->monitor, samples, samples->end, t, t);
+    }
+    if (!f->monitor->spoilt) {
+        stay(f, net, t, net->readings[0].last + 1);
+    }
+}
+
+/* Take in the letter at the position at `t`; one that stays is told of when it changes. */
+static void keep_truths(run *r, int64_t t)
+{
+    home *h = r->home;
+    const form f = kept_form(r);
+    const bool fresh = (h->truths == NULL) || !h->truths->begun;
+    bool parted = false;
+    bool changed;
+    if (h->monitor->spoilt || (fresh && !begin_truths(h, &f, t))) {
+        return;
+    }
+    changed = read_leaves(r, &f, h->truths, &parted) || fresh;
+    if (changed && (f.gap > 0)) {
+        stay(&f, h->truths, t - 1, floored(t, f.step) - 1);
+    }
+    if (parted && !h->truths->parted) {
+        copy_network(&f, &h->truths->readings[1], &h->truths->readings[0]);
+        h->truths->parted = true;
+    }
+    (void)memcpy(h->truths->leaf, h->truths->next_leaf, (size_t)f.form->leaves);
+    if (f.gap == 0) {
+        add_sample(&f, h->truths, t);
+    }
+}
+
+/* See the position at `t`, at which the truths are. Where only samples are positions, each of them
+ * counts. */
+void watch(run *r, int64_t t)
+{
+    r->stays_busy = false;
+    if (r->part->plan->watches.count > 0) {
+        cover(r, t);
+        r->stays_busy = r->home->covering->called_count > 0;
+    }
+    if ((r->part->plan->truths >= 0) && r->at.dense) {
+        r->home->is_blind = true; /* nobody knows which positions there are */
+    } else if (r->part->plan->truths >= 0) {
+        keep_truths(r, t);
+        r->stays_busy = r->stays_busy || (GAP(r) == 0);
+    } else {
+        /* None are kept. */
+    }
+}
+
+/* The trace ends: what stays goes on to there, and time has come behind it. */
+void end_watch(run *r, int64_t end, int64_t reached)
+{
+    networks *net = r->home->truths;
+    if ((net != NULL) && net->begun && !r->home->monitor->spoilt) {
+        const form f = kept_form(r);
+        stay(&f, net, reached, (f.gap > 0) ? floored(end, f.step) : net->readings[0].last);
+    }
+}
+
+int64_t rv_truths(const rv_monitor *m, int32_t operator_number, bool better, bool value,
+                  const rv_range **found)
+{
+    const home *h = (m->plan.part_count > 0) ? &m->homes[0] : NULL;
+    const ranges *known;
+    *found = NULL;
+    if ((h == NULL) || (h->part->plan->truths < 0) || (operator_number < 0)
+        || (operator_number >= h->part->forms[h->part->plan->truths].operators.count)) {
+        return -1;
+    }
+    if ((h->truths == NULL) || !h->truths->begun || h->is_blind || m->spoilt) {
+        return 0;
+    }
+    known = &h->truths->readings[(better && h->truths->parted) ? 1 : 0]
+                 .nodes[operator_number].known[value ? 1 : 0];
+    *found = (known->at != NULL) ? &known->at[known->first] : NULL;
+    return known->end - known->first;
+}

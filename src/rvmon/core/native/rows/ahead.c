@@ -1,0 +1,284 @@
+/* Which rows change nothing: many are looked at together, column by column, and only those at which a
+ * value comes to compare otherwise, an event occurs or something is due are judged. */
+#include "rows/rows.h"
+
+#include <string.h>
+
+static bool are_alike(const rv_number *a, const rv_number *b)
+{
+    return (a->kind == b->kind)
+           && ((a->kind == RV_UNKNOWN) || (memcmp(&a->as, &b->as, sizeof a->as) == 0));
+}
+
+/* Whether so many numbers compare as the last one does; without branches. */
+static inline bool reals_are_within(const double *v, int32_t count, double low, double high, double last)
+{
+    int32_t beyond = 0;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        beyond |= (int32_t)(((v[i] > low) & (v[i] < high)) | (v[i] == last)) ^ 1;
+    }
+    return beyond == 0;
+}
+
+static inline bool wholes_are_within(const int64_t *v, int32_t count, int64_t low, int64_t high,
+                                     int64_t last)
+{
+    int32_t beyond = 0;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        beyond |= (int32_t)(((v[i] > low) & (v[i] < high)) | (v[i] == last)) ^ 1;
+    }
+    return beyond == 0;
+}
+
+static inline bool words_are(const uint64_t *v, int32_t count, uint64_t last)
+{
+    uint64_t other = 0;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        other |= v[i] ^ last;
+    }
+    return other == 0;
+}
+
+static inline bool bytes_are(const uint8_t *v, int32_t count, uint8_t last)
+{
+    uint8_t other = 0;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        other = (uint8_t)(other | (v[i] ^ last));
+    }
+    return other == 0;
+}
+
+/* Whether a column says the same in all these rows, seen at a glance. */
+static bool stays(const column_watch *w, int64_t first, int32_t count)
+{
+    const rv_column *c = w->column;
+    const bool all = count == TOGETHER;
+    if ((c->says != NULL) || (w->last.kind == RV_UNKNOWN)) {
+        return false;
+    }
+    if ((w->how == BY_CONSTANTS) && (c->kind == RV_COLUMN_WHOLE)) {
+        const int64_t *v = &((const int64_t *)c->values)[first];
+        const int64_t last = w->last.as.whole;
+        return all ? wholes_are_within(v, TOGETHER, w->floor, w->ceiling, last)
+                   : wholes_are_within(v, count, w->floor, w->ceiling, last);
+    }
+    if (w->how == BY_CONSTANTS) {
+        const double *v = &((const double *)c->values)[first];
+        const double last = w->last.as.real;
+        return all ? reals_are_within(v, TOGETHER, w->low, w->high, last)
+                   : reals_are_within(v, count, w->low, w->high, last);
+    }
+    if (c->kind == RV_COLUMN_BYTE) {
+        const uint8_t *v = &((const uint8_t *)c->values)[first];
+        const uint8_t last = (uint8_t)w->last.as.whole;
+        return all ? bytes_are(v, TOGETHER, last) : bytes_are(v, count, last);
+    } else {
+        const uint64_t *v = &((const uint64_t *)c->values)[first];
+        uint64_t last;
+        (void)memcpy(&last, &w->last.as, sizeof last);
+        return all ? words_are(v, TOGETHER, last) : words_are(v, count, last);
+    }
+}
+
+/* Bytes that are 0 or 1 as bits. */
+static uint64_t bits_of(const uint8_t *one)
+{
+    uint64_t word = 0;
+    int32_t i;
+    for (i = 0; i < TOGETHER / 8; i++) {
+        const uint8_t *b = &one[8 * i];
+        const uint64_t x = (uint64_t)b[0] | ((uint64_t)b[1] << 8) | ((uint64_t)b[2] << 16)
+                           | ((uint64_t)b[3] << 24) | ((uint64_t)b[4] << 32) | ((uint64_t)b[5] << 40)
+                           | ((uint64_t)b[6] << 48) | ((uint64_t)b[7] << 56);
+        word |= ((x * UINT64_C(0x0102040810204080)) >> 56) << (8 * i);
+    }
+    return word;
+}
+
+/* The rows in which a column says something between two bounds. */
+static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, uint8_t least_said,
+                              uint8_t most_said)
+{
+    const uint8_t *says = &c->says[first];
+    uint8_t one[TOGETHER] = {0};
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        one[i] = (uint8_t)((says[i] >= least_said) & (says[i] <= most_said));
+    }
+    return bits_of(one);
+}
+
+/* The rows of truth values at which one is another than before; false if some are no truth values. */
+static bool find_turns(const column_watch *w, int64_t first, int32_t count, uint64_t *found)
+{
+    const uint8_t *v = &((const uint8_t *)w->column->values)[first];
+    uint64_t word;
+    uint8_t most = 0;
+    int32_t i;
+    if ((w->column->kind != RV_COLUMN_BYTE) || (w->column->says != NULL) || (count < TOGETHER)
+        || (w->last.kind != RV_WHOLE) || (w->last.as.whole < 0) || (w->last.as.whole > 1)) {
+        return false;
+    }
+    for (i = 0; i < TOGETHER; i++) {
+        most = (uint8_t)(most | v[i]);
+    }
+    word = bits_of(v);
+    *found = word ^ ((word << 1) | (uint64_t)w->last.as.whole);
+    return most <= 1U;
+}
+
+/* Note at which of the rows that say something a signal is told what may change something. */
+static void look_for_news(const batch *s, column_watch *w, int64_t first)
+{
+    uint64_t left = w->said;
+    while (left != 0U) {
+        const int32_t k = lowest_bit(left);
+        const uint64_t bit = UINT64_C(1) << k;
+        const rv_number value = number_in(w->column, first + k);
+        left &= left - 1;
+        if (w->ignores_nan && (value.kind == RV_UNKNOWN)) {
+            w->said &= ~bit;
+        } else if (w->how == EACH_UPDATE) {
+            w->told |= bit;
+        } else if ((w->how == BY_CONSTANTS) ? !compares_alike(w, &value)
+                                            : !are_alike(&value, &w->last)) {
+            w->told |= bit;
+            w->last = value;
+            if (w->how == BY_CONSTANTS) {
+                learn_between(s, w);
+            }
+        } else {
+            /* It tells nothing new. */
+        }
+    }
+}
+
+/* Whether nothing awaits that a signal goes stale. */
+static bool is_ageless(const batch *s, const column_watch *w)
+{
+    bool found = false;
+    int32_t i;
+    for (i = 0; i < w->reader_count; i++) {
+        const run *r = root_of(s, w, i);
+        const int32_t perishable = r->part->signals[w->readers[i].local].perishable;
+        found = found || ((perishable >= 0)
+                          && (r->wake.due[r->part->plan->timers + perishable] == NEVER));
+    }
+    return found;
+}
+
+/* Look through the rows of a column; those at which something may change. */
+static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, int32_t count)
+{
+    const rv_column *c = w->column;
+    uint64_t moved;
+    w->said = bits_before(count);
+    w->told = 0;
+    if (w->is_event) {
+        if (c->says != NULL) {
+            w->said = rows_that_say(c, first, count, RV_SAYS_NO, RV_SAYS_YES);
+            w->told = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
+        } else {
+            w->told = w->said;
+        }
+        w->told = (w->how == EACH_UPDATE) ? w->said : w->told;
+        return w->told;
+    }
+    w->last = root_of(s, w, 0)->value[w->readers[0].local];
+    if (w->how == BY_CONSTANTS) {
+        learn_between(s, w);
+    }
+    if ((w->how != EACH_UPDATE) && stays(w, first, count)) {
+        moved = 0;
+    } else {
+        if (c->says != NULL) {
+            w->said = rows_that_say(c, first, count, RV_SAYS_UNKNOWN, RV_SAYS_YES);
+        }
+        if ((w->how == EACH_UPDATE) || !find_turns(w, first, count, &w->told)) {
+            w->told = 0;
+            look_for_news(s, w, first);
+        }
+        moved = w->told;
+    }
+    if (w->perishable) {
+        w->told = w->said;
+        moved |= is_ageless(s, w) ? (w->said & (~w->said + 1)) : 0U; /* the first of them */
+    }
+    return moved;
+}
+
+/* The rows of which the instant is not one behind the row before, or is told twice. */
+static uint64_t odd_rows(const batch *s, int64_t first, int32_t count)
+{
+    const int64_t *t = &s->times[first];
+    int32_t odd = (first + count < s->count) && (t[count] == t[count - 1]);
+    uint64_t found = 0;
+    int32_t i;
+    for (i = 1; i < count; i++) {
+        odd |= (int32_t)(t[i] <= t[i - 1]);
+    }
+    odd |= (int32_t)(t[0] <= s->m->after) | (int32_t)(t[count - 1] >= LIMIT);
+    for (i = 0; (odd != 0) && (i < count); i++) {
+        const bool again = (first + i + 1 < s->count) && (t[i + 1] <= t[i]);
+        const int64_t before = (i > 0) ? t[i - 1] : s->m->after;
+        if (again || (t[i] <= before) || (t[i] >= LIMIT)) {
+            found |= UINT64_C(1) << i;
+        }
+    }
+    return found;
+}
+
+/* Whether rows may be passed over now. */
+static bool is_calm(const rv_monitor *m)
+{
+    int32_t i;
+    for (i = 0; i < m->plan.part_count; i++) {
+        if (!m->homes[i].root->at.started
+            || ((m->homes[i].part->plan->flags & PART_KEEPS_PAST) != 0)) {
+            return false;
+        }
+    }
+    return !m->finished && !m->spoilt && (m->heard == RV_NO_TIME) && (m->dense_until == RV_NO_TIME);
+}
+
+static bool is_settled(const rv_monitor *m)
+{
+    int32_t i;
+    for (i = 0; i < m->plan.part_count; i++) {
+        if (m->homes[i].root->at.phase == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void look_ahead(batch *s, int64_t row)
+{
+    const int64_t left = s->count - row;
+    int32_t i;
+    if (!is_calm(s->m)) {
+        return;
+    }
+    s->together = (left < TOGETHER) ? left : TOGETHER;
+    if (!s->known) {
+        s->perishes = false;
+        for (i = 0; i < s->columns; i++) {
+            learn_how(s, &s->watches[i]);
+            s->perishes = s->perishes || s->watches[i].perishable;
+        }
+        s->known = is_settled(s->m);
+    }
+    s->moved = odd_rows(s, row, (int32_t)s->together);
+    for (i = 0; i < s->columns; i++) {
+        column_watch *w = &s->watches[i];
+        w->said = 0;
+        w->told = 0;
+        if (w->how != NO_UPDATES) {
+            s->moved |= look_at_column(s, w, row, (int32_t)s->together);
+        }
+    }
+}

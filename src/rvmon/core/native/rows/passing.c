@@ -1,0 +1,214 @@
+/* Passing over rows that change nothing: time comes to them, and what they said is held at last. */
+#include "input/input.h"
+#include "rows/rows.h"
+
+static int64_t alarm_of_all(const rv_monitor *m)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    if (m->is_alone) {
+        return m->homes[0].root->at.alarm;
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        found = least(found, m->homes[i].alarm);
+    }
+    return found;
+}
+
+/* The last row before `row` in which a column says something, from `from` on; -1: none. */
+static int64_t last_said(const batch *s, const column_watch *w, int64_t from, int64_t row)
+{
+    const uint64_t said = w->said & bits_before(row - s->first) & ~bits_before(from - s->first);
+    return (said != 0U) ? s->first + highest_bit(said) : -1;
+}
+
+/* Have all that read a signal hold what a row says. What compares alike is held at last: nothing but
+ * comparisons with constants looks at it. */
+static void hold_in_all(const batch *s, const column_watch *w, int64_t row)
+{
+    const rv_number value = number_in(w->column, row);
+    int32_t i;
+    for (i = 0; i < w->reader_count; i++) {
+        root_of(s, w, i)->value[w->readers[i].local] = value;
+    }
+}
+
+/* Have what perishes be as fresh as the rows before `row` make it. */
+static void refresh(batch *s, int64_t row)
+{
+    bool some = false;
+    int32_t i;
+    int32_t k;
+    for (i = 0; s->perishes && (i < s->columns); i++) {
+        const column_watch *w = &s->watches[i];
+        const int64_t last = w->perishable ? last_said(s, w, s->fresh, row) : -1;
+        for (k = 0; (last >= 0) && (k < w->reader_count); k++) {
+            set_stale(root_of(s, w, k), w->readers[k].local, s->times[last]);
+            some = true;
+        }
+        if ((last >= 0) && (w->how == BY_CONSTANTS)) {
+            hold_in_all(s, w, last);
+        }
+    }
+    for (i = 0; some && (i < s->m->plan.part_count); i++) {
+        home *h = &s->m->homes[i];
+        if (h->part->plan->captured == 0) {
+            set_alarm(h->root, next_position(h->root));
+            h->alarm = h->root->at.alarm;
+        }
+    }
+    s->fresh = row;
+}
+
+/* Have the core hold what the rows before `row` said, and look at other rows from there on. */
+static void turn_from(batch *s, int64_t row)
+{
+    int32_t i;
+    if (s->together > 0) {
+        refresh(s, row);
+        for (i = 0; i < s->columns; i++) {
+            const column_watch *w = &s->watches[i];
+            const int64_t last = last_said(s, w, s->first, row);
+            if ((last >= 0) && (w->how == BY_CONSTANTS) && !w->perishable) {
+                hold_in_all(s, w, last);
+            }
+        }
+    }
+    s->first = row;
+    s->fresh = row;
+    s->together = 0;
+    s->moved = 0;
+}
+
+/* Have time come to a row that is passed over. */
+static void pass_to_row(const batch *s, int64_t row)
+{
+    rv_monitor *m = s->m;
+    const int64_t t = s->times[row];
+    if (m->is_alone) {
+        run *r = m->homes[0].root;
+        r->at.after = t;
+        if (GAP(r) == 0) {
+            r->at.position = t;
+        }
+    }
+    m->last = t;
+    m->after = t;
+    m->reached = t;
+}
+
+/* The first of some rows that is due, or their end. */
+static int64_t first_due(const batch *s, int64_t row, int64_t end)
+{
+    const int64_t alarm = alarm_of_all(s->m);
+    int64_t found = row;
+    if (s->times[end - 1] < alarm) {
+        return end;
+    }
+    while (s->times[found] < alarm) {
+        found++;
+    }
+    return found;
+}
+
+/* Pass over the rows that change nothing; returns the next one that may. */
+int64_t pass_over(batch *s, int64_t row)
+{
+    int64_t at = row;
+    while (at < s->count) {
+        uint64_t ahead;
+        int64_t next;
+        int64_t due;
+        if (at == s->first + s->together) {
+            turn_from(s, at);
+            look_ahead(s, at);
+            if (s->together == 0) {
+                return at;
+            }
+        }
+        ahead = s->moved & ~bits_before(at - s->first);
+        next = (ahead != 0U) ? s->first + lowest_bit(ahead) : s->first + s->together;
+        due = (next > at) ? first_due(s, at, next) : next;
+        if (due > at) {
+            pass_to_row(s, due - 1);
+            at = due;
+        }
+        if (due < next) {
+            refresh(s, at);
+            if (s->times[at] >= alarm_of_all(s->m)) {
+                return at;
+            }
+        } else if (at < s->first + s->together) {
+            return at;
+        } else {
+            /* There are rows that were not looked at. */
+        }
+    }
+    return at;
+}
+
+/* Make ready to judge the rows from `row` up to `end`, which are of one instant. */
+void make_ready(batch *s, int64_t row, int64_t end)
+{
+    if (end > s->first + s->together) {
+        turn_from(s, row);
+    }
+    refresh(s, row);
+}
+
+/* Note that these rows were judged. */
+void note_judged(batch *s, int64_t end)
+{
+    bool stale = false;
+    int32_t i;
+    s->fresh = end;
+    for (i = 0; s->perishes && (i < s->columns); i++) {
+        const column_watch *w = &s->watches[i];
+        stale = stale || (w->perishable
+                          && (root_of(s, w, 0)->value[w->readers[0].local].kind == RV_UNKNOWN));
+    }
+    if (s->together == 0) {
+        s->first = end;
+    } else if (stale) {
+        turn_from(s, end); /* what stands there is no longer what the rows before it said */
+    } else {
+        /* What is known of the rows behind is still so. */
+    }
+}
+
+/* ---- begin and end */
+
+static void begin_column(const batch *s, column_watch *w, const rv_column *c)
+{
+    const rv_monitor *m = s->m;
+    int32_t first;
+    int32_t i;
+    w->column = c;
+    w->is_event = c->name >= m->plan.header->signals;
+    w->readers = subscriptions_of(m, c->name, &w->reader_count);
+    if (w->is_event && (c->fields != NULL)) {
+        w->fields = rv_fields_of(m, c->name - m->plan.header->signals, &first);
+    }
+    for (i = 0; !w->is_event && (i < w->reader_count); i++) {
+        const signal_plan *own = &home_of(s, w, i)->part->signals[w->readers[i].local];
+        w->ignores_nan = w->ignores_nan || ((own->flags & SIGNAL_IGNORES_NAN) != 0);
+    }
+}
+
+bool begin_rows(batch *s, const rv_column *columns)
+{
+    int32_t i;
+    s->watches = arena_take(&s->m->memory, (size_t)(s->columns + 1) * sizeof *s->watches);
+    for (i = 0; (s->watches != NULL) && (i < s->columns); i++) {
+        begin_column(s, &s->watches[i], &columns[i]);
+    }
+    return s->watches != NULL;
+}
+
+void end_rows(batch *s, int64_t row)
+{
+    if (s->watches != NULL) {
+        turn_from(s, row);
+        arena_give(&s->m->memory, s->watches, (size_t)(s->columns + 1) * sizeof *s->watches);
+    }
+}

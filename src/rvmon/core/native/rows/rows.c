@@ -1,0 +1,220 @@
+/* Rows of columns: those of one instant are a sample, and what changes nothing is passed over. */
+#include "input/input.h"
+#include "rows/rows.h"
+
+#include <string.h>
+
+/* So many rows are taken until it is asked which figures they have settled. */
+#define ROWS_TOGETHER 64
+
+/* What a column says in a row. */
+static int32_t said_in(const rv_column *c, int64_t row)
+{
+    return (c->says == NULL) ? RV_SAYS_YES : (int32_t)c->says[row];
+}
+
+rv_number number_in(const rv_column *c, int64_t row)
+{
+    rv_number made = UNKNOWN_NUMBER;
+    if ((said_in(c, row) != RV_SAYS_YES) || (c->values == NULL)) {
+        return made;
+    }
+    made.kind = RV_WHOLE;
+    switch (c->kind) {
+    case RV_COLUMN_REAL: return number_of_double(((const double *)c->values)[row]);
+    case RV_COLUMN_WHOLE: made.as.whole = ((const int64_t *)c->values)[row]; break;
+    default: made.as.whole = ((const uint8_t *)c->values)[row]; break;
+    }
+    return made;
+}
+
+/* Whether an event brings a payload in a row. */
+static bool has_payload(const column_watch *w, int64_t row)
+{
+    int32_t i;
+    for (i = 0; i < w->fields; i++) {
+        if (said_in(&w->column->fields[i], row) != NO_UPDATE) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static rv_update *further(laid *made, int32_t name, int32_t says)
+{
+    rv_update *u = &made->updates[made->count];
+    made->count++;
+    u->name = name;
+    u->says = says;
+    u->value = UNKNOWN_NUMBER;
+    u->fields = NULL;
+    return u;
+}
+
+/* Lay out what a signal is told at one instant: the last value in these rows. */
+static void lay_signal(laid *made, const column_watch *w, int64_t row, int64_t end)
+{
+    int64_t i;
+    for (i = end - 1; i >= row; i--) {
+        if (said_in(w->column, i) != NO_UPDATE) {
+            const rv_number value = number_in(w->column, i);
+            const bool known = value.kind != RV_UNKNOWN;
+            if (known || !w->ignores_nan) {
+                further(made, w->column->name, known ? RV_SAYS_YES : RV_SAYS_UNKNOWN)->value = value;
+                return;
+            }
+        }
+    }
+}
+
+static void lay_payload(laid *made, const column_watch *w, int64_t row)
+{
+    rv_number *own = &made->fields[made->field_count];
+    int32_t i;
+    for (i = 0; i < w->fields; i++) {
+        own[i] = number_in(&w->column->fields[i], row);
+    }
+    made->field_count += w->fields;
+    further(made, w->column->name, RV_SAYS_YES)->fields = own;
+}
+
+/* Lay out what is said of an event at one instant: all payloads in these rows; if there is none, the
+ * surest of what they say. */
+static void lay_event(laid *made, const column_watch *w, int64_t row, int64_t end)
+{
+    int32_t most = -1;
+    bool carried = false;
+    int64_t i;
+    for (i = row; i < end; i++) {
+        const int32_t says = said_in(w->column, i);
+        if (says != NO_UPDATE) {
+            most = (says > most) ? says : most;
+            if ((says == RV_SAYS_YES) && has_payload(w, i)) {
+                carried = true;
+                lay_payload(made, w, i);
+            }
+        }
+    }
+    if ((most >= 0) && !carried) {
+        (void)further(made, w->column->name, most);
+    }
+}
+
+static void give_room(rv_monitor *m, laid *made, int32_t columns)
+{
+    if (made->room > 0) {
+        const size_t each = (size_t)columns * sizeof *made->updates;
+        const size_t fields = (size_t)m->plan.header->fields * sizeof *made->fields;
+        arena_give(&m->memory, made->updates, (size_t)made->room * each + 1);
+        arena_give(&m->memory, made->fields, (size_t)made->room * fields + 1);
+        made->room = 0;
+    }
+}
+
+/* Make room for the updates of so many rows. */
+static bool make_room_for(rv_monitor *m, laid *made, int64_t count, int32_t columns)
+{
+    const size_t each = (size_t)columns * sizeof *made->updates;
+    const size_t fields = (size_t)m->plan.header->fields * sizeof *made->fields;
+    if (count > made->room) {
+        void *updates = arena_take(&m->memory, (size_t)count * each + 1);
+        void *numbers = arena_take(&m->memory, (size_t)count * fields + 1);
+        if ((updates == NULL) || (numbers == NULL)) {
+            m->spoilt = true;
+            return false;
+        }
+        give_room(m, made, columns);
+        made->updates = updates;
+        made->fields = numbers;
+        made->room = count;
+    }
+    return true;
+}
+
+/* The row behind those of one instant. */
+static int64_t end_of_instant(const batch *s, int64_t row)
+{
+    int64_t end = row + 1;
+    while ((end < s->count) && (s->times[end] == s->times[row])) {
+        end++;
+    }
+    return end;
+}
+
+/* Judge a sample: the rows from `row` on that are of one instant. Of rows that were looked at ahead only
+ * what may change something is told. */
+static int judge_instant(batch *s, int64_t row, int64_t end)
+{
+    laid *made = &s->laid;
+    const int64_t k = row - s->first;
+    const bool known = (k < s->together) && (end == row + 1);
+    int32_t i;
+    made->count = 0;
+    made->field_count = 0;
+    if (!make_room_for(s->m, made, end - row, s->columns)) {
+        return RV_NO_MEMORY;
+    }
+    for (i = 0; i < s->columns; i++) {
+        const column_watch *w = &s->watches[i];
+        if (known && !bit_at(w->told, k)) {
+            continue;
+        }
+        if (w->is_event) {
+            lay_event(made, w, row, end);
+        } else {
+            lay_signal(made, w, row, end);
+        }
+    }
+    return rv_step(s->m, s->times[row], made->updates, made->count);
+}
+
+/* Find the figures that rows have settled which were taken together. */
+static void settle_now(rv_monitor *m)
+{
+    if (m->hurries && !m->spoilt && (m->reached != RV_NO_TIME)) {
+        m->hurries = false;
+        settle_margins(m, m->reached);
+        m->hurries = true;
+    }
+}
+
+int rv_rows(rv_monitor *m, const int64_t *times, int64_t count, const rv_column *columns,
+            int32_t columns_count, int64_t *done)
+{
+    batch s;
+    int status = RV_OK;
+    int64_t row = 0;
+    int64_t judged = 0;
+    (void)memset(&s, 0, sizeof s);
+    s.m = m;
+    s.times = times;
+    s.count = count;
+    s.columns = columns_count;
+    if (!begin_rows(&s, columns)) {
+        m->spoilt = true;
+        status = RV_NO_MEMORY;
+    }
+    m->hurries = m->shapes != NULL;
+    while ((status == RV_OK) && (row < count)) {
+        row = m->hurries ? row : pass_over(&s, row); /* each value counts where it is measured */
+        if (row < count) {
+            const int64_t end = end_of_instant(&s, row);
+            make_ready(&s, row, end);
+            status = judge_instant(&s, row, end);
+            if (status == RV_OK) {
+                note_judged(&s, end);
+                row = end;
+                judged++;
+            }
+            if (m->hurries && (judged % ROWS_TOGETHER == 0)) {
+                settle_now(m);
+            }
+        }
+    }
+    settle_now(m);
+    m->hurries = false;
+    end_rows(&s, row);
+    give_room(m, &s.laid, columns_count);
+    *done = row;
+    return status;
+}

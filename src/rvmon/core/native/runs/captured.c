@@ -1,0 +1,330 @@
+/* Attempts of which values are captured: each has a run of its own. They are numbered, and told of, at
+ * the end of each call.
+ *
+ * By then it is known which of all instances came first: where attempts begin at one instant, the
+ * one that was triggered first does, then that of the instance that occurred first. */
+#include "formulas/formulas.h"
+#include "input/input.h"
+#include "networks/network.h"
+#include "results/results.h"
+#include "runs/runs.h"
+
+#include <string.h>
+
+bool starts_here(const run *r, int32_t index)
+{
+    return ((r->starters >> index) & 1) != 0;
+}
+
+bool is_idle(const run *r)
+{
+    return (next_open(r, r->judged, -1) < 0) && !r->judges[r->judged].running && (r->asked == 0);
+}
+
+static int64_t turn_of(const home *h, int32_t at, bool sure)
+{
+    return sure ? h->turns[at].became : attempt_at(h, at)->triggered;
+}
+
+/* Whether one attempt is to be numbered before another. */
+static bool is_earlier(const home *h, int32_t at, int32_t other, bool sure)
+{
+    const int64_t t = turn_of(h, at, sure);
+    const int64_t other_t = turn_of(h, other, sure);
+    const int64_t triggered = attempt_at(h, at)->triggered;
+    const int64_t other_triggered = attempt_at(h, other)->triggered;
+    if (t != other_t) {
+        return t < other_t;
+    }
+    if (triggered != other_triggered) {
+        return triggered < other_triggered;
+    }
+    return h->turns[at].judge->rank < h->turns[other].judge->rank;
+}
+
+static int32_t *link_of(home *h, int32_t at, bool sure)
+{
+    return sure ? &h->turns[at].next_sure : &h->turns[at].next_doubt;
+}
+
+/* Take it that an attempt became sure at `t`, or began in doubt. */
+void note_turn(run *r, int32_t at, int64_t t)
+{
+    home *h = r->home;
+    const bool sure = attempt_at(h, at)->sure;
+    int32_t *ends = sure ? h->sure : h->doubtful;
+    if (sure) {
+        h->turns[at].became = t;
+    }
+    *link_of(h, at, sure) = -1;
+    if (ends[1] < 0) {
+        ends[0] = at;
+    } else {
+        *link_of(h, ends[1], sure) = at;
+    }
+    ends[1] = at;
+}
+
+/* Merge two lists in order, of which what stands in the first was noted before; either may be empty. */
+static int32_t merged(home *h, int32_t one, int32_t other, bool sure)
+{
+    int32_t first = -1;
+    int32_t last = -1;
+    while ((one >= 0) || (other >= 0)) {
+        const bool takes_other = (one < 0) || ((other >= 0) && is_earlier(h, other, one, sure));
+        int32_t *from = takes_other ? &other : &one;
+        if (last < 0) {
+            first = *from;
+        } else {
+            *link_of(h, last, sure) = *from;
+        }
+        last = *from;
+        *from = *link_of(h, last, sure);
+    }
+    return first;
+}
+
+/* The first of what was noted, brought into the order in which it is numbered; mostly it is. */
+static int32_t in_order(home *h, int32_t first, bool sure)
+{
+    int32_t lists[32];         /* one of 2^i attempts, or none; the longer ones were noted before */
+    int32_t at = first;
+    int32_t i;
+    while ((at >= 0) && (*link_of(h, at, sure) >= 0) && !is_earlier(h, *link_of(h, at, sure), at, sure)) {
+        at = *link_of(h, at, sure);
+    }
+    if ((at < 0) || (*link_of(h, at, sure) < 0)) {
+        return first;
+    }
+    for (i = 0; i < 32; i++) {
+        lists[i] = -1;
+    }
+    for (at = first; at >= 0;) {
+        int32_t own = at;
+        at = *link_of(h, at, sure);
+        *link_of(h, own, sure) = -1;
+        for (i = 0; lists[i] >= 0; i++) {
+            own = merged(h, lists[i], own, sure);
+            lists[i] = -1;
+        }
+        lists[i] = own;
+    }
+    for (i = 0; i < 32; i++) {
+        at = merged(h, lists[i], at, sure);
+    }
+    return at;
+}
+
+/* Take it that an attempt was decided. */
+void note_done(run *r, int32_t at)
+{
+    home *h = r->home;
+    h->turns[at].next_done = -1;
+    if (h->done[1] < 0) {
+        h->done[0] = at;
+    } else {
+        h->turns[h->done[1]].next_done = at;
+    }
+    h->done[1] = at;
+}
+
+/* Number what began, and tell of what was decided. */
+void flush_turns(home *h)
+{
+    int32_t at;
+    for (at = in_order(h, h->sure[0], true); at >= 0; at = h->turns[at].next_sure) {
+        h->count++;
+        attempt_at(h, at)->number = h->count;
+        margin_numbered(h->monitor, attempt_at(h, at)->record, true, h->count);
+    }
+    for (at = in_order(h, h->doubtful[0], false); at >= 0; at = h->turns[at].next_doubt) {
+        h->doubts++;
+        h->turns[at].doubt_number = h->doubts;
+        margin_numbered(h->monitor, attempt_at(h, at)->record, false, h->doubts);
+    }
+    at = h->done[0];
+    h->sure[0] = h->sure[1] = -1;
+    h->doubtful[0] = h->doubtful[1] = -1;
+    h->done[0] = h->done[1] = -1;
+    while (at >= 0) {
+        turn *own = &h->turns[at];
+        const int32_t next = own->next_done;
+        report(own->judge, own->rule, attempt_at(h, at), told_number(own->judge, at), own->verdict,
+               own->decision, own->decided, own->note);
+        own->judge = NULL;
+        give_back(h, at);
+        at = next;
+    }
+}
+
+/* The values that an attempt captures which begins at the position of a run, behind that of `for
+ * each`. */
+static void capture(run *r, rv_number *values)
+{
+    const list captures = r->part->plan->captures;
+    const int32_t *programs = LIST(PLAN(r), captures);
+    const int32_t first = r->part->plan->each;
+    rv_number *own = r->captured;
+    rv_number *now = r->value;
+    int32_t i;
+    if ((r->home->nothing != NULL) && (r->at.dense || (r->at.presence != ARE_THERE))) {
+        r->value = r->home->nothing;
+    }
+    r->captured = values; /* one may be made of those before it */
+    for (i = 0; i < captures.count; i++) {
+        values[first + i] = program_value(r, programs[i], NULL);
+    }
+    r->captured = own;
+    r->value = now;
+}
+
+/* Whether an attempt may have begun at this position with other values than it captured. */
+static bool may_be_other(run *r)
+{
+    const judge_plan *j = &r->part->judges[r->judged];
+    const part_plan *p = r->part->plan;
+    run *parent = r->parent;
+    rv_number *now = r->home->room;
+    int32_t i;
+    if (!(parent->doubted && ((j->flags & JUDGE_BLURS_ANYWHERE) != 0))
+        && (parent->truth[j->blurs] != IS_UNKNOWN)) {
+        return false;
+    }
+    now[0] = r->captured[0];
+    capture(parent, now);
+    for (i = p->each; i < p->captured; i++) {
+        if ((now[i].kind == RV_UNKNOWN) || !same_number(&now[i], &r->captured[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Have those looked at that say whether the values are known. */
+void mark_lapsed(run *r)
+{
+    const int32_t *lapsed = LIST(PLAN(r), r->part->plan->lapsed);
+    int32_t i;
+    for (i = 0; i < r->part->plan->lapsed.count; i++) {
+        mark_dirty(r, lapsed[i]);
+    }
+}
+
+/* See from the position `t` of its parent whether the values of an attempt stay known. */
+static void keep_watch(run *r, int64_t t)
+{
+    const uint8_t trigger = r->parent->truth[r->part->judges[0].trigger];
+    int32_t at;
+    if (is_idle(r) || (trigger == IS_FALSE)) {
+        r->blurs = false;
+    } else if (r->blurs && (r->cut == NEVER) && may_be_other(r)) {
+        r->cut = t;
+        r->at.alarm = least(r->at.alarm, t);
+        mark_lapsed(r);
+    } else {
+        /* They do. */
+    }
+    if (r->cut < NEVER) {
+        for (at = next_open(r, r->judged, -1); at >= 0; at = next_open(r, r->judged, at)) {
+            attempt *x = attempt_at(r->home, at);
+            x->cannot_pass = true;
+            x->trigger_unknown = (trigger != IS_FALSE) && (x->trigger_unknown || (trigger == IS_UNKNOWN));
+        }
+    }
+    r->watched = r->blurs || ((r->cut < NEVER) && (trigger != IS_FALSE));
+}
+
+/* Take a run among those of attempts that were triggered in another. */
+void adopt(run *parent, run *child)
+{
+    child->parent = parent;
+    child->previous_sibling = NULL;
+    child->sibling = parent->first_child;
+    if (parent->first_child != NULL) {
+        parent->first_child->previous_sibling = child;
+    }
+    parent->first_child = child;
+}
+
+/* Let go of the run of an attempt that is over. */
+void let_go(run *r)
+{
+    if (r->previous_sibling != NULL) {
+        r->previous_sibling->sibling = r->sibling;
+    } else {
+        r->parent->first_child = r->sibling;
+    }
+    if (r->sibling != NULL) {
+        r->sibling->previous_sibling = r->previous_sibling;
+    }
+    touch_run(r->parent); /* it may be over now, too */
+    delist(r, true);
+}
+
+void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered)
+{
+    const bool watched = r->part->judges[index].blurs >= 0;
+    run *made = forked(r);
+    if (made == NULL) {
+        return;
+    }
+    made->parent = r;
+    made->judged = index;
+    made->starters = 0;
+    made->judging = 1 << index;
+    made->opens_at = -LIMIT;
+    made->blurs = true;
+    capture(r, made->captured);
+    if (watched && may_be_other(made)) {
+        made->cut = t;
+    }
+    if ((r->part->plan->flags & PART_REPLAYS) != 0) {
+        replay(made);
+        if (made->at.dense) {
+            run_pass_dense(made, t);
+        } else {
+            through(made, t, false);
+        }
+    } else if ((made->at.presence == ARE_THERE) && !made->at.dense) {
+        vary(made, t, false);
+    } else {
+        /* Everything is unknown there. */
+    }
+    adopt(r, made);
+    enlist(made, true);
+    begin_here(made, index, t, triggered);
+    set_alarm(made, next_position(made));
+    if (watched) {
+        keep_watch(made, t);
+    }
+}
+
+/* Have those looked after that were triggered here, at the position `t`. */
+void look_after(run *r, int64_t t)
+{
+    run *one;
+    bool some = false;
+    int32_t i;
+    for (one = r->first_child; one != NULL; one = one->sibling) {
+        if (one->watched) {
+            touch_run(one);
+            keep_watch(one, t);
+            some = some || one->watched;
+        }
+    }
+    r->stays_busy = false;
+    for (i = 0; some && (i < r->part->plan->events.count); i++) {
+        /* Payloads are others behind this position. */
+        r->stays_busy = r->stays_busy || (r->payloads[i].count > 0);
+    }
+}
+
+/* What occurred at the last position is over. */
+void forget_last(run *r)
+{
+    touch_run(r);
+    if (r->over) {
+        r->over = false;
+        forget(r);
+    }
+}

@@ -1,0 +1,344 @@
+/* Positions and time: which instants are looked at, and in which order things happen there. */
+#include "formulas/formulas.h"
+#include "input/input.h"
+#include "notes/notes.h"
+#include "results/results.h"
+#include "runs/runs.h"
+#include "windows/windows.h"
+
+#include <string.h>
+
+/* What time alone changes by `t`. */
+static void ring(run *r, int64_t t)
+{
+    const int32_t nodes = r->part->plan->timers;
+    while (timers_next(&r->wake) <= t) {
+        const int32_t id = r->wake.ids[0];
+        const int64_t due = r->wake.due[id];
+        timers_set(&r->wake, id, NEVER);
+        if (id < nodes) {
+            mark_dirty(r, r->part->timed[id]);
+        } else {
+            go_stale(r, due, id - nodes);
+        }
+    }
+}
+
+/* Whether the truth of its trigger may start attempts of a judge here, or end its episode; the
+ * formula that says so, or -1. */
+int32_t followed(const run *r, int32_t index)
+{
+    const judge_plan *j = &r->part->judges[index];
+    if (r->part->plan->captured == 0) {
+        return j->trigger;
+    }
+    if (starts_here(r, index)) {
+        return (r->opens_at < NEVER) ? j->trigger : -1;
+    }
+    return (((r->judging >> index) & 1) != 0) ? j->running : -1;
+}
+
+void touch_all(run *r, uint8_t what)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->watches.count; i++) {
+        call_watch(r, i);
+    }
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        touch(r, i, what);
+    }
+}
+
+/* Who is to look at the position at `t` whatever changes there. */
+static void call_up(run *r, int64_t t)
+{
+    int32_t kept = 0;
+    int32_t i;
+    int32_t count;
+    for (i = 0; i < r->repeating_count; i++) {
+        touch(r, r->repeating[i], TOUCHED_TRIGGER);
+    }
+    for (i = 0; i < r->restless_count; i++) {
+        const int32_t index = r->restless[i];
+        if (r->judges[index].restless) {
+            touch(r, index, TOUCHED_LETTER);
+            r->restless[kept] = index;
+            kept++;
+        } else {
+            r->judges[index].is_restless_listed = false;
+        }
+    }
+    r->restless_count = kept;
+    if (timers_next(&r->rules) <= t) {
+        count = timers_due(&r->rules, t, r->due_rules);
+        for (i = 0; i < count; i++) {
+            touch(r, r->due_rules[i], TOUCHED_LETTER);
+        }
+    }
+}
+
+/* The first position: everything is looked at. */
+static void start(run *r, int64_t t)
+{
+    r->at.started = true;
+    r->at.starting = IS_TRUE;
+    r->at.origin = t;
+    r->at.begun = t;
+    look_at_all(r);
+}
+
+void look_at_all(run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->atoms.count; i++) {
+        (void)recheck(r, i);
+    }
+    mark_all_dirty(r);
+    touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
+}
+
+/* What those that were touched do, each kind of thing for all of them before the next. */
+void have_judged(run *r, int64_t t)
+{
+    int32_t i;
+    r->repeating_count = 0; /* each judge may be put there once now, and no more than once */
+    if (r->part->is_watched) {
+        watch(r, t);
+    }
+    for (i = 0; r->part->has_episodes && (i < r->touched_count); i++) {
+        const int32_t index = r->touched[i];
+        if (((r->judges[index].touched & TOUCHED_TRIGGER) != 0) && runs_on(r, index)) {
+            look_at(r, index, t);
+        }
+    }
+    for (i = 0; i < r->touched_count; i++) {
+        const int32_t index = r->touched[i];
+        if (((r->judges[index].touched & TOUCHED_LETTER) != 0)
+            && (has_attempts(&r->judges[index]) || watches(r, index))) {
+            visit_judge(r, index, t);
+        }
+    }
+    if (r->at.presence == ARE_THERE_NEXT) {
+        revive_all(r, t);
+    }
+    for (i = 0; i < r->touched_count; i++) {
+        const int32_t index = r->touched[i];
+        if ((r->judges[index].touched & TOUCHED_TRIGGER) != 0) {
+            const int32_t trigger = followed(r, index);
+            if ((trigger >= 0) && starts(r, index, r->truth[trigger])) {
+                begin(r, index, t, t);
+            }
+        }
+        r->judges[index].touched = 0;
+    }
+    r->touched_count = 0;
+    if (r->failing_count > 0) {
+        for (i = 0; i < r->failing_count; i++) {
+            const int32_t index = r->failing[i];
+            if (may_go_on(r, index) && (r->judges[index].failed_at < t)) {
+                begin_here(r, index, t, t);
+            }
+        }
+        tidy_failing(r);
+    }
+}
+
+/* Move to the position at `t`. */
+void visit(run *r, int64_t t)
+{
+    const bool apart = r->part->plan->captured > 0;
+    const int64_t gap = GAP(r);
+    if (apart) {
+        forget_last(r);
+    }
+    r->at.before = (gap > 0) ? t - gap : r->at.position;
+    if (r->at.presence == MAY_BE_THERE) {
+        begin_blank(r, t);
+        return;
+    }
+    if (r->at.presence == ARE_THERE_NEXT) {
+        end_blank(r, t);
+    } else if (!r->at.started) {
+        start(r, t);
+    } else {
+        r->at.starting = IS_FALSE;
+        if (gap == 0) {
+            const int32_t *nodes = LIST(PLAN(r), r->part->plan->stateful);
+            int32_t i;
+            for (i = 0; i < r->part->plan->stateful.count; i++) {
+                mark_dirty(r, nodes[i]);
+            }
+        }
+    }
+    if (t >= r->cut) {
+        mark_lapsed(r);
+    }
+    if (t >= r->at.ends_at) {
+        come_back(r, t);
+    }
+    ring(r, t); /* before what fades: an atom that it reads anew may speak of this position only */
+    if (r->at.fading_count + r->at.fresh_count > 0) {
+        recheck_fading(r);
+    }
+    if (r->opening && (t >= r->opens_at)) {
+        r->opening = false;
+        if (!was_swallowed(r, t)) {
+            touch_all(r, TOUCHED_TRIGGER);
+        }
+    }
+    call_up(r, t);
+    work_out(r, t);
+    if ((r->truth_log != NULL) && (r->at.starting == IS_TRUE)) {
+        stand_at_first(r, t);
+    }
+    r->at.position = t;
+    r->at.awaited = NEVER;
+    have_judged(r, t);
+    if (r->margins != NULL) {
+        margins_visit(r, t); /* before what occurred is forgotten */
+    }
+    if (r->at.phase == 0) {
+        settle_phase(r);
+    }
+    if (apart) {
+        r->over = r->over || r->at.gathered; /* who captures sees it until the next position */
+        r->at.gathered = false;
+        look_after(r, t);
+    } else if (r->at.gathered) {
+        r->at.gathered = false;
+        forget(r);
+    } else {
+        /* There is nothing to forget. */
+    }
+}
+
+/* Let time come to `t`, of which no position is known. */
+void reach(run *r, int64_t t)
+{
+    if (timers_next(&r->rules) <= t) {
+        const int32_t count = timers_due(&r->rules, t, r->due_rules);
+        int32_t i;
+        for (i = 0; i < count; i++) {
+            reach_judge(r, r->due_rules[i], t);
+        }
+    }
+}
+
+/* Let time pass up to `limit`, positions there included, without a further sample. If a sample
+ * `comes` behind it, what networks find can wait for that. */
+void through(run *r, int64_t limit, bool comes)
+{
+    const int32_t *index = r->part->networked;
+    const int32_t networked = r->part->networked_count;
+    const int64_t gap = GAP(r);
+    const bool restarts = r->part->restarts && (gap > 0);
+    int64_t position;
+    int32_t i;
+    for (;;) {
+        int64_t until;
+        int64_t stop;
+        position = next_position(r);
+        until = least(position - 1, limit);
+        for (i = 0; (gap <= 1) && (comes || (position <= limit)) && (i < networked); i++) {
+            network_put_off(r, index[i], until);
+        }
+        for (i = 0; restarts && (i < networked); i++) {
+            network_foresee(r, index[i], until);
+        }
+        /* What fails may be followed by another attempt at once. */
+        stop = restarts ? least(until, timers_next(&r->rules)) : until;
+        if (timers_next(&r->rules) <= stop) {
+            const int32_t count = timers_due(&r->rules, stop, r->due_rules);
+            for (i = 0; i < count; i++) {
+                pass_to(r, r->due_rules[i], stop);
+            }
+        }
+        if ((stop < until) || ((r->failing_count > 0) && (next_start(r) < position))) {
+            continue;
+        }
+        if (position > limit) {
+            break;
+        }
+        visit(r, position);
+    }
+    set_alarm(r, position);
+}
+
+/* Let time come to the tick before a sample. */
+void approach(run *r, int64_t t)
+{
+    if (t > r->at.alarm) {
+        through(r, t - 1, true);
+    }
+}
+
+/* Judge the instant of a sample, of which the updates are taken. */
+void arrive(run *r, int64_t t)
+{
+    const int64_t gap = GAP(r);
+    const bool dirty = r->at.dirty || has_dirty_nodes(r) || (r->at.presence != ARE_THERE)
+                       || ((r->margins != NULL) && ((gap > 1) || !r->at.started));
+    if (r->at.presence == MAY_BE_THERE) {
+        r->at.presence = r->at.started ? ARE_THERE_NEXT : ARE_THERE;
+    }
+    r->at.dirty = false;
+    r->at.after = t;
+    if (dirty || (t >= r->at.alarm)) {
+        if (gap > 1) {
+            r->at.awaited = tick_from(gap, t);
+            if (r->at.awaited == t) {
+                visit(r, t);
+            } else {
+                reach(r, t);
+            }
+        } else {
+            visit(r, t);
+        }
+        set_alarm(r, next_position(r));
+    } else if (r->margins != NULL) {
+        margins_visit(r, t); /* values are others, though no formula is */
+    } else {
+        /* Nothing is to be looked at. */
+    }
+    if (gap == 0) {
+        r->at.position = t;
+    }
+}
+
+/* Settle all that are undecided, when time has come to the end. */
+void settle_all(run *r, int64_t end, int64_t reached)
+{
+    int32_t i;
+    int32_t at;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        if (is_networked(r, i) && !is_chained(r, i)) {
+            network_close(r, i, end, reached);
+        }
+        if (r->truth_log != NULL) {
+            note_open_count(r, i);
+        }
+        if (!queue_is_empty(&r->judges[i])) {
+            queue_close(r, i, end, reached);
+        }
+        for (at = next_open(r, i, -1); at >= 0; at = next_open(r, i, at)) {
+            settle_attempt(r, i, at, end, reached);
+        }
+    }
+}
+
+/* The next instant at which something is decided if nothing comes. */
+int64_t next_decision(run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->networked_count; i++) {
+        network_foresee(r, r->part->networked[i], LIMIT - 1);
+    }
+    return least(next_position(r), timers_next(&r->rules));
+}
+
+/* Whether the trigger of a judge was ever true or false. */
+bool was_heard(const run *r, int32_t index)
+{
+    const int32_t determined = r->part->judges[index].determined;
+    return r->at.started && ((determined < 0) || is_true(r, determined));
+}

@@ -1,0 +1,272 @@
+/* Outages where only samples are positions: while anything is lost, each tick may be a position, or may
+ * not, and every formula is unknown there.
+ *
+ * What looks back is told so once. Attempts are stepped at each of these ticks with a letter of which
+ * nothing is known; those of automata all at once as long as none is due. A network goes from tick to
+ * tick, at most so many: then nothing more is said of its attempts.
+ *
+ * Source: the law, section 1 (Outage). */
+#include "formulas/formulas.h"
+#include "input/input.h"
+#include "networks/network.h"
+#include "runs/runs.h"
+
+#include <string.h>
+
+/* Ticks of one stretch that networks are taken through one by one. */
+#define TICKS_MOST 1000
+
+int64_t last_position(const rv_monitor *m)
+{
+    return (m->dense_end > m->last) ? m->dense_end : m->last;
+}
+
+/* Whether a judge has to see each position, one by one. */
+static bool is_slow(const run *r, int32_t index)
+{
+    return is_networked(r, index) && !r->judges[index].blind
+           && (has_attempts(&r->judges[index]) || watches(r, index));
+}
+
+static bool goes_slowly(const run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        if (is_slow(r, i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Have nothing more be said of what networks judge now; one that looks back will have missed what it
+ * is asked for. */
+static void give_up_networks(run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        judge *j = &r->judges[i];
+        if (is_slow(r, i)) {
+            while (j->first >= 0) {
+                attempt *x = attempt_at(r->home, j->first);
+                x->parted = true;
+                x->location = FAILED;
+                x->better = PASSED;
+                lay_aside(r, i, -1, j->first);
+            }
+            j->blind = r->part->forms[r->part->judges[i].form].looks_back != 0;
+            set_rule_due(r, i, NEVER);
+        }
+    }
+}
+
+/* Come to the first tick that may be a position. */
+void run_begin_dense(run *r, int64_t t)
+{
+    const bool apart = r->part->plan->captured > 0;
+    if (apart) {
+        forget_last(r);
+    }
+    r->at.dense = true;
+    r->at.dense_from = t;
+    r->at.before = r->at.started ? r->at.position : t;
+    if (!r->at.started) {
+        r->at.started = true;
+        r->at.origin = t;
+        r->at.begun = NEVER;
+    }
+    r->at.presence = ARE_THERE;
+    r->opening = false;
+    margins_miss(r);
+    remember_unknown(r, t);
+    blank_out(r, t);
+    r->at.position = t;
+    touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
+    have_judged(r, t);
+    if (apart) {
+        look_after(r, t);
+    }
+}
+
+/* The tick that a run is to be taken to: the next one that may matter, or `limit`. */
+static int64_t next_tick(const run *r, int64_t limit)
+{
+    const int64_t next = r->at.position + 1;
+    const int64_t due = timers_next(&r->rules);
+    if ((r->at.position == r->at.dense_from) || (r->failing_count > 0) || goes_slowly(r)) {
+        return next; /* what is hidden may be so there, what failed may go on */
+    }
+    return (due < limit) ? ((due > next) ? due : next) : limit;
+}
+
+/* Take a run through the ticks up to one. */
+void run_pass_dense(run *r, int64_t limit)
+{
+    const int32_t judges = r->part->plan->judges.count;
+    int32_t i;
+    while ((r->at.position < limit) && !r->home->monitor->spoilt) {
+        const bool second = r->at.position == r->at.dense_from;
+        int64_t next;
+        if ((r->at.position - r->at.dense_from >= TICKS_MOST) && goes_slowly(r)) {
+            give_up_networks(r);
+        }
+        next = next_tick(r, limit);
+        if (second) { /* what may be hidden there is another letter */
+            r->at.before = r->at.position;
+            blank_out(r, next);
+            touch_all(r, TOUCHED_LETTER | TOUCHED_TRIGGER);
+        }
+        for (i = 0; !second && (i < judges); i++) {
+            if (!is_networked(r, i)) {
+                r->judges[i].touched &= (uint8_t)~TOUCHED_LETTER;
+                pass_ticks(r, i, next);
+            } else if (is_slow(r, i)) {
+                touch(r, i, TOUCHED_LETTER);
+            } else {
+                /* None of its attempts is open. */
+            }
+        }
+        r->at.before = next - 1;
+        r->at.position = next;
+        have_judged(r, next);
+        if (second && (r->part->plan->captured > 0)) {
+            look_after(r, next);
+        }
+    }
+}
+
+/* Only samples are positions from here on. */
+void run_end_dense(run *r, int64_t until)
+{
+    run_pass_dense(r, until);
+    r->at.dense = false;
+    r->at.presence = ARE_THERE_NEXT;
+    r->at.alarm = -LIMIT;
+}
+
+/* Take updates at a tick that may be no position: what occurs there is not seen at any other. */
+void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count)
+{
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        take_update(r, t, &in[i]);
+    }
+    r->at.gathered = false;
+    r->over = false;
+    forget(r);
+}
+
+static void for_all(home *h, int64_t t, void (*act)(run *r, int64_t t))
+{
+    run *one;
+    for (one = h->root; one != NULL; one = following(h, one)) {
+        touch_run(one);
+        act(one, t);
+    }
+    if (h->part->plan->captured > 0) {
+        rest_all(h);
+    } else {
+        untouch_all(h);
+        h->alarm = h->root->at.alarm;
+    }
+}
+
+static void keep_word(home *h, int64_t t, int32_t says)
+{
+    if ((h->part->plan->flags & PART_KEEPS_PAST) != 0) {
+        const int32_t count = h->past_count;
+        h->inbox_count = 0;
+        keep_given(h, t);
+        if (h->past_count > count) {
+            h->past[count].says = says;
+        }
+    }
+}
+
+static void begin_one(run *r, int64_t t)
+{
+    if (!r->at.dense) {
+        run_begin_dense(r, t);
+    }
+}
+
+/* Have the values of signals where all are unknown; false if memory is short. */
+bool make_nothing(home *h)
+{
+    if (h->nothing == NULL) {
+        h->nothing = arena_take(&h->monitor->memory,
+                                (size_t)(h->part->plan->signals.count + 1) * sizeof *h->nothing);
+    }
+    return h->nothing != NULL;
+}
+
+bool begin_dense(rv_monitor *m, int64_t t)
+{
+    int32_t i;
+    for (i = 0; i < m->plan.part_count; i++) {
+        home *h = &m->homes[i];
+        run *one;
+        if (!make_nothing(h)) {
+            m->spoilt = true;
+            return false;
+        }
+        for (one = h->root; one != NULL; one = following(h, one)) {
+            if (one->at.started) {
+                one->at.position = last_position(m);
+            }
+        }
+        if (h->part->plan->each != 0) {
+            h->previous = last_position(m);
+            open_unknown(h, t);
+        }
+        keep_word(h, t, SAYS_DENSE);
+        for_all(h, t, begin_one);
+    }
+    m->dense_until = NEVER;
+    return !m->spoilt;
+}
+
+/* Take all through the ticks up to one, and out of the stretch if it is over. */
+void pass_dense(rv_monitor *m, int64_t limit)
+{
+    int32_t i;
+    if (limit >= m->dense_until) {
+        end_dense(m);
+        return;
+    }
+    for (i = 0; i < m->plan.part_count; i++) {
+        for_all(&m->homes[i], limit, run_pass_dense);
+    }
+}
+
+void end_dense(rv_monitor *m)
+{
+    int32_t i;
+    for (i = 0; i < m->plan.part_count; i++) {
+        for_all(&m->homes[i], m->dense_until, run_end_dense);
+        keep_word(&m->homes[i], m->dense_until, SAYS_SPARSE);
+    }
+    m->dense_end = m->dense_until;
+    m->dense_until = RV_NO_TIME;
+}
+
+/* Whether an instant is a tick that may be no position; what is behind one ends the stretch. */
+bool is_amid_dense(rv_monitor *m, int64_t t)
+{
+    if (t > m->dense_until) {
+        end_dense(m);
+        return false;
+    }
+    return true;
+}
+
+void home_take_amid(home *h, int64_t t)
+{
+    run *one;
+    keep_given(h, t);
+    for (one = h->root; one != NULL; one = following(h, one)) {
+        run_take_amid(one, t, h->inbox, h->inbox_count);
+        one->at.after = t;
+    }
+    h->inbox_count = 0;
+}

@@ -1,0 +1,130 @@
+/* Samples that are kept for those that look at what was before. */
+#include "input/input.h"
+#include "runs/runs.h"
+
+#include <string.h>
+
+/* Add an update to what is kept; NULL: memory is short. */
+past_update *keep_one(home *h, int64_t t)
+{
+    past_update *made = enlarged(h->monitor, h->past, &h->past_room, (int64_t)h->past_count + 1,
+                              sizeof *made);
+    if (made == NULL) {
+        return NULL;
+    }
+    h->past = made;
+    made = &h->past[h->past_count];
+    (void)memset(made, 0, sizeof *made);
+    made->t = t;
+    made->local = -1;
+    h->past_count++;
+    return made;
+}
+
+/* Keep the sample at hand for those that look at what was before: also one that says nothing is a
+ * position. */
+void keep_updates(home *h, int64_t t)
+{
+    rv_monitor *m = h->monitor;
+    past_update *made = NULL;
+    int32_t i;
+    if (h->inbox_count == 0) {
+        made = keep_one(h, t);
+    }
+    for (i = 0; i < h->inbox_count; i++) {
+        const incoming *in = &h->inbox[i];
+        const rv_update *u = in->update;
+        const int32_t fields = in->event ? h->part->events[in->local].fields : 0;
+        made = keep_one(h, t);
+        if (made == NULL) {
+            return;
+        }
+        made->local = in->local;
+        made->event = in->event;
+        made->says = u->says;
+        made->value = u->value;
+        if ((fields > 0) && (u->fields != NULL)) {
+            const size_t size = (size_t)fields * sizeof *u->fields;
+            rv_number *own = arena_take(&m->memory, size);
+            if (own == NULL) {
+                m->spoilt = true;
+                return;
+            }
+            (void)memcpy(own, u->fields, size);
+            made->fields = own;
+        }
+    }
+    if (made != NULL) {
+        made->last = true;
+    }
+}
+
+/* Keep what is judged now, if somebody will look at it again. */
+void keep_given(home *h, int64_t t)
+{
+    if (holds_back(h)) {
+        h->given += (h->inbox_count > 0) ? h->inbox_count : 1; /* it is kept already */
+    } else if ((h->part->plan->flags & PART_KEEPS_PAST) != 0) {
+        keep_updates(h, t);
+        h->given = h->past_count;
+    } else {
+        /* Nobody does. */
+    }
+}
+
+/* Have a run with values of its own see all that was. */
+void replay(run *r)
+{
+    home *h = r->home;
+    const part_plan *p = r->part->plan;
+    const int64_t previous = h->previous;
+    int32_t first = 0;
+    int32_t i;
+    clear_run(r);
+    r->over = false;
+    for (i = 0; i < p->signals.count + p->events.count; i++) {
+        if (has_no_source(h->root, i)) {
+            have_no_source(r, i >= p->signals.count, (i >= p->signals.count) ? i - p->signals.count : i);
+        }
+    }
+    while (first < h->given) {
+        const int64_t t = h->past[first].t;
+        if ((GAP(r) == 0) && r->at.started && !r->at.dense) {
+            r->at.position = h->previous;
+        }
+        const bool loss = h->past[first].says > RV_SAYS_YES;
+        const bool amid = r->at.dense;
+        if (!amid) {
+            approach(r, t);
+        }
+        if (!loss && !amid) {
+            forget_last(r);
+        }
+        do {
+            const past_update *one = &h->past[first];
+            const rv_update update = {0, one->says, one->value, one->fields};
+            const incoming in = {one->local, one->event, &update};
+            if (one->says == SAYS_AHEAD) {
+                may_begin(r, t);
+            } else if (one->says == SAYS_DENSE) {
+                run_begin_dense(r, t);
+            } else if (one->says == SAYS_SPARSE) {
+                run_end_dense(r, t);
+            } else if (loss) {
+                give_loss(r, t, &in, 1);
+            } else if (r->at.dense) {
+                run_take_amid(r, t, &in, (one->local >= 0) ? 1 : 0);
+            } else if (one->local >= 0) {
+                take_update(r, t, &in);
+            } else {
+                /* It says nothing. */
+            }
+            first++;
+        } while ((first < h->given) && !h->past[first - 1].last);
+        if (!loss && !amid) {
+            arrive(r, t);
+        }
+        h->previous = (loss && (h->past[first - 1].says != SAYS_SPARSE)) ? h->previous : t;
+    }
+    h->previous = previous;
+}

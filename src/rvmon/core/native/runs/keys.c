@@ -1,0 +1,407 @@
+/* The values of `for each` that are known, and their instances. */
+#include "formulas/formulas.h"
+#include "input/input.h"
+#include "runs/runs.h"
+#include "windows/windows.h"
+
+#include <string.h>
+
+/* So many values that are over are remembered, the latest. */
+#define MOST_OVER 10000
+#define FIRST_KEYS 16
+
+static int32_t hash_of_key(const rv_number *value, int32_t room)
+{
+    uint64_t bits = 0;
+    if ((value->kind == RV_REAL) && (value->as.real >= -0x1p63) && (value->as.real < 0x1p63)
+        && ((double)(int64_t)value->as.real == value->as.real)) {
+        bits = (uint64_t)(int64_t)value->as.real; /* as that of a whole number, which it may equal */
+    } else if (value->kind == RV_REAL) {
+        (void)memcpy(&bits, &value->as.real, sizeof bits);
+    } else {
+        bits = (uint64_t)value->as.whole;
+    }
+    bits *= UINT64_C(0x9e3779b97f4a7c15);
+    return (int32_t)((bits >> 33) % (uint64_t)room);
+}
+
+static void hang(home *h, int32_t at)
+{
+    const int32_t hash = hash_of_key(&h->keys[at].value, h->key_room);
+    h->keys[at].next = h->heads[hash];
+    h->heads[hash] = at;
+}
+
+/* Make room for more keys; false: memory is short. All that there are are in use. */
+static bool grow_keys(home *h)
+{
+    rv_monitor *m = h->monitor;
+    int32_t room = h->key_room;
+    key *keys = enlarged(m, h->keys, &room, (int64_t)h->key_room + ((h->key_room > 0) ? 1 : FIRST_KEYS),
+                      sizeof *keys);
+    int32_t *heads;
+    int32_t i;
+    if (keys == NULL) {
+        return false;
+    }
+    h->keys = keys;
+    heads = arena_take(&m->memory, (size_t)room * sizeof *heads);
+    if (heads == NULL) {
+        m->spoilt = true;
+        return false;
+    }
+    arena_give(&m->memory, h->heads, (size_t)h->key_room * sizeof *heads);
+    h->heads = heads;
+    h->key_room = room;
+    for (i = 0; i < room; i++) {
+        heads[i] = -1;
+    }
+    for (i = 0; i < h->key_count; i++) {
+        hang(h, i);
+    }
+    return true;
+}
+
+bool begin_keys(home *h)
+{
+    int32_t i;
+    h->key_count = 0;
+    h->free_key = -1;
+    h->oldest = -1;
+    h->newest = -1;
+    h->over_count = 0;
+    h->last_rank = 0;
+    for (i = 0; i < h->key_room; i++) {
+        h->heads[i] = -1;
+    }
+    return (h->key_room > 0) || grow_keys(h);
+}
+
+static int32_t find_key(const home *h, const rv_number *value)
+{
+    int32_t at = h->heads[hash_of_key(value, h->key_room)];
+    while ((at >= 0) && (compare_numbers(CMP_EQ, &h->keys[at].value, value) != IS_TRUE)) {
+        at = h->keys[at].next;
+    }
+    return at;
+}
+
+/* Know another value, which occurs at `t`; -1: there is no room. */
+static int32_t add_key(home *h, const rv_number *value, int64_t t)
+{
+    int32_t at = h->free_key;
+    if (at >= 0) {
+        h->free_key = h->keys[at].next;
+    } else if ((h->key_count < h->key_room) || grow_keys(h)) {
+        at = h->key_count;
+        h->key_count++;
+    } else {
+        return -1;
+    }
+    h->last_rank++;
+    h->keys[at].value = *value;
+    h->keys[at].occurred = t;
+    h->keys[at].open = NULL;
+    h->keys[at].rank = h->last_rank;
+    hang(h, at);
+    return at;
+}
+
+/* Know a value as it was known before; -1: it is known already, or there is no room. */
+int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank)
+{
+    const int32_t at = (find_key(h, value) < 0) ? add_key(h, value, occurred) : -1;
+    if (at >= 0) {
+        h->keys[at].rank = rank;
+    }
+    return at;
+}
+
+/* Take a value out of those whose instance is over. */
+static void take_from_over(home *h, int32_t at)
+{
+    const key *k = &h->keys[at];
+    if (k->older < 0) {
+        h->oldest = k->newer;
+    } else {
+        h->keys[k->older].newer = k->newer;
+    }
+    if (k->newer < 0) {
+        h->newest = k->older;
+    } else {
+        h->keys[k->newer].older = k->older;
+    }
+    h->over_count--;
+}
+
+/* Let attempts start from `t` on, as if none had run before. */
+void open_at(run *r, int64_t t)
+{
+    int32_t i;
+    touch_run(r);
+    r->opens_at = t;
+    r->opening = true;
+    r->at.alarm = least(r->at.alarm, t);
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        const int32_t trigger = r->part->judges[i].trigger;
+        if (starts_here(r, i) && (trigger >= 0)) {
+            if (r->at.started) {
+                r->judges[i].before = r->truth[trigger];
+            }
+            r->judges[i].running = false;
+        }
+    }
+}
+
+/* Whether the occurrence that an instance was opened by came before a tick at which its event is lost:
+ * then its value is not known. The instance waits for the next one. */
+bool was_swallowed(run *r, int64_t t)
+{
+    const part_plan *p = r->part->plan;
+    if ((r->rank == 0U) || (r->occurred < r->opens_at)
+        || !is_lost_at(r, p->signals.count + p->each_event, t)) {
+        return false;
+    }
+    r->opens_at = NEVER;
+    r->occurred = NEVER;
+    return true;
+}
+
+/* Have an instance that was made know that its value occurs at `t`. */
+static void open_anew(home *h, int32_t at, int64_t t)
+{
+    run *r = h->keys[at].open;
+    h->last_rank++;
+    h->keys[at].rank = h->last_rank;
+    h->keys[at].occurred = t;
+    r->rank = h->last_rank;
+    r->occurred = t;
+    open_at(r, t);
+}
+
+/* Have an instance of a value that begins at the sample at `t`. */
+static void open_instance(home *h, int32_t at, int64_t t, bool is_known)
+{
+    const part_plan *p = h->part->plan;
+    run *made = forked(h->root);
+    if (is_known) {
+        take_from_over(h, at);
+    }
+    h->keys[at].open = made;
+    if (made == NULL) {
+        return;
+    }
+    made->captured[0] = h->keys[at].value;
+    made->rank = h->keys[at].rank;
+    made->occurred = h->keys[at].occurred;
+    made->key = at;
+    made->doubted = false;
+    made->starters = p->instance_starters;
+    made->judging = (p->captures.count > 0) ? 0 : p->instance_starters;
+    made->opens_at = NEVER;
+    if ((p->flags & PART_FRESH) != 0) {
+        /* What came since the last tick of a clock belongs to the next one. */
+        made->over = h->root->over;
+        made->at.gathered = h->root->at.gathered;
+        if ((made->truth_log != NULL) && made->at.started) {
+            made->truth_log->begun = made->at.position; /* what it would have seen before is lost */
+        }
+        if (made->at.started && (made->at.presence == ARE_THERE)) {
+            vary(made, made->at.position, made->at.gathered);
+        }
+    } else {
+        replay(made);
+        through(made, t - 1, false);
+    }
+    open_at(made, t);
+    enlist(made, false);
+}
+
+/* Have the instances that the sample at hand asks for; an occurrence of unknown value may be of any. */
+void open_instances(home *h, int64_t t)
+{
+    const part_plan *p = h->part->plan;
+    bool unknown = false;
+    int32_t i;
+    for (i = 0; i < h->inbox_count; i++) {
+        const incoming *in = &h->inbox[i];
+        const rv_update *u = in->update;
+        if (!in->event || (in->local != p->each_event) || (u->says == RV_SAYS_NO)
+            || ((u->says <= RV_SAYS_YES)
+                && is_lost_at(h->root, p->signals.count + in->local, t))) {
+            continue;
+        }
+        if ((u->says == RV_SAYS_YES) && (u->fields != NULL)
+            && (u->fields[p->each_field].kind != RV_UNKNOWN)) {
+            const rv_number *value = &u->fields[p->each_field];
+            int32_t at = find_key(h, value);
+            const bool is_known = at >= 0;
+            if (!is_known) {
+                at = add_key(h, value, t);
+            }
+            if ((at >= 0) && (h->keys[at].open == NULL)) {
+                open_instance(h, at, t, is_known);
+            } else if ((at >= 0) && (h->keys[at].open->occurred == NEVER)) {
+                open_anew(h, at, t);
+            } else {
+                /* It has begun. */
+            }
+        } else {
+            unknown = true;
+        }
+    }
+    if (unknown) {
+        open_unknown(h, t);
+    }
+}
+
+/* What occurs at `t` may be of any value. */
+void open_unknown(home *h, int64_t t)
+{
+    while ((h->oldest >= 0) && !h->monitor->spoilt) {
+        open_instance(h, h->oldest, t, true);
+    }
+    if (h->root->opens_at == NEVER) {
+        open_at(h->root, t);
+    }
+}
+
+/* What is said of an event of which this instance sees what has its value; -1: nothing. */
+int32_t concerning(const run *r, const rv_update *u)
+{
+    const rv_number *value;
+    if (u->says != RV_SAYS_YES) {
+        return (u->says == RV_SAYS_NO) ? -1 : u->says;
+    }
+    value = (u->fields == NULL) ? NULL : &u->fields[r->part->plan->each_field];
+    if ((value == NULL) || (value->kind == RV_UNKNOWN)) {
+        return RV_SAYS_UNKNOWN;
+    }
+    return same_number(value, &r->captured[0]) ? RV_SAYS_YES : -1;
+}
+
+static bool edges_agree(const edge *a, const edge *b)
+{
+    return (a->at == b->at) && (a->left == b->left) && (a->right == b->right)
+           && (a->apart == b->apart);
+}
+
+static bool stretches_agree(const stretches *a, const stretches *b)
+{
+    int32_t i;
+    if ((a->count != b->count) || (a->left != b->left) || (a->right != b->right)
+        || (a->growing != b->growing) || (a->apart != b->apart)) {
+        return false;
+    }
+    for (i = 0; i < a->count; i++) {
+        const stretch *one = &a->at[(a->head + i) & (a->room - 1)];
+        const stretch *other = &b->at[(b->head + i) & (b->room - 1)];
+        if ((one->begin != other->begin) || (one->end != other->end)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether nothing of an instance is still to come. */
+static bool is_quiet(const run *r)
+{
+    int32_t i;
+    if (r->opening || (r->asked > 0) || (r->first_child != NULL) || (r->repeating_count > 0)
+        || ((GAP(r) > 1) && (r->at.awaited < NEVER))) {
+        return false;
+    }
+    for (i = 0; i < r->part->plan->judges.count; i++) {
+        if ((next_open(r, i, -1) >= 0) || r->judges[i].running) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether an instance stands as one would that is made anew when its value occurs next. */
+bool is_over(const run *r)
+{
+    const part_plan *p = r->part->plan;
+    const run *root = r->home->root;
+    const int32_t *varying = LIST(PLAN(r), p->varying);
+    int32_t next = 0;
+    int32_t i;
+    if (!is_quiet(r) || (r->at.lost_count > 0) || (r->occurred == NEVER) || r->at.dense
+        || (r->at.presence != ARE_THERE)) {
+        return false;
+    }
+    for (i = 0; i < p->nodes.count; i++) {
+        if ((next < p->varying.count) && (varying[next] == i)) {
+            next++;
+        } else if (r->truth[i] != root->truth[i]) {
+            return false;
+        } else {
+            /* It depends on nothing of the instance's own. */
+        }
+    }
+    for (i = 0; i < p->seen; i++) {
+        if (r->seen[i] != root->seen[i]) {
+            return false;
+        }
+    }
+    for (i = 0; i < 2 * p->edges; i++) {
+        if (!edges_agree(&r->edges[i], &root->edges[i])) {
+            return false;
+        }
+    }
+    for (i = 0; i < 2 * p->stretches; i++) {
+        if (!stretches_agree(&r->past[i], &root->past[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Forget the value that was over first. */
+static void forget_oldest(home *h)
+{
+    const int32_t at = h->oldest;
+    int32_t *link = &h->heads[hash_of_key(&h->keys[at].value, h->key_room)];
+    while (*link != at) {
+        link = &h->keys[*link].next;
+    }
+    *link = h->keys[at].next;
+    take_from_over(h, at);
+    h->keys[at].next = h->free_key;
+    h->free_key = at;
+}
+
+/* Put a value behind those whose instance is over. */
+void put_over(home *h, int32_t at)
+{
+    key *k = &h->keys[at];
+    k->open = NULL;
+    k->older = h->newest;
+    k->newer = -1;
+    if (h->newest < 0) {
+        h->oldest = at;
+    } else {
+        h->keys[h->newest].newer = at;
+    }
+    h->newest = at;
+    h->over_count++;
+}
+
+/* Let go of an instance that is over; its value is remembered for a while. */
+void close_instance(run *r)
+{
+    home *h = r->home;
+    put_over(h, r->key);
+    delist(r, false);
+    while (h->over_count > MOST_OVER) {
+        forget_oldest(h);
+    }
+}
+
+/* The instance of a value; NULL: it has none. */
+run *instance_of(const home *h, const rv_number *value)
+{
+    const int32_t at = find_key(h, value);
+    return (at >= 0) ? h->keys[at].open : NULL;
+}

@@ -1,0 +1,120 @@
+/* Runs: a part of the plan over the samples, once, or once for each key and for each attempt with values of its own. */
+#ifndef RVMON_RUNS_H
+#define RVMON_RUNS_H
+
+#include "basics.h"
+
+/* ---- core.c */
+void settle_margins(rv_monitor *m, int64_t t);
+const subscription *subscriptions_of(const rv_monitor *m, int32_t name, int32_t *count);
+bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
+
+/* ---- positions.c: at which positions something can change */
+int64_t tick_from(int64_t gap, int64_t t);
+bool may_go_on(const run *r, int32_t index);
+void tidy_failing(run *r);
+int64_t next_start(const run *r);
+int64_t next_position(const run *r);
+void set_alarm(run *r, int64_t position);
+
+/* ---- clock.c */
+void clear_run(run *r);
+void clear_judges(run *r);
+int32_t followed(const run *r, int32_t index);
+void look_at_all(run *r);
+void touch_all(run *r, uint8_t what);
+void have_judged(run *r, int64_t t);
+void visit(run *r, int64_t t);
+void reach(run *r, int64_t t);
+void through(run *r, int64_t limit, bool comes);
+void approach(run *r, int64_t t);
+void arrive(run *r, int64_t t);
+int64_t next_decision(run *r);
+void settle_all(run *r, int64_t end, int64_t reached);
+bool was_heard(const run *r, int32_t index);
+
+/* ---- dense.c: outages where only samples are positions */
+bool make_nothing(home *h);
+bool begin_dense(rv_monitor *m, int64_t t);
+void pass_dense(rv_monitor *m, int64_t limit);
+void end_dense(rv_monitor *m);
+bool is_amid_dense(rv_monitor *m, int64_t t);
+void run_begin_dense(run *r, int64_t t);
+void run_pass_dense(run *r, int64_t limit);
+void run_end_dense(run *r, int64_t until);
+void run_take_amid(run *r, int64_t t, const incoming *in, int32_t count);
+void home_take_amid(home *h, int64_t t);
+int64_t last_position(const rv_monitor *m);
+
+/* ---- runs.c: made, forked, replayed, let go */
+run *new_run(home *h);
+run *forked(const run *r);
+void set_aside(home *h, run *r);
+void give(run *r, int64_t t, const incoming *in, int32_t count);
+
+/* ---- kept.c: samples for those that look at what was before */
+past_update *keep_one(home *h, int64_t t);
+void keep_updates(home *h, int64_t t);
+void keep_given(home *h, int64_t t);
+void replay(run *r);
+
+/* ---- waiting.c: samples that wait for the tick that sees them */
+bool holds_back(const home *h);
+void hold_back(home *h, int64_t t);
+void give_held(home *h, int64_t limit);
+void forget_given(home *h);
+
+/* ---- captured.c: attempts with captured values */
+bool starts_here(const run *r, int32_t index);
+void note_turn(run *r, int32_t at, int64_t t);
+void note_done(run *r, int32_t at);
+void flush_turns(home *h);
+void begin_captured(run *r, int32_t index, int64_t t, int64_t triggered);
+void look_after(run *r, int64_t t);
+void mark_lapsed(run *r);
+void forget_last(run *r);
+bool is_idle(const run *r);
+void let_go(run *r);
+void adopt(run *parent, run *child);
+
+/* ---- keys.c: instances of a `for each` */
+bool begin_keys(home *h);
+int32_t key_again(home *h, const rv_number *value, int64_t occurred, uint32_t rank);
+void put_over(home *h, int32_t at);
+void open_instances(home *h, int64_t t);
+void open_unknown(home *h, int64_t t);
+void close_instance(run *r);
+bool is_over(const run *r);
+run *instance_of(const home *h, const rv_number *value);
+void open_at(run *r, int64_t t);
+bool was_swallowed(run *r, int64_t t);
+int32_t concerning(const run *r, const rv_update *u);
+
+/* ---- crowd.c: which runs a part has, and which of them a call concerns */
+bool register_run(home *h, run *r);
+void touch_run(run *r);
+void enlist(run *r, bool captured);
+void delist(run *r, bool captured);
+void set_alarms(home *h);
+int32_t call_due(home *h, int64_t t);
+int32_t call_concerned(home *h, int64_t t);
+void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t));
+
+/* ---- homes.c: all runs of a part */
+bool home_begin(home *h);
+bool home_reserve(home *h, int32_t attempts);
+void home_mark_absent(home *h, bool event, int32_t local);
+void home_sample(home *h, int64_t t);
+void take_inbox(home *h, int64_t t);
+void lose_inbox(home *h, int64_t t);
+void home_wait(home *h, int64_t t);
+void home_lose(home *h, int64_t t);
+void home_begin_blank(home *h, int64_t t);
+void rest_all(home *h);
+void untouch_all(home *h);
+void home_come_to(home *h, int64_t end);
+void home_close(home *h, int64_t end, int64_t reached);
+int64_t home_due(home *h);
+run *following(const home *h, const run *r);
+
+#endif

@@ -1,0 +1,271 @@
+/* The runs of a part in a snapshot, the values of `for each`, and samples that are kept. */
+#include "formulas/formulas.h"
+#include "runs/runs.h"
+#include "snapshot/snapshot.h"
+
+#include <string.h>
+
+/* What is kept of an update. */
+static void carry_kept(carrier *c, home *h, past_update *one)
+{
+    const part_plan *p = h->part->plan;
+    int32_t fields;
+    int32_t i;
+    bool given = one->fields != NULL;
+    carry_instant(c, &one->t);
+    carry_flag(c, &one->event);
+    carry_int(c, &one->local, -1, one->event ? p->events.count : p->signals.count);
+    carry_int(c, &one->says, RV_SAYS_NO, SAYS_SPARSE + 1);
+    carry_flag(c, &one->last);
+    if (!one->event && (one->says == RV_SAYS_YES)) {
+        carry_number(c, &one->value);
+    }
+    carry_flag(c, &given);
+    demand(c, (one->local >= 0) || (one->last && !given));
+    demand(c, (one->local >= 0) || ((one->says != SAYS_LOST) && (one->says != SAYS_FOUND)));
+    demand(c, !given || one->event);
+    if (!given || is_lost(c)) {
+        return;
+    }
+    fields = h->part->events[one->local].fields;
+    if (c->reading) {
+        one->fields = arena_take(&c->m->memory, (size_t)fields * sizeof *one->fields);
+        c->m->spoilt = c->m->spoilt || (one->fields == NULL);
+    }
+    for (i = 0; (i < fields) && !is_lost(c); i++) {
+        carry_number(c, (rv_number *)(uintptr_t)&one->fields[i]);
+    }
+}
+
+/* Whether what is kept can be told again: in order, an outage after the other, the trace beginning once
+ * where there is a clock. `longest`: so many updates has a sample. */
+static bool is_in_turn(const home *h, int32_t *longest)
+{
+    const bool clocked = h->monitor->plan.header->gap > 0;
+    int64_t before = -LIMIT;
+    int32_t first = 0;
+    bool dense = false;
+    int32_t i;
+    *longest = 0;
+    for (i = 0; i < h->past_count; i++) {
+        const past_update *one = &h->past[i];
+        const bool begins = (i == 0) || h->past[i - 1].last;
+        first = begins ? i : first;
+        *longest = (i + 1 - first > *longest) ? i + 1 - first : *longest;
+        if ((one->t < before) || ((one->local < 0) && !begins)
+            || ((one->says == SAYS_AHEAD) && !clocked)
+            || ((one->says == SAYS_DENSE) && (clocked || dense))
+            || ((one->says == SAYS_SPARSE) && !dense)) {
+            return false;
+        }
+        dense = (one->says == SAYS_DENSE) || (dense && (one->says != SAYS_SPARSE));
+        before = one->t;
+    }
+    return true;
+}
+
+static void carry_past_updates(carrier *c, home *h)
+{
+    int32_t count = h->past_count;
+    int32_t longest = 0;
+    int32_t i;
+    carry_size(c, &count, MOST, 18);
+    for (i = 0; (i < count) && !is_lost(c); i++) {
+        past_update *one = c->reading ? keep_one(h, 0) : &h->past[i];
+        if (one != NULL) {
+            carry_kept(c, h, one);
+        }
+    }
+    carry_int(c, &h->given, 0, (int64_t)count + 1);
+    if (c->reading && !is_lost(c)) {
+        demand(c, is_in_turn(h, &longest));
+        h->inbox = enlarged(c->m, h->inbox, &h->inbox_room, longest, sizeof *h->inbox);
+    }
+}
+
+/* Values that are over, the oldest first. */
+static void carry_over(carrier *c, home *h)
+{
+    int32_t count = h->over_count;
+    int32_t at = h->oldest;
+    int32_t i;
+    carry_size(c, &count, MOST, 13);
+    for (i = 0; (i < count) && !is_lost(c); i++) {
+        key one = {{RV_UNKNOWN, {0}}, 0, NULL, 0, -1, -1, -1};
+        if (!c->reading) {
+            one = h->keys[at];
+            at = one.newer;
+        }
+        carry_number(c, &one.value);
+        carry_instant(c, &one.occurred);
+        carry_count(c, &one.rank);
+        demand(c, one.value.kind != RV_UNKNOWN);
+        if (c->reading && !is_lost(c)) {
+            const int32_t made = key_again(h, &one.value, one.occurred, one.rank);
+            demand(c, made >= 0);
+            if (made >= 0) {
+                put_over(h, made);
+            }
+        }
+    }
+}
+
+/* A run that is read; NULL: memory is short. */
+static run *blank_run(home *h)
+{
+    run *made = new_run(h);
+    if (made != NULL) {
+        clear_run(made);
+        made->cut = NEVER;
+        made->key = -1;
+    }
+    return made;
+}
+
+static void carry_instance(carrier *c, home *h, run *r)
+{
+    const part_plan *p = h->part->plan;
+    carry_number(c, &r->captured[0]);
+    demand(c, r->captured[0].kind != RV_UNKNOWN);
+    if (c->reading) {
+        r->starters = p->instance_starters;
+        r->judging = (p->captures.count > 0) ? 0 : p->instance_starters;
+        enlist(r, false);
+    }
+    carry_run(c, r);
+    if (c->reading && !is_lost(c)) {
+        r->key = key_again(h, &r->captured[0], r->occurred, r->rank);
+        demand(c, r->key >= 0);
+        if (r->key >= 0) {
+            h->keys[r->key].open = r;
+        }
+    }
+}
+
+/* A run of one attempt; `parent` is the number of the one that it was triggered in. */
+static void carry_child(carrier *c, home *h, run *r, int32_t parent)
+{
+    const part_plan *p = h->part->plan;
+    int32_t i;
+    carry_int(c, &r->judged, 0, p->judges.count);
+    for (i = p->each; i < p->captured; i++) {
+        carry_number(c, &r->captured[i]);
+    }
+    if (c->reading) {
+        run *own = h->runs[parent];
+        r->judging = 1 << r->judged;
+        r->doubted = own->doubted;
+        r->key = own->key;
+        if (p->each != 0) {
+            r->captured[0] = own->captured[0];
+        }
+        adopt(own, r);
+        enlist(r, true);
+    }
+    carry_run(c, r);
+}
+
+/* Number all runs as they are numbered once they are read. */
+static void number_runs(home *h)
+{
+    int32_t number = 0;
+    run *one;
+    for (one = h->root; one != NULL; one = following(h, one)) {
+        h->called[one->id] = number;
+        number++;
+    }
+}
+
+static int32_t length_of(const run *first)
+{
+    const run *one;
+    int32_t count = 0;
+    for (one = first; one != NULL; one = one->next) {
+        count++;
+    }
+    return count;
+}
+
+static void carry_runs(carrier *c, home *h)
+{
+    const part_plan *p = h->part->plan;
+    int32_t instances = c->reading ? 0 : length_of(h->root) - 1;
+    int32_t children = c->reading ? 0 : length_of(h->captured);
+    run *one = c->reading ? NULL : h->root->next;
+    int32_t i;
+    number_runs(h);
+    carry_run(c, h->root);
+    carry_size(c, &instances, (p->each != 0) ? MOST : 0, 9);
+    for (i = 0; (i < instances) && !is_lost(c); i++) {
+        one = c->reading ? blank_run(h) : one;
+        if (one != NULL) {
+            carry_instance(c, h, one);
+            one = one->next;
+        }
+    }
+    one = h->captured;
+    carry_size(c, &children, (p->captures.count > 0) ? MOST : 0, 8);
+    for (i = 0; (i < children) && !is_lost(c); i++) {
+        int32_t parent = c->reading ? 0 : h->called[one->parent->id];
+        carry_int(c, &parent, 0, (int64_t)instances + 1);
+        one = c->reading ? blank_run(h) : one;
+        if ((one != NULL) && !is_lost(c)) {
+            carry_child(c, h, one, parent);
+            one = one->next;
+        }
+    }
+    if (!is_lost(c)) {
+        carry_timers(c, &h->alarms, 1 + instances + children, h->called);
+    }
+}
+
+/* Whether all that a part had to do by then is done: else it would be caught up with, however long ago
+ * that was. */
+static bool is_caught_up(const home *h)
+{
+    const rv_monitor *m = h->monitor;
+    const run *one;
+    for (one = h->root; one != NULL; one = following(h, one)) {
+        if (one->at.dense != (m->dense_until != RV_NO_TIME)) {
+            return false;
+        }
+        if (one->at.started && !one->at.dense && (m->plan.header->gap == 0)
+            && (last_position(m) == RV_NO_TIME)) {
+            return false;
+        }
+        if (one->at.started && (one->at.position > m->reached)) {
+            return false;
+        }
+        if (!holds_back(h) && !one->at.dense /* samples amid an outage do not take it on */
+            && ((next_position(one) < m->reached) || (timers_next(&one->rules) < m->reached))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void carry_home(carrier *c, home *h)
+{
+    carry_long(c, &h->previous, RV_NO_TIME, LIMIT);
+    carry_long(c, &h->alarm, -LIMIT, NEVER);
+    carry_count(c, &h->count);
+    carry_count(c, &h->doubts);
+    carry_count(c, &h->passed);
+    carry_count(c, &h->failed);
+    carry_count(c, &h->inconclusive);
+    if (h->part->plan->each != 0) {
+        carry_over(c, h);
+    }
+    if (h->unknowns != NULL) {
+        carry_unknowns(c, h);
+    }
+    carry_runs(c, h);
+    carry_watch(c, h);
+    carry_count(c, &h->last_rank);
+    carry_past_updates(c, h);
+    if (c->reading && !is_lost(c)) {
+        const bool was_dense = (c->m->dense_until != RV_NO_TIME) || (c->m->dense_end != RV_NO_TIME);
+        demand(c, c->m->finished || is_caught_up(h));
+        c->m->spoilt = c->m->spoilt || (was_dense && !make_nothing(h));
+    }
+}

@@ -1,0 +1,244 @@
+/* What judges attempts in a snapshot, and the attempts that are open. */
+#include "attempts/queue.h"
+#include "snapshot/snapshot.h"
+#include "windows/windows.h"
+
+#include <string.h>
+
+/* The automaton of a judge; NULL: it has none. */
+static const automaton_plan *automaton_of(const run *r, int32_t index)
+{
+    const int32_t number = r->part->judges[index].automaton;
+    return (number >= 0) ? &PLAN(r)->automata[number] : NULL;
+}
+
+/* The clocks of one reading of an attempt, as many as its location has; of a form, its position. */
+static void carry_clocks(carrier *c, const run *r, int32_t index, int32_t location, int64_t *clocks)
+{
+    const bool by_automaton = automaton_of(r, index) != NULL;
+    const int32_t width = by_automaton ? r->part->machines[index].widths[location] : 1;
+    const int64_t most = by_automaton ? LIMIT : positions_within(step_of(r));
+    int32_t i;
+    for (i = 0; i < width; i++) {
+        carry_long(c, &clocks[i], 1 - most, most - 1);
+    }
+}
+
+static void carry_attempt(carrier *c, run *r, int32_t index, int32_t at)
+{
+    judge *j = &r->judges[index];
+    attempt *x = attempt_at(r->home, at);
+    const automaton_plan *a = automaton_of(r, index);
+    const int32_t locations = (a != NULL) ? a->locations : WAITING + 1;
+    bool current = is_current(r, index, at);
+    carry_instant(c, &x->triggered);
+    carry_long(c, &x->due, -LIMIT, NEVER);
+    carry_count(c, &x->number);
+    carry_int(c, &x->location, 0, locations);
+    carry_int(c, &x->better, 0, locations);
+    carry_flag(c, &x->parted);
+    carry_flag(c, &x->sure);
+    carry_flag(c, &x->trigger_unknown);
+    carry_flag(c, &x->cannot_pass);
+    carry_instant_or(c, &x->doubted_at, RV_NO_TIME);
+    carry_flag(c, &current);
+    if (c->refused) {
+        return;
+    }
+    carry_clocks(c, r, index, x->location, x->clocks);
+    if (x->parted && (a != NULL)) {
+        carry_clocks(c, r, index, x->better, x->clocks + r->part->plan->clocks);
+    }
+    if (r->part->plan->captured > 0) {
+        carry_count(c, &r->home->turns[at].doubt_number);
+    }
+    if (c->reading && current) {
+        demand(c, (j->current < 0) && runs_on(r, index));
+        j->current = at;
+    }
+}
+
+/* A place for an attempt that is read, behind others; -1: memory is short. */
+static int32_t appended(run *r, int32_t *first, int32_t last)
+{
+    const int32_t at = place_taken(r);
+    if (at >= 0) {
+        (void)memset(attempt_at(r->home, at), 0, r->home->stride);
+        attempt_at(r->home, at)->next = -1;
+        if (r->part->plan->captured > 0) {
+            (void)memset(&r->home->turns[at], 0, sizeof *r->home->turns);
+            r->home->turns[at].judge = r;
+        }
+        if (last < 0) {
+            *first = at;
+        } else {
+            attempt_at(r->home, last)->next = at;
+        }
+    }
+    return at;
+}
+
+/* Attempts in a list; returns the last one. */
+static int32_t carry_attempts(carrier *c, run *r, int32_t index, int32_t *first)
+{
+    int32_t count = 0;
+    int32_t last = -1;
+    int32_t at;
+    int32_t i;
+    for (at = c->reading ? -1 : *first; at >= 0; at = attempt_at(r->home, at)->next) {
+        count++;
+    }
+    carry_size(c, &count, MOST, 34);
+    at = *first;
+    for (i = 0; (i < count) && !is_lost(c); i++) {
+        at = c->reading ? appended(r, first, last) : at;
+        if (at >= 0) {
+            carry_attempt(c, r, index, at);
+            last = at;
+            at = attempt_at(r->home, at)->next;
+        }
+    }
+    return last;
+}
+
+/* Attempts in segments: the oldest come first. */
+static void carry_queue(carrier *c, run *r, int32_t index)
+{
+    queue *q = r->judges[index].queue;
+    const int32_t locations = automaton_of(r, index)->locations;
+    int32_t count = q->count;
+    int32_t left;
+    int64_t before = -LIMIT;
+    int32_t i;
+    carry_size(c, &count, MOST, 12);
+    for (i = 0; (i < count) && !is_lost(c); i++) {
+        queued *one = next_queued(c->m, q, i, c->reading);
+        if (one != NULL) {
+            carry_instant(c, &one->triggered);
+            carry_count(c, &one->number);
+            demand(c, one->triggered >= before);
+            before = one->triggered;
+        }
+    }
+    carry_int(c, &q->segment_count, 0, SEGMENTS_MOST + 1);
+    left = count;
+    for (i = 0; (i < q->segment_count) && !is_lost(c); i++) {
+        carry_int(c, &q->segments[i].location, WAITING, locations);
+        carry_int(c, &q->segments[i].count, 1, (int64_t)left + 1);
+        left -= q->segments[i].count;
+    }
+    demand(c, left == 0);
+}
+
+static void carry_counts(carrier *c, judge *j)
+{
+    carry_count(c, &j->count);
+    carry_count(c, &j->doubts);
+    carry_count(c, &j->passed);
+    carry_count(c, &j->failed);
+    carry_count(c, &j->inconclusive);
+}
+
+/* Whether the first attempt of those that stay open for good is found again from there. */
+static bool is_laid_aside(const run *r, int32_t index, int32_t wanted)
+{
+    int32_t at = r->judges[index].undecidable;
+    while ((at >= 0) && (at != wanted)) {
+        at = attempt_at(r->home, at)->next;
+    }
+    return at >= 0;
+}
+
+/* Whether what drives a judge on makes progress by what was read. */
+static bool is_driven(const run *r, int32_t index)
+{
+    const judge *j = &r->judges[index];
+    const int64_t due = r->rules.due[index];
+    const bool blank = (r->at.presence != ARE_THERE) && (GAP(r) > 0);
+    if (blank && (j->current >= 0) && !is_laid_aside(r, index, j->current)) {
+        return false;
+    }
+    if (is_chained(r, index) && (j->first >= 0) && (j->chain == NULL)) {
+        return false;
+    }
+    if ((j->first >= 0) && !queue_is_empty(j)) {
+        return false;
+    }
+    if ((due < LIMIT) && (j->lag >= due + LIMIT)) {
+        return false;
+    }
+    return (GAP(r) == 0) || (automaton_of(r, index) == NULL) || !has_attempts(j) || (due > j->position);
+}
+
+static void carry_judge(carrier *c, run *r, int32_t index)
+{
+    judge *j = &r->judges[index];
+    const automaton_plan *a = automaton_of(r, index);
+    const int32_t classes = (a != NULL) ? a->classes : 1;
+    carry_long(c, &j->position, -LIMIT, LIMIT - 1);
+    carry_long(c, &j->lag, 0, NEVER);
+    carry_instant_or(c, &j->failed_at, NEVER);
+    carry_int(c, &j->letter, 0, classes);
+    carry_int(c, &j->other, 0, classes);
+    carry_counts(c, j);
+    carry_byte(c, &j->before, IS_TRUE);
+    carry_flag(c, &j->running);
+    carry_flag(c, &j->restless);
+    carry_flag(c, &j->slides);
+    carry_flag(c, &j->sorted);
+    carry_flag(c, &j->blind);
+    j->last = carry_attempts(c, r, index, &j->first);
+    (void)carry_attempts(c, r, index, &j->undecidable);
+    if (j->queue != NULL) {
+        carry_queue(c, r, index);
+    }
+    if (is_chained(r, index)) {
+        carry_chain(c, r, index);
+    } else if (is_networked(r, index)) {
+        const form f = form_of(r, index);
+        carry_networks(c, &f, &j->net);
+    } else {
+        /* An automaton has no more. */
+    }
+    if (j->noting != NULL) {
+        carry_noting(c, r, index);
+    }
+    if (c->reading && !is_lost(c)) {
+        demand(c, c->m->finished || is_driven(r, index));
+    }
+}
+
+/* Who is to look at the next position, and what was touched since the last one. */
+static void carry_calls(carrier *c, run *r)
+{
+    const int32_t judges = r->part->plan->judges.count;
+    /* Where all is unknown nobody looks again because of what was true. */
+    const bool repeats = (r->at.presence == ARE_THERE) && !r->at.dense;
+    int32_t none = 0;
+    int32_t i;
+    carry_list(c, r->touched, &r->touched_count, judges, NULL);
+    for (i = 0; (i < r->touched_count) && !is_lost(c); i++) {
+        judge *j = &r->judges[r->touched[i]];
+        carry_byte(c, &j->touched, TOUCHED_LETTER | TOUCHED_TRIGGER);
+        demand(c, j->touched != 0U);
+    }
+    carry_list(c, r->restless, &r->restless_count, judges, NULL);
+    for (i = 0; i < r->restless_count; i++) {
+        r->judges[r->restless[i]].is_restless_listed = true;
+    }
+    carry_list(c, r->failing, &r->failing_count, judges, NULL);
+    for (i = 0; i < r->failing_count; i++) {
+        r->judges[r->failing[i]].is_failing_listed = true;
+    }
+    carry_list(c, r->repeating, repeats ? &r->repeating_count : &none, repeats ? judges : 0, NULL);
+}
+
+void carry_judges(carrier *c, run *r)
+{
+    int32_t i;
+    carry_timers(c, &r->rules, r->part->plan->judges.count, NULL);
+    for (i = 0; (i < r->part->plan->judges.count) && !is_lost(c); i++) {
+        carry_judge(c, r, i);
+    }
+    carry_calls(c, r);
+}

@@ -1,0 +1,265 @@
+/* Attempts that a chain of windows judges; see chain.c. */
+#include "windows/windows.h"
+
+#include <string.h>
+
+bool is_chained(const run *r, int32_t index)
+{
+    const judge_plan *j = &r->part->judges[index];
+    return (j->automaton < 0) && (r->part->forms[j->form].windows.count > 0);
+}
+
+chaining chaining_of(run *r, int32_t index)
+{
+    chaining g;
+    g.r = r;
+    g.j = &r->judges[index];
+    g.c = g.j->chain;
+    g.index = index;
+    g.f = form_of(r, index);
+    g.windows = LIST(g.f.plan, g.f.form->windows);
+    g.depth = g.f.form->windows.count;
+    g.sparse = g.f.gap == 0;
+    return g;
+}
+
+/* The chain of a judge, made when it is used first; NULL: memory is short. */
+chain *made_chain(const chaining *g)
+{
+    arena *a = &g->f.monitor->memory;
+    chain *made = arena_take(a, sizeof *made);
+    int32_t i;
+    if (made != NULL) {
+        made->values = arena_take(a, (size_t)g->f.form->base + 1);
+        for (i = 0; i < 2; i++) {
+            made->readings[i].levels =
+                arena_take(a, (size_t)(g->depth + 1) * sizeof *made->readings[i].levels);
+        }
+    }
+    if ((made == NULL) || (made->values == NULL) || (made->readings[0].levels == NULL)
+        || (made->readings[1].levels == NULL)) {
+        g->f.monitor->spoilt = true;
+        return NULL;
+    }
+    return made;
+}
+
+static uint8_t leaf_bits(const chaining *g, const operator_plan *n)
+{
+    return (uint8_t)n->values[(n->right < 0) ? 0 : (int32_t)g->r->truth[n->right]];
+}
+
+/* The base as the letter makes it: 1 if it is true for the worse, and 2 for the better. */
+static uint8_t base_bits(const chaining *g)
+{
+    const int32_t base = g->f.form->base;
+    int32_t i;
+    int32_t k;
+    for (i = 0; i <= base; i++) {
+        const operator_plan *n = &g->f.nodes[i];
+        uint8_t bits = 0;
+        if (n->kind == OP_LEAF) {
+            bits = leaf_bits(g, n);
+        } else if (n->kind == OP_JUNCTION) {
+            const int32_t *operands = LIST(g->f.plan, n->operands);
+            bits = (n->turned != 0) ? 3 : 0;
+            for (k = 0; k < n->operands.count; k++) {
+                const uint8_t one = g->c->values[operands[k]];
+                bits = (uint8_t)((n->turned != 0) ? (bits & one) : (bits | one));
+            }
+        } else {
+            /* Nothing of the base. */
+        }
+        g->c->values[i] = bits;
+    }
+    return g->c->values[base];
+}
+
+static int64_t position_of_attempt(const attempt *x)
+{
+    return x->clocks[0];
+}
+
+/* The instant of a stamp, before 0 too. */
+static int64_t instant_of_stamp(int64_t stamp)
+{
+    return (stamp - (stamp & 1)) / 2;
+}
+
+/* Judge one attempt by a stamp; false if it was decided. `due` is the stamp at which it will be if the
+ * letter stays. */
+static bool weigh_in_chain(chaining *g, int32_t at, int64_t limit, int64_t *due)
+{
+    attempt *x = attempt_at(g->r->home, at);
+    const int64_t position = position_of_attempt(x);
+    int64_t worse_stamp = NEVER_KNOWN;
+    int64_t better_stamp = NEVER_KNOWN;
+    int64_t stamp;
+    bool worse = false;
+    bool better = true;
+    /* What is known of a reading may be forgotten since. */
+    if (x->location != FAILED) {
+        worse = outcome_of(g, &g->c->readings[0], position, &worse_stamp);
+    }
+    if (!g->c->parted && !x->parted) {
+        better = worse;
+        better_stamp = worse_stamp;
+    } else if (x->better != PASSED) {
+        better = outcome_of(g, &g->c->readings[g->c->parted ? 1 : 0], position, &better_stamp);
+    } else {
+        /* It is known to be true for the better. */
+    }
+    stamp = least(worse ? worse_stamp : NEVER_KNOWN, better ? NEVER_KNOWN : better_stamp);
+    if (stamp <= limit) {
+        decide(g->r, g->index, at, worse && (stamp == worse_stamp),
+               later(instant_of_stamp(stamp), position * g->f.step));
+        return false;
+    }
+    if (g->c->parted || x->parted) {
+        const bool fails = !worse && (worse_stamp <= limit);
+        const bool holds = better && (better_stamp <= limit);
+        x->location = fails ? FAILED : x->location;
+        x->better = holds ? PASSED : x->better;
+        x->parted = x->parted || fails || holds;
+    }
+    *due = stamp;
+    return true;
+}
+
+/* Judge the attempts by all that is known as of a stamp. */
+static void look_through(chaining *g, int64_t limit)
+{
+    int64_t next_due = NEVER_KNOWN;
+    int32_t before = -1;
+    int32_t at = g->j->first;
+    while (at >= 0) {
+        const int32_t next = attempt_at(g->r->home, at)->next;
+        int64_t due = NEVER_KNOWN;
+        if (g->f.monitor->spoilt) {
+            break;
+        }
+        if (!weigh_in_chain(g, at, limit, &due)) {
+            leave(g->r, g->index, before, at);
+        } else if (is_undecidable(attempt_at(g->r->home, at))) {
+            lay_aside(g->r, g->index, before, at);
+        } else {
+            next_due = least(next_due, due);
+            before = at;
+            if (!g->c->parted && !attempt_at(g->r->home, at)->parted) {
+                break; /* what is known is known in order */
+            }
+        }
+        at = next;
+    }
+    set_rule_due(g->r, g->index, (next_due == NEVER_KNOWN) ? NEVER : instant_of_stamp(next_due));
+}
+
+static void read_letter(const chaining *g, uint8_t *letter)
+{
+    const form_plan *own = g->f.form;
+    letter[BASE] = base_bits(g);
+    letter[LEFT] = (own->left < 0) ? 0 : leaf_bits(g, &g->f.nodes[own->left]);
+    letter[EXCUSED] = (own->excused < 0) ? 0 : leaf_bits(g, &g->f.nodes[own->excused]);
+}
+
+/* Begin at a position: no attempt asks for what was before. */
+static void begin_chain(const chaining *g, int64_t position, const uint8_t *letter)
+{
+    chain *c = g->c;
+    (void)memcpy(c->letter, letter, FOLLOWED);
+    c->begun = true;
+    c->parted = !is_known(letter);
+    clear_changes(&c->stamps, false);
+    begin_reading(g, &c->readings[0], position, 1);
+    begin_reading(g, &c->readings[1], position, 2);
+    if (g->sparse) {
+        add_change(g->f.monitor, &c->stamps, position);
+    }
+}
+
+/* Come to the position at `t`, at which the truths are. */
+void chain_visit(run *r, int32_t index, int64_t t)
+{
+    chaining g = chaining_of(r, index);
+    const int64_t position = (g.f.gap > 0) ? floored(t, g.f.step) : t;
+    uint8_t letter[FOLLOWED];
+    if (g.c == NULL) {
+        g.c = made_chain(&g);
+        g.j->chain = g.c;
+        if (g.c == NULL) {
+            return;
+        }
+    }
+    read_letter(&g, letter);
+    if (!g.c->begun || (g.j->first < 0)) {
+        begin_chain(&g, position, letter);
+    } else if (g.j->position == t) {
+        return;
+    } else {
+        if (g.c->parted) {
+            look_through(&g, 2 * t); /* see who stays open for good, before that is forgotten */
+        }
+        if (g.sparse) {
+            add_change(g.f.monitor, &g.c->stamps, position);
+        }
+        if (memcmp(letter, g.c->letter, sizeof letter) != 0) {
+            note_letter(&g, position, letter);
+        } else if (g.sparse) {
+            forget_before(&g, position);
+        } else if (t < r->rules.due[index]) {
+            g.j->position = t;
+            return; /* another letter like the last one decides nothing sooner */
+        } else {
+            /* Something is due. */
+        }
+    }
+    g.j->position = t;
+    g.j->restless = false;
+    if (g.sparse) {
+        set_restless(r, index);
+    }
+    look_through(&g, 2 * t + 1);
+}
+
+/* Let time come to `t`; if `is_position`, the letter stays up to there. */
+void chain_pass(run *r, int32_t index, int64_t t, bool is_position)
+{
+    chaining g = chaining_of(r, index);
+    if ((g.j->first >= 0) && (g.c != NULL)) {
+        look_through(&g, (is_position && !g.sparse) ? 2 * t + 1 : 2 * t);
+    }
+}
+
+/* Let an attempt begin at the position at `t`, to which its chain has come. */
+bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
+{
+    chaining g = chaining_of(r, index);
+    attempt *x = attempt_at(r->home, at);
+    int64_t due = NEVER_KNOWN;
+    if ((g.c == NULL) || g.f.monitor->spoilt) {
+        return true; /* the run is spoilt */
+    }
+    x->clocks[0] = (g.f.gap > 0) ? floored(t, g.f.step) : t;
+    if (!weigh_in_chain(&g, at, 2 * t + 1, &due)) {
+        return false;
+    }
+    x->due = (due == NEVER_KNOWN) ? NEVER : instant_of_stamp(due);
+    return true;
+}
+
+/* Whether an attempt was kept up to the end of the trace, so far as that is known. */
+bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached)
+{
+    chaining g = chaining_of(r, index);
+    const chain_reading *w;
+    int64_t position;
+    int64_t last;
+    if ((g.c == NULL) || (g.f.form->left < 0) || (x->location == FAILED) || g.f.monitor->spoilt) {
+        return false;
+    }
+    w = &g.c->readings[0];
+    position = later(position_of_attempt(x), w->start);
+    last = (g.f.gap > 0) ? floored(end, g.f.step) : last_change(&g.c->stamps);
+    return (first_failure(&g, w, position) > last)
+           && (known_between(&g, w, position, last + 1) <= later(2 * reached, 2 * end + 1));
+}

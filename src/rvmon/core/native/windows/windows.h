@@ -1,0 +1,61 @@
+/* Chains of windows: what chain.c, changes.c and windows.c share. */
+#ifndef RVMON_WINDOWS_H
+#define RVMON_WINDOWS_H
+
+#include "networks/network.h"
+
+/* ---- windows.c: attempts that a chain of windows judges */
+bool is_chained(const run *r, int32_t index);
+void chain_visit(run *r, int32_t index, int64_t t);
+void chain_pass(run *r, int32_t index, int64_t t, bool is_position);
+bool chain_enter(run *r, int32_t index, int32_t at, int64_t t);
+bool chain_outlasts(run *r, int32_t index, const attempt *x, int64_t end, int64_t reached);
+
+/* Behind all stamps. */
+#define NEVER_KNOWN (NEVER - 1)
+
+/* What of a letter is followed. */
+enum { BASE, LEFT, EXCUSED, FOLLOWED };
+
+/* A judge with its chain. */
+typedef struct {
+    run *r;
+    judge *j;
+    chain *c;
+    int32_t index;
+    form f;
+    const int32_t *windows;    /* operators, the innermost first */
+    int32_t depth;
+    bool sparse;               /* only samples are positions */
+} chaining;
+
+static inline int64_t later(int64_t a, int64_t b)
+{
+    return (a > b) ? a : b;
+}
+
+/* ---- changes.c */
+int64_t change_at(const changes *c, int32_t i);
+int64_t last_change(const changes *c);
+void add_change(rv_monitor *m, changes *c, int64_t position);
+void copy_changes(rv_monitor *m, changes *made, const changes *c);
+bool changes_agree(const changes *a, const changes *b);
+void clear_changes(changes *c, bool value);
+int32_t changes_until(const changes *c, int64_t position);
+bool value_behind(const changes *c, int32_t count);
+void drop_changes(changes *c, int64_t position);
+
+/* ---- chain.c */
+void begin_reading(const chaining *g, chain_reading *w, int64_t position, int32_t bit);
+void forget_before(const chaining *g, int64_t position);
+bool is_known(const uint8_t *letter);
+void note_letter(const chaining *g, int64_t position, const uint8_t *letter);
+int64_t first_failure(const chaining *g, const chain_reading *w, int64_t position);
+int64_t known_between(const chaining *g, const chain_reading *w, int64_t first, int64_t behind);
+bool outcome_of(const chaining *g, const chain_reading *w, int64_t at, int64_t *stamp);
+
+/* ---- windows.c */
+chaining chaining_of(run *r, int32_t index);
+chain *made_chain(const chaining *g);
+
+#endif
