@@ -16,7 +16,6 @@ import itertools
 import random
 import re
 import resource
-import shutil
 import subprocess
 import sys
 import tempfile

@@ -148,7 +148,14 @@ def program(folder: Path, names: Sequence[str]) -> Path:
     planned = planned_core(compiled, names)
     (folder / "pattern.h").write_text("\n".join(_header(planned)))
     sources = [f"{amalgamate.FOLDER}/{name}" for name in amalgamate.core_files()]
-    words = ["cc", "-std=gnu99", "-O2", "-ffp-contract=off", "-I", str(folder), "-I", amalgamate.FOLDER]
+    words = [
+        "cc",
+        "-std=gnu99",
+        "-O2",
+        "-ffp-contract=off",
+        f"-I{folder}",
+        f"-I{amalgamate.FOLDER}",
+    ]
     words += [*sources, str(Path(__file__).with_suffix(".c"))]
     subprocess.run([*words, "-lm", "-o", str(folder / "soak")], check=True)
     return folder / "soak"

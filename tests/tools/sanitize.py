@@ -29,7 +29,8 @@ def main() -> int:
     shutil.rmtree(COPY, ignore_errors=True)
     ignored = shutil.ignore_patterns("__pycache__", "*.so")
     shutil.copytree(ROOT / "src", COPY / "src", ignore=ignored)
-    (COPY / "src" / "rvmon" / "core" / "native" / "memory.c").write_text(guarded_memory(), encoding="utf-8")
+    memory = COPY / "src" / "rvmon" / "core" / "native" / "memory.c"
+    memory.write_text(guarded_memory(), encoding="utf-8")
     shutil.copy2(ROOT / "hatch_build.py", COPY)
     environment = {**os.environ, "CC": "gcc", "CFLAGS": FLAGS}
     built = [sys.executable, str(COPY / "hatch_build.py")]

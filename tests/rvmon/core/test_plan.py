@@ -316,7 +316,8 @@ def check(tmp_path_factory):
         "-fsanitize=undefined",
         "-fsanitize-undefined-trap-on-error",
     ]
-    command = ["gcc", *STRICT, *flags, f"-I{amalgamate.FOLDER}", *sources, "-o", str(library), "-lm"]
+    flags.append(f"-I{amalgamate.FOLDER}")
+    command = ["gcc", *STRICT, *flags, *sources, "-o", str(library), "-lm"]
     subprocess.run(command, check=True)  # noqa: S603
     function = ctypes.CDLL(str(library)).rv_plan_check
     function.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
