@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from threading import Lock, Thread
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -188,16 +187,11 @@ class DdsSource:
             kind = _idl_type("std_msgs/msg/String", ())
             self._writer.write(kind(data=msgspec.json.encode(judgement.to_dict()).decode()))
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._stops = True
         self._wake.set(True)
         self._thread.join()
-        for reader, _ in self._readers.values():
+        for reader, _topic in self._readers.values():
             reader.set_listener(None)  # one that is freed would be called: readers live on longer
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 from dataclasses import dataclass
 from threading import Event
-from types import TracebackType
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
@@ -199,11 +198,6 @@ class MqttSource:
             text = msgspec.json.encode(judgement.to_dict())
             self._client.publish(f"{self._verdicts}/{judgement.attempt.requirement}", text, qos=1)
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._client.disconnect()
         self._client.loop_stop()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from threading import Event, Thread
-from types import TracebackType
 from typing import Any
 
 import msgspec
@@ -155,12 +154,7 @@ class Ros1Source:
         if self._publisher is not None:
             self._publisher.publish(msgspec.json.encode(judgement.to_dict()).decode())
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._ends.set()
         self._looking.join()
         for subscriber in self._subscribers:

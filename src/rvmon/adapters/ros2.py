@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from threading import Thread
-from types import TracebackType
 from typing import Any
 
 import msgspec
@@ -144,12 +143,7 @@ class Ros2Source:
             text = msgspec.json.encode(judgement.to_dict()).decode()
             self._publisher.publish(String(data=text))
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._executor.shutdown()
         self._thread.join()
         self._node.destroy_node()

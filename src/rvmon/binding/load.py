@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Unpack
-
-from rvmon.readers.naming import read_as
-from rvmon.trace.schema import Schema
-
-if TYPE_CHECKING:
-    from rvmon.readers.reading import SchemaArguments
-    from rvmon.spec.checked.specification import CheckedSpec
-
-
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from rvmon.binding.expression import term_of
 from rvmon.diagnostics.nearest import cannot_read, did_you_mean
@@ -26,11 +16,15 @@ from rvmon.errors import RvmonError
 from rvmon.readers.messages.forms import DATABASES
 from rvmon.readers.messages.measured import expect_units
 from rvmon.readers.messages.topic import Topic
+from rvmon.readers.naming import read_as
 from rvmon.spec.checked.arithmetic import NumericOp
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.binding import Applied, Binding, Bound, Clock, Constant, Term
-from rvmon.trace.schema import Kind
+from rvmon.trace.schema import Kind, Schema
 from rvmon.units import UnknownUnitError, parse_unit
+
+if TYPE_CHECKING:
+    from rvmon.readers.reading import SchemaArguments
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 
@@ -237,17 +231,13 @@ def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaAr
         schema: of it; what no option gives stays as it says.
         **options: see `rvmon.session.Spec.reading`; so are the errors.
     """
-    binding = None
-    if (path := options.get("binding")) is not None:
-        from rvmon.binding.load import load_binding
-
-        binding = load_binding(path, spec)
+    path = options.get("binding")
     return read_as(
         schema,
         time=options.get("time"),
         columns=options.get("columns"),
         nan=options.get("nan"),
         no_update=options.get("no_update"),
-        binding=binding,
+        binding=None if path is None else load_binding(path, spec),
         clock=options.get("clock"),
     )

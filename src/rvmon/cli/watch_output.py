@@ -4,39 +4,27 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import logging
 import sys
-from collections import Counter
+from collections import Counter, deque
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import msgspec
 
 from rvmon.cli.output import say, say_json, warn
 from rvmon.errors import RvmonError, TraceError
-from rvmon.verdict.verdict import Verdict
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rvmon.live.durable import DurableMonitor
-    from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
-
-import logging
-from collections import deque
-from collections.abc import Sequence
-from types import TracebackType
-from typing import TYPE_CHECKING
-
 from rvmon.report.style import MARKS
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_ticks
-from rvmon.verdict.verdict import fold
+from rvmon.verdict.verdict import Verdict, fold
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rvmon.live import Driver, Judgement, Status
+    from rvmon.live.durable import DurableMonitor
     from rvmon.session import Spec
-
+    from rvmon.verdict.attempt import Attempt
 
 _TOLD = 5
 _SHOWN_FAILURES = 5
@@ -71,12 +59,7 @@ class Output(logging.Handler):
         logging.getLogger("rvmon.live").addHandler(logging.NullHandler())
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._log.removeHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -153,14 +136,9 @@ class View(Output):
         self._screen.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *ended: object) -> None:
         self._screen.stop()
-        super().__exit__(kind, error, trace)
+        super().__exit__(*ended)
 
     def judged(self, judgement: Judgement) -> None:
         """Remember what failed."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rvmon.live.driver import Driver
@@ -51,12 +50,7 @@ class LiveTasks(Driver):
         if self._loop is not None and (seconds := self.work()) is not None:
             self._timer = self._loop.call_later(seconds, self._drive)
 
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    async def __aexit__(self, *_: object) -> None:
         self._loop = None
         if self._timer is not None:
             self._timer.cancel()

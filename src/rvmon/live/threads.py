@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from threading import Condition, Thread, current_thread
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rvmon.live.driver import Driver
@@ -72,10 +71,5 @@ class Live(Driver):
     def __enter__(self) -> Live:
         return self.start()
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()

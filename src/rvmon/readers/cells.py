@@ -249,18 +249,6 @@ def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
     return cells_of_array(column.to_numpy(zero_copy_only=False), given, kind, gaps)
 
 
-def array_of(cells: Any, kinds: str) -> NDArray[Any]:
-    """An array without nulls.
-
-    Raises:
-        NotPlainError: it has another one.
-    """
-    array: NDArray[Any] = cells.to_numpy(zero_copy_only=False)
-    if array.dtype.kind not in kinds:
-        raise NotPlainError("a column holds other values than were declared")
-    return array
-
-
 def cells_of_column(name: str, column: Any, kind: Kind, gaps: Gaps) -> Cells:
     """A column of a table in memory; see `rvmon.readers.tables.columns_by_name`.
 

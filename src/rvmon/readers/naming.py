@@ -21,12 +21,12 @@ DEFAULT_COLUMNS = ("t", "t_ns")
 def read_as(
     schema: Schema,
     *,
-    time: str | None,
-    columns: Mapping[str, str] | None,
-    nan: str | None,
-    no_update: Any,
-    binding: Binding | None,
-    clock: str | None,
+    time: str | None = None,
+    columns: Mapping[str, str] | None = None,
+    nan: str | None = None,
+    no_update: Any = None,
+    binding: Binding | None = None,
+    clock: str | None = None,
 ) -> Schema:
     """A schema for recordings that name things otherwise; see `rvmon.session.Spec.reading`.
 

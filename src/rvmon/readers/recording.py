@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from errno import ENOENT
@@ -38,7 +38,6 @@ from rvmon.trace.stamps import stamps_of
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
     from rvmon.readers.messages.file import MessageFile
-    from rvmon.readers.messages.topic import Topic
 
 FORMATS = {
     ".csv": "csv",
@@ -301,11 +300,6 @@ def messages_of(path: str) -> MessageFile:
     if recording._messages is None:
         raise TraceError(f"{path}: has columns and no topics: use --map")
     return recording._messages
-
-
-def topics_of(path: str) -> Mapping[str, Topic]:
-    """The topics of a recording of messages, by name; see `messages_of`."""
-    return messages_of(path).topics
 
 
 def can_be_read_again(path: str) -> bool:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,21 +10,22 @@ from typing import Any
 import numpy as np
 
 from rvmon.diagnostics.nearest import did_you_mean
-from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.columns import (
     ColumnMessages,
     ColumnTopic,
+    LateColumn,
     distinct,
     kind_of_type,
     path_of,
-    whole_times,
 )
-from rvmon.readers.messages.topic import Topic
-from rvmon.readers.values import first_line
+from rvmon.readers.messages.topic import Topic, errors_as_damage
+from rvmon.readers.table_batch import ticks_of_column
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import TICKS_PER_UNIT
 
+_FORM = "a file of arrays"
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 
 _TIMES = ("t", "time", "timestamp", "timestamps", "t_ns", "time_ns", "timestamp_ns", "tout")
@@ -35,25 +34,17 @@ _TIMES = ("t", "time", "timestamp", "timestamps", "t_ns", "time_ns", "timestamp_
 _UNITS = {"seconds": "s", "sec": "s", "milliseconds": "ms", "microseconds": "us", "µs": "us"}
 
 
-@dataclass(slots=True)
-class _Array:
-    """An array that is read when it is first asked for; its first axis is time."""
+class _Array(LateColumn):
+    """An array whose first axis is time."""
 
-    read: Callable[[], Any]
-    shape: tuple[int, ...]
-    dtype: Any
-    unit: str = ""
-
-    def tolist(self) -> list[Any]:
-        """Its rows."""
-        with array_errors():
-            values = self.read()
-        cells: list[Any] = values.tolist()
-        if self.dtype.kind in "SOU":
-            cells = [
-                one.decode("utf-8", "replace") if isinstance(one, bytes) else one for one in cells
-            ]
-        return cells
+    def __init__(
+        self, read: Callable[[], Any], shape: tuple[int, ...], dtype: Any, unit: str = ""
+    ) -> None:
+        # An array of a single row or column is a list.
+        is_list = len(shape) == 2 and 1 in shape
+        super().__init__(_FORM, lambda: (read().reshape(-1) if is_list else read(), None))
+        self.shape = (max(shape),) if is_list else shape
+        self.dtype, self.unit = dtype, unit
 
 
 _Tree = dict[str, Any]
@@ -91,22 +82,9 @@ def array_messages(path: Path, stamps: Stamps | None) -> ColumnMessages:
             f"no array is called as stamps are ({', '.join(_TIMES[:4])}, …): name it with --time "
             f"ARRAY[:UNIT]; there are {', '.join(names[:8]) or 'none'}"
         )
-    with array_errors():
+    with errors_as_damage(_FORM):
         end = max(int(one.load()[0].max()) for one in topics)
     return ColumnMessages(topics, end, close=close)
-
-
-@contextmanager
-def array_errors() -> Iterator[None]:
-    """What goes wrong in a file is the fault of the file."""
-    try:
-        yield
-    except (RvmonError, MemoryError):
-        raise
-    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
-        raise TraceError(
-            f"its arrays cannot be read ({first_line(error)}): is it cut off? Copy it again"
-        ) from None
 
 
 def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
@@ -115,7 +93,7 @@ def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
         import h5py
     except ImportError:
         raise not_installed("HDF5", "h5py") from None
-    with array_errors():
+    with errors_as_damage(_FORM):
         file = h5py.File(path, "r")
 
     def tree_of(group: Any) -> _Tree:
@@ -129,22 +107,15 @@ def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
                 shape = inner.shape[::-1] if turned else inner.shape
                 unit = inner.attrs.get("units", inner.attrs.get("unit", ""))
                 unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
-                found[name] = _array(partial(_read, inner, turned), shape, inner.dtype, unit)
+                found[name] = _Array(partial(_read, inner, turned), shape, inner.dtype, unit)
         return found
 
-    with array_errors():
+    with errors_as_damage(_FORM):
         return tree_of(file), file.close
 
 
 def _read(dataset: Any, turned: bool) -> Any:
     return dataset[()].T if turned else dataset[()]
-
-
-def _array(read: Callable[[], Any], shape: tuple[int, ...], dtype: Any, unit: str = "") -> _Array:
-    """An array; one of a single row or column is a list."""
-    if len(shape) == 2 and 1 in shape:
-        return _Array(lambda: read().reshape(-1), (max(shape),), dtype, unit)
-    return _Array(read, shape, dtype, unit)
 
 
 def _matrices(path: Path) -> _Tree:
@@ -153,7 +124,7 @@ def _matrices(path: Path) -> _Tree:
         from scipy.io import loadmat
     except ImportError:
         raise not_installed("a file of MATLAB", "scipy") from None
-    with array_errors():
+    with errors_as_damage(_FORM):
         content = loadmat(path, simplify_cells=True)
 
     def tree_of(variables: Mapping[str, Any]) -> _Tree:
@@ -169,7 +140,7 @@ def _matrices(path: Path) -> _Tree:
                     for place, one in enumerate(value)
                 }
             elif isinstance(value, np.ndarray) and value.ndim and value.dtype.kind in "biufOU":
-                found[name] = _array(partial(np.asarray, value), value.shape, value.dtype)
+                found[name] = _Array(partial(np.asarray, value), value.shape, value.dtype)
         return found
 
     return tree_of(content)
@@ -236,5 +207,5 @@ def _within(tree: _Tree) -> Iterator[tuple[str, _Array]]:
 def _ticks(array: _Array, stamps: Stamps) -> Any:
     values = np.asarray(array.tolist())
     if stamps.unit == "s" and values.dtype.kind == "f":
-        return whole_times(values)
+        return ticks_of_column(values, stamps)
     return np.array([ticks_of_stamp(one, stamps) for one in values.tolist()], np.int64)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.columns import path_of
 from rvmon.readers.messages.forms import DATABASES
-from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
 from rvmon.readers.values import first_line
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
@@ -91,7 +90,7 @@ class FrameMessages:
             yield from mdf_frames(self._path)
             return
         held = None
-        with log_errors(), open(self._path, **_opening(self._path)) as file:
+        with open(self._path, **_opening(self._path)) as file, errors_as_damage("a log of CAN"):
             for frame in _reader_of(self._path)(file):
                 if frame.is_error_frame or frame.is_remote_frame:
                     continue
@@ -157,19 +156,6 @@ def _reader_of(path: Path) -> Callable[[Any], Iterable[Any]]:
 def _opening(path: Path) -> dict[str, Any]:
     is_text = path.suffix.lower() != ".blf"
     return {"mode": "r", "errors": "replace"} if is_text else {"mode": "rb"}
-
-
-@contextmanager
-def log_errors() -> Iterator[None]:
-    """What goes wrong in a log is the fault of the log."""
-    try:
-        yield
-    except (RvmonError, MemoryError, GeneratorExit, OSError):
-        raise
-    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
-        raise TraceError(
-            f"cannot be read as a log of CAN ({first_line(error)}): is it cut off? Copy it again"
-        ) from None
 
 
 def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:

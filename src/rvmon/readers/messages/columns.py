@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.errors import TraceError
-from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
@@ -76,6 +75,32 @@ class ColumnMessages:
             times[order].tolist(), sources[order].tolist(), places[order].tolist(), strict=True
         ):
             yield names[source], t, _Row(trees[source], place)
+
+
+class LateColumn:
+    """A column that is read when it is first asked for.
+
+    Args:
+        form: of the file, for people.
+        read: gives its values, and where they are invalid, if somewhere.
+    """
+
+    def __init__(self, form: str, read: Callable[[], tuple[Any, Any]]) -> None:
+        self._form = form
+        self._read = read
+
+    def tolist(self) -> list[Any]:
+        """Its values, bytes as texts; `None` where the file says that one is invalid."""
+        with errors_as_damage(self._form):
+            values, invalid = self._read()
+        cells: list[Any] = values.tolist()
+        if values.dtype.kind in "SO":
+            cells = [
+                one.decode("utf-8", "replace") if isinstance(one, bytes) else one for one in cells
+            ]
+        if invalid is not None:
+            cells = [None if wrong else one for one, wrong in zip(cells, invalid, strict=True)]
+        return cells
 
 
 class _Row(Mapping[str, Any]):
@@ -176,16 +201,3 @@ def distinct(names: Sequence[str]) -> list[str]:
             number, made = number + 1, f"{name}_{number}"
         found[made] = None
     return list(found)
-
-
-def whole_times(seconds: Any) -> Any:
-    """Stamps in seconds, as doubles, in ticks.
-
-    Raises:
-        TraceError: one is no number, or beyond what ticks can say.
-    """
-    times = np.asarray(seconds, np.float64)
-    if not np.isfinite(times).all() or (np.abs(times) > 9e9).any():
-        raise TraceError("a stamp is no number of seconds")
-    whole = np.floor(times)
-    return whole.astype(np.int64) * 10**9 + np.round((times - whole) * 1e9).astype(np.int64)

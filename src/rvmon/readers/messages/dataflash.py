@@ -13,8 +13,7 @@ import numpy as np
 
 from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.columns import ColumnMessages, Columns, ColumnTopic, leaves_of
-from rvmon.readers.messages.topic import Topic
-from rvmon.readers.values import first_line
+from rvmon.readers.messages.topic import Topic, errors_as_damage
 from rvmon.trace.sample import Outage
 
 _TYPES: dict[str, Any] = {
@@ -71,15 +70,9 @@ def dataflash_messages(path: Path) -> ColumnMessages:
     with open(path, "rb") as file:
         if file.read(2) != _MAGIC:
             raise TraceError("is no DataFlash log: it begins otherwise")
-    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
-        try:
-            log = DFReader_binary(str(path))
-        except MemoryError:
-            raise
-        except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
-            raise TraceError(
-                f"cannot be read as DataFlash ({first_line(error)}): copy it again"
-            ) from None
+    quiet = StringIO()
+    with redirect_stdout(quiet), redirect_stderr(quiet), errors_as_damage("DataFlash"):
+        log = DFReader_binary(str(path))
     data = np.frombuffer(log.data_map, np.uint8)
     starts = {one: np.asarray(log.offsets[one], np.int64) for one in log.formats}
     topics = [

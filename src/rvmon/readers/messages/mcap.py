@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, suppress
 from functools import partial
 from os import SEEK_END
 from pathlib import Path
@@ -14,10 +14,10 @@ from zlib import crc32
 
 import msgspec
 
-from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.errors import TraceError, not_installed
 from rvmon.readers.jsonl_rows import decoded
 from rvmon.readers.messages.ros import BagMessages, refuse_fewer, ros_topic
-from rvmon.readers.messages.topic import Message, Messages, Topic
+from rvmon.readers.messages.topic import Message, Messages, Topic, errors_as_damage
 from rvmon.readers.values import first_line, shorten
 from rvmon.trace.schema import Kind
 
@@ -204,18 +204,9 @@ class _OtherMessages:
         self._file.close()
 
 
-@contextmanager
-def mcap_errors() -> Iterator[None]:
+def mcap_errors() -> AbstractContextManager[None]:
     """What goes wrong in a file is the fault of the file."""
-    try:
-        yield
-    except (RvmonError, MemoryError, GeneratorExit):
-        raise
-    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
-        raise TraceError(
-            f"cannot be read as MCAP ({first_line(error)}): is it cut off? Copy it again, or try "
-            "`mcap recover`"
-        ) from None
+    return errors_as_damage("MCAP", "is it cut off? Copy it again, or try `mcap recover`")
 
 
 def _json(data: bytes) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from heapq import merge
@@ -13,17 +13,20 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.errors import RvmonError, TraceError, not_installed
+from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.columns import (
     ColumnMessages,
     ColumnTopic,
+    LateColumn,
     distinct,
     kind_of_type,
     path_of,
-    whole_times,
 )
-from rvmon.readers.messages.topic import Topic
-from rvmon.readers.values import first_line
+from rvmon.readers.messages.topic import Topic, errors_as_damage
+from rvmon.readers.table_batch import ticks_of_column
+from rvmon.trace.schema import Stamps
+
+_STAMPS = Stamps("its time", "s", is_stated=True)
 
 _IN_TIME = 1
 """How a master channel that counts seconds is marked."""
@@ -51,7 +54,7 @@ def open_measurement(path: Path) -> Any:
         if not file.read(8).startswith((b"MDF", b"UnFinMF")):
             raise TraceError("is no MDF file: it begins otherwise")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-    with mdf_errors(), _quietly_freed():
+    with errors_as_damage("MDF"), _quietly_freed():
         return MDF(path)
 
 
@@ -62,7 +65,7 @@ def mdf_messages(path: Path) -> ColumnMessages | None:
     `open_measurement`.
     """
     file = open_measurement(path)
-    with mdf_errors():
+    with errors_as_damage("MDF"):
         groups = [one for one, group in enumerate(file.groups) if group.channel_group.cycles_nr]
         kept = [one for one in groups if not _holds_frames(file.groups[one])]
         if groups and not kept:
@@ -96,7 +99,7 @@ def mdf_frames(path: Path) -> Iterator[tuple[int, tuple[int, bool], int, bytes]]
             }
 
             def of(name: str, number: int = number, columns: Any = columns) -> Any:
-                with mdf_errors():
+                with errors_as_damage("MDF"):
                     return file.get(group=number, index=columns[name]).samples
 
             length = of("DataLength" if "DataLength" in columns else "DLC")
@@ -130,19 +133,6 @@ def _quietly_freed() -> Iterator[None]:
         raise
 
 
-@contextmanager
-def mdf_errors() -> Iterator[None]:
-    """What goes wrong in a file is the fault of the file."""
-    try:
-        yield
-    except (RvmonError, MemoryError, GeneratorExit):
-        raise
-    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
-        raise TraceError(
-            f"cannot be read as MDF ({first_line(error)}): is it cut off? Copy it again"
-        ) from None
-
-
 def _name(group: Any, number: int) -> str:
     called = group.channel_group.acq_name or group.channel_group.comment or f"group_{number}"
     return f"/{path_of(called.partition(chr(10))[0])}"
@@ -154,8 +144,8 @@ def _counts_time(file: Any, group: int) -> bool:
 
 
 def _times(file: Any, group: int) -> Any:
-    with mdf_errors():
-        times = whole_times(file.get_master(group))
+    with errors_as_damage("MDF"):
+        times = ticks_of_column(np.asarray(file.get_master(group), np.float64), _STAMPS)
     counted = file.groups[group].channel_group.cycles_nr
     if len(times) != counted:
         raise TraceError(
@@ -163,6 +153,14 @@ def _times(file: Any, group: int) -> Any:
             "copy it again"
         )
     return times
+
+
+def _channel(file: Any, group: int, index: int) -> tuple[Any, Any]:
+    signal = file.get(group=group, index=index)
+    values, invalid = signal.samples, signal.invalidation_bits
+    if values.dtype.kind == "S":
+        values = np.char.rstrip(values, b"\0 ")
+    return values, None if invalid is None else invalid.tolist()
 
 
 def _topic(file: Any, name: str, group: int) -> ColumnTopic:
@@ -184,33 +182,10 @@ def _topic(file: Any, name: str, group: int) -> ColumnTopic:
         first = file.get(group=group, index=place, record_count=1)
         if first.samples.dtype.names:
             continue  # a structure, whose members are channels as well
-        columns[path] = _Channel(partial(file.get, group=group, index=place))
+        columns[path] = LateColumn("MDF", partial(_channel, file, group, place))
         leaf = path + "[]" * (first.samples.ndim - 1)
         leaves[leaf] = kind_of_type(first.samples.dtype)
         if first.unit:
             units[leaf] = first.unit.strip()
     topic = Topic(name, type_name, leaves, units=units)
     return ColumnTopic(topic, counted, lambda: (_times(file, group), columns))
-
-
-class _Channel:
-    """A channel that is read when it is first asked for."""
-
-    def __init__(self, read: Callable[[], Any]) -> None:
-        self._read = read
-
-    def tolist(self) -> list[Any]:
-        """Its values; `None` where the file says that one is invalid."""
-        with mdf_errors():
-            signal = self._read()
-        values = signal.samples
-        cells: list[Any] = values.tolist()
-        if values.dtype.kind in "SO":
-            cells = [
-                one.decode("utf-8", "replace").rstrip("\0 ") if isinstance(one, bytes) else str(one)
-                for one in cells
-            ]
-        if signal.invalidation_bits is None:
-            return cells
-        invalid = signal.invalidation_bits.tolist()
-        return [None if wrong else one for one, wrong in zip(cells, invalid, strict=True)]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError, not_installed
-from rvmon.readers.messages.topic import Message, Topic
+from rvmon.readers.messages.topic import Message, Topic, errors_as_damage
 from rvmon.readers.values import first_line
 from rvmon.trace.schema import Kind
 
@@ -124,17 +124,9 @@ def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
     return {"ros1": rosbag1.Reader, "ros2": rosbag2.Reader}
 
 
-@contextmanager
-def bag_errors(form: str) -> Iterator[None]:
+def bag_errors(form: str) -> AbstractContextManager[None]:
     """What goes wrong in a bag is the fault of the bag."""
-    try:
-        yield
-    except (TraceError, MemoryError, GeneratorExit):
-        raise
-    except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
-        text = str(error)
-        fix = next((fix for sign, fix in _FIXES.items() if sign in text), _FIX[form])
-        raise TraceError(f"cannot be read as a bag ({first_line(error)}): {fix}") from None
+    return errors_as_damage("a bag", _FIX[form], _FIXES)
 
 
 def ros_topic(

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+from rvmon.errors import RvmonError, TraceError
+from rvmon.readers.values import first_line
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
@@ -65,3 +68,23 @@ class Messages(Protocol):
 
     def close(self) -> None:
         """Close the files."""
+
+
+@contextmanager
+def errors_as_damage(
+    form: str, fix: str = "is it cut off? Copy it again", fixes: Mapping[str, str] | None = None
+) -> Iterator[None]:
+    """What a library raises is the fault of the file: damage shows in whatever reads it.
+
+    Args:
+        form: of the file, for people.
+        fix: what to do about it.
+        fixes: the same by a word of the error that says more.
+    """
+    try:
+        yield
+    except (RvmonError, MemoryError, GeneratorExit):
+        raise
+    except Exception as error:  # noqa: BLE001 - each library has errors of its own
+        told = next((own for sign, own in (fixes or {}).items() if sign in str(error)), fix)
+        raise TraceError(f"cannot be read as {form} ({first_line(error)}): {told}") from None

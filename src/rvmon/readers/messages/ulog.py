@@ -13,8 +13,7 @@ import numpy as np
 
 from rvmon.errors import TraceError, not_installed
 from rvmon.readers.messages.columns import ColumnMessages, ColumnTopic, joined, leaves_of
-from rvmon.readers.messages.topic import Topic
-from rvmon.readers.values import first_line
+from rvmon.readers.messages.topic import Topic, errors_as_damage
 from rvmon.trace.sample import Outage
 from rvmon.trace.time import TIME_LIMIT
 
@@ -62,14 +61,8 @@ def ulog_messages(path: Path) -> ColumnMessages:
         raise not_installed("ULog", "pyulog") from None
     with open(path, "rb") as file, redirect_stdout(StringIO()):
         watched = _Watched(file)
-        try:
+        with errors_as_damage("ULog"):
             log = ULog(watched)
-        except MemoryError:
-            raise
-        except Exception as error:  # noqa: BLE001 - damage shows in whatever reads it
-            raise TraceError(
-                f"cannot be read as ULog ({first_line(error)}): copy it again"
-            ) from None
     if log.file_corruption:
         raise TraceError("is damaged: parts of it are no messages of ULog: copy it again")
     start = log.start_timestamp * _PER_STAMP
