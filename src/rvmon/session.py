@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.robustness.monitor import RobustnessMonitor
     from rvmon.monitor.robustness.values import Margins
-    from rvmon.readers.reading import Reading, ReadingArguments, SchemaArguments
-    from rvmon.readers.source import Source
+    from rvmon.readers.source import Reading, ReadingArguments, SchemaArguments, Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
 
@@ -210,7 +209,7 @@ class Spec:
         allow_missing: bool | Iterable[str] = False,
         **schema: Unpack[SchemaArguments],
     ) -> Reading:
-        from rvmon.readers.reading import Reading
+        from rvmon.readers.source import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
         read_as = (self.reading(**schema) if schema else self).schema

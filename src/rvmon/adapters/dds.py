@@ -7,8 +7,6 @@ from functools import cache
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any
 
-import msgspec
-
 from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError, not_installed
 from rvmon.live.robot import Judgement
@@ -185,7 +183,7 @@ class DdsSource:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
         if self._writer is not None:
             kind = _idl_type("std_msgs/msg/String", ())
-            self._writer.write(kind(data=msgspec.json.encode(judgement.to_dict()).decode()))
+            self._writer.write(kind(data=judgement.to_json()))
 
     def __exit__(self, *_: object) -> None:
         self._stops = True

@@ -8,8 +8,6 @@ from threading import Event
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-import msgspec
-
 from rvmon.adapters.json_objects import JsonObjects, decoded_object
 from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.live.robot import Judgement
@@ -195,8 +193,8 @@ class MqttSource:
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
         if self._verdicts is not None:
-            text = msgspec.json.encode(judgement.to_dict())
-            self._client.publish(f"{self._verdicts}/{judgement.attempt.requirement}", text, qos=1)
+            topic = f"{self._verdicts}/{judgement.attempt.requirement}"
+            self._client.publish(topic, judgement.to_json(), qos=1)
 
     def __exit__(self, *_: object) -> None:
         self._client.disconnect()

@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 from threading import Event, Thread
 from typing import Any
 
-import msgspec
-
 from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
 from rvmon.live.robot import Judgement
@@ -152,7 +150,7 @@ class Ros1Source:
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""
         if self._publisher is not None:
-            self._publisher.publish(msgspec.json.encode(judgement.to_dict()).decode())
+            self._publisher.publish(judgement.to_json())
 
     def __exit__(self, *_: object) -> None:
         self._ends.set()

@@ -11,8 +11,6 @@ from collections.abc import Iterator
 from threading import Thread
 from typing import Any
 
-import msgspec
-
 from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
 from rvmon.live.robot import Judgement
@@ -140,8 +138,7 @@ class Ros2Source:
         if self._publisher is not None:
             from std_msgs.msg import String
 
-            text = msgspec.json.encode(judgement.to_dict()).decode()
-            self._publisher.publish(String(data=text))
+            self._publisher.publish(String(data=judgement.to_json()))
 
     def __exit__(self, *_: object) -> None:
         self._executor.shutdown()

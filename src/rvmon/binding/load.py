@@ -24,7 +24,7 @@ from rvmon.trace.schema import Kind, Schema
 from rvmon.units import UnknownUnitError, parse_unit
 
 if TYPE_CHECKING:
-    from rvmon.readers.reading import SchemaArguments
+    from rvmon.readers.source import SchemaArguments
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 

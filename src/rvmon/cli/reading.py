@@ -13,8 +13,8 @@ from rvmon.trace.gaps import READINGS_OF_NAN
 if TYPE_CHECKING:
     import argparse
 
-    from rvmon.readers.reading import SchemaArguments
     from rvmon.readers.recording import FileRecording
+    from rvmon.readers.source import SchemaArguments
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report

@@ -103,7 +103,7 @@ class JsonOutput(Output):
 
     def say(self, judgement: Judgement) -> None:
         """Say a verdict."""
-        say_json(msgspec.json.encode(judgement.to_dict()).decode())
+        say_json(judgement.to_json())
         sys.stdout.flush()
 
     def ended(self, driver: Driver) -> None:

@@ -1,18 +1,16 @@
 """Monitors of robots that are running: clocks, timers, bounded queues, threads and tasks.
 
 `driver` puts samples of any number of robots through their monitors and lets time pass on them; it
-starts no thread and never sleeps. `threads` and `tasks` call it, in a thread of its own and in an
-event loop. What translates for a middleware calls `offer` and nothing else.
+starts no thread and never sleeps. `runners` call it, in a thread of its own or in an event loop.
+What translates for a middleware calls `offer` and nothing else.
 """
 
 from rvmon.live.calls import as_event
 from rvmon.live.clock import Clock, SimulatedClock, WallClock
 from rvmon.live.driver import Driver
 from rvmon.live.durable import DurableMonitor
-from rvmon.live.robot import Judgement
-from rvmon.live.status import Status
-from rvmon.live.tasks import LiveTasks
-from rvmon.live.threads import Live
+from rvmon.live.robot import Judgement, Status
+from rvmon.live.runners import Live, LiveTasks
 
 __all__ = [
     "Clock",

@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
-from rvmon.live.robot import Judgement, Robot, Watch
-from rvmon.live.status import Status
-from rvmon.live.timers import Timers
-from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Told, Values, Waiting
+from rvmon.live.robot import Judgement, Robot, Status, Watch
+from rvmon.live.waiting import Dropped, Entry, Gap, NewRun, Offered, Timers, Told, Values, Waiting
 from rvmon.spec.checked.selection import sources_asked
 from rvmon.trace.health import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.live.status import Status
 from rvmon.live.waiting import Dropped, Gap, Told, Values
 from rvmon.spec.checked.selection import requirements_asked
 from rvmon.trace.health import Health, HealthKind
@@ -49,6 +50,10 @@ class Judgement:
             "reason": attempt.reason,
         }
 
+    def to_json(self) -> str:
+        """The same as text."""
+        return msgspec.json.encode(self.to_dict()).decode()
+
 
 @dataclass(frozen=True, slots=True)
 class Watch:
@@ -78,6 +83,37 @@ class Watch:
         return self.spec.monitor(
             only=self.only, sources=self.sources, settle=self.settle, keep=self.keep
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """A robot at an instant.
+
+    Attributes:
+        robot: its name; empty if there is one only.
+        run: the number of the run that is under way, from 1.
+        since: the instant of its first sample, ns; `None` before it.
+        now: the instant to which time has come, ns.
+        verdicts: of each requirement so far, over all runs.
+        counts: how many attempts of a requirement had a verdict since it is watched.
+        owed: how many attempts of each requirement are open now; those without any may lack.
+        open: their records with their deadlines: all, or as many as were asked for.
+        samples: so many were judged, over all runs.
+        lost: so many were not.
+        refusal: why the latest that was refused was.
+    """
+
+    robot: str
+    run: int
+    since: int | None
+    now: int
+    verdicts: Mapping[str, Verdict]
+    counts: Counter[tuple[str, Verdict]]
+    owed: Mapping[str, int]
+    open: tuple[Attempt, ...]
+    samples: int
+    lost: int
+    refusal: str
 
 
 class Robot:

@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any
 from rvmon.diagnostics.shown import shown_path
 from rvmon.monitor.core.planned import planned_core
 from rvmon.monitor.inputs.missing import expect_names
-from rvmon.readers.any_trace import recording_of
 from rvmon.readers.columns import TableRecording
-from rvmon.readers.reading import Reading
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.rows import Rows
-from rvmon.readers.source import Source
+from rvmon.readers.source import Reading, Source, recording_of
 from rvmon.trace.sample import Recording
 from rvmon.verdict.report import Report
 

@@ -12,8 +12,7 @@ from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import planned_core
 from rvmon.monitor.evaluate import Asked, judge_source, open_trace
 from rvmon.monitor.robustness.values import FIGURES, Key, Margins, Robustness, Stream
-from rvmon.readers.reading import Reading
-from rvmon.readers.source import Source
+from rvmon.readers.source import Reading, Source
 from rvmon.trace.sample import Sample
 from rvmon.verdict.report import Report
 

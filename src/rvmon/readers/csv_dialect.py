@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from rvmon.errors import TraceError
+from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
 from rvmon.readers.places import opened
 from rvmon.readers.values import shorten
@@ -171,22 +172,14 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None) -> Iterator[str]:
-    """The lines of a text as plain CSV has them; comments, and what is above, are empty."""
+    """The lines of a text as plain CSV has them; where comments stood they are empty."""
     made: Callable[[list[str]], list[str]] | None = None
-    above = 0
+    lines = 0
     for number, row in _rows(text, dialect):
-        if row is None:
-            if made is None:  # the header comes first, and the others keep their numbers
-                above += 1
-            else:
-                yield "\n"
-            continue
         if made is None:
             made = _stamp_maker(row, stamps)
             row = made(row)
         else:
-            yield from "\n" * above
-            above = 0
             if dialect.has_commas:
                 row = [_COMMA.sub(r"\1.\2", one) if _COMMA.fullmatch(one) else one for one in row]
             try:
@@ -195,43 +188,30 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
                 raise TraceError(f"line {number}: {error}") from None
         written = io.StringIO()
         csv.writer(written, lineterminator="\n").writerow(row)
-        yield written.getvalue()
+        plain = written.getvalue()
+        # The header comes first, whatever stood above it; the others keep their numbers.
+        missing = number - lines - plain.count("\n") if lines else 0
+        yield "\n" * missing + plain
+        lines += missing + plain.count("\n")
 
 
-def _rows(text: io.TextIOWrapper, dialect: Dialect) -> Iterator[tuple[int, list[str] | None]]:
-    """The rows with the numbers of their lines; `None`: it is none."""
-    for number in range(1, dialect.above + 1):
+def _rows(text: io.TextIOWrapper, dialect: Dialect) -> Iterator[tuple[int, list[str]]]:
+    """The rows with the numbers of their lines; what is no row is left out."""
+    above = dialect.above
+    for _ in range(above):
         text.readline()
-        yield number, None
-    above, is_header = dialect.above, True
     if dialect.is_commented:
-        told = _COMMENT.sub("", text.readline(), count=1)
-        above, is_header = above + 1, False
-        yield above, _cells(told, dialect.separator)
-    for number, row in _split(text, dialect.separator, above):
+        above += 1
+        yield above, _cells(_COMMENT.sub("", text.readline(), count=1), dialect.separator)
+    if dialect.separator:
+        rows = split_lines(text, above, dialect.separator)
+    else:
+        rows = ((number, line.split()) for number, line in enumerate(text, above + 1))
+    for number, row in rows:
         # What begins so is a comment where there were some above the header.
-        is_comment = not is_header and above and row and _COMMENT.match(row[0])
-        is_header = is_header and not row
-        if is_comment or not any(cell.strip() for cell in row):
-            yield number, None
-        else:
-            yield number, [cell.strip() for cell in row]
-
-
-def _split(text: io.TextIOWrapper, separator: str, above: int) -> Iterator[tuple[int, list[str]]]:
-    if not separator:
-        yield from ((number, line.split()) for number, line in enumerate(text, above + 1))
-        return
-    reader = csv.reader(text, delimiter=separator, strict=True)
-    while True:
-        try:
-            row = next(reader)
-        except StopIteration:
-            return
-        except csv.Error as error:
-            line = above + reader.line_num
-            raise TraceError(f"line {line}: not a CSV row ({error})") from None
-        yield above + reader.line_num, row
+        is_comment = above and (number > above + 1) and row and _COMMENT.match(row[0])
+        if not is_comment and any(row):
+            yield number, row
 
 
 def _stamp_maker(header: Sequence[str], stamps: Stamps | None) -> Callable[[list[str]], list[str]]:

@@ -114,12 +114,15 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
     )
 
 
-def split_lines(lines: Iterable[str], before: int = 0) -> Iterator[tuple[int, list[str]]]:
-    """Split CSV text into rows with the number of the line that each ends on.
+def split_lines(
+    lines: Iterable[str], before: int = 0, separator: str = ","
+) -> Iterator[tuple[int, list[str]]]:
+    """Split CSV text into rows with the number of the line that each ends on; blank ones are none.
 
     Args:
         lines: of the text.
         before: so many lines stand above them.
+        separator: of cells.
 
     Raises:
         TraceError: the text is no CSV (a NUL character, a cell without end), or a row that quotes
@@ -138,7 +141,7 @@ def split_lines(lines: Iterable[str], before: int = 0) -> Iterator[tuple[int, li
                 )
             yield line
 
-    reader = csv.reader(of_row(), strict=True)
+    reader = csv.reader(of_row(), delimiter=separator, strict=True)
     while True:
         began, taken = before + reader.line_num + 1, 0
         try:

@@ -1,17 +1,12 @@
-"""JSON lines in pieces: rows as columns where a piece is plain, else one by one.
-
-The first lines of a piece say what the others look like; where one does not, that is read line by
-line.
-"""
+"""JSON lines in pieces: rows as columns where a piece is plain, else one by one."""
 
 from __future__ import annotations
 
 import io
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import islice, repeat
-from operator import attrgetter, is_not
+from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import msgspec
@@ -33,37 +28,12 @@ from rvmon.trace.stamps import stamps_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_Given = msgspec.UnsetType
-_SCALAR: Any = bool | int | float | str | None | _Given
-_ANYTHING: Any = bool | int | float | str | list[Any] | None | _Given
-"""What an undeclared name may hold; objects may hold declared names."""
-_EVENT: Any = bool | dict[str, bool | int | float | str | None] | None | _Given
+_DECODER = msgspec.json.Decoder(dict[str, Any])
 
 _WITH_NAMES = {dict, list}
-
-_LOOKED_AT = 50
-"""So many lines of a piece say what its lines look like."""
+_OBJECTS = {dict, msgspec.UnsetType}
 
 _MARK = b"\xef\xbb\xbf"
-
-
-@dataclass(slots=True)
-class _Shape:
-    """What the lines of a piece look like.
-
-    Attributes:
-        decode: reads a text of them.
-        stamps: says their unit.
-        places: by declared name, where its value is in a decoded line.
-        ignored: the same of names that are not declared, in the order of the line.
-        objects: of each object in a line, where the values in it are.
-    """
-
-    stamps: Stamps
-    decode: Callable[[bytes], list[Any]] = list
-    places: dict[str, str] = field(default_factory=dict)
-    ignored: dict[str, str] = field(default_factory=dict)
-    objects: list[list[str]] = field(default_factory=list)
 
 
 def jsonl_batches(
@@ -115,150 +85,80 @@ def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
     """A piece as columns.
 
     Raises:
-        NotPlainError: a line is something else than those above it.
+        NotPlainError: it has to be read line by line.
     """
     lines = text.count(b"\n") + (not text.endswith(b"\n"))
     if schema.stamps is not None or schema.columns or b"\r" in text:
         raise NotPlainError("stamps or names have another form")
-    shape = _shape_of(text, schema)
     try:
-        rows = shape.decode(text)
+        rows = _DECODER.decode_lines(text)
+        columns: dict[str, list[Any]] = {}
+        others: Counter[str] = Counter()
+        count = _collect(rows, "", schema, columns, others)
     except (msgspec.DecodeError, RecursionError, UnicodeError):
-        raise NotPlainError("a line is none of those objects") from None
-    if len(rows) != lines:
-        raise NotPlainError("its lines are not all alike")
-    if names_in(text) != _names_given(rows, shape):
+        raise NotPlainError("a line is no object of JSON") from None
+    stamps = [name for name in DEFAULT_COLUMNS if name in columns]
+    if len(rows) != lines or len(stamps) != 1 or "events" in others:
+        raise NotPlainError("its lines have not one stamp")
+    if names_in(text) != count:  # of equal names the last one is decoded
         raise NotPlainError("a name may stand twice in a line")
     batch = Batch(
-        instants_of([row.stamp for row in rows], shape.stamps),
+        instants_of(columns.pop(stamps[0]), stamps_of(stamps[0])),
         {
-            name: cells_of_values(
-                _cells(rows, shape.places[name]), kind, schema.gaps, msgspec.UNSET
-            )
+            name: cells_of_values(columns[name], kind, schema.gaps, msgspec.UNSET)
             for name, kind in schema.signals.items()
-            if name in shape.places
+            if name in columns
         },
         {
-            name: _occurrences(rows, shape.places[name], fields, schema)
+            name: _occurrences(columns[name], fields, schema)
             for name, fields in schema.events.items()
-            if name in shape.places
+            if name in columns
         },
     )
-    for name, place in shape.ignored.items():
-        count = sum(cell is not msgspec.UNSET for cell in map(attrgetter(place), rows))
-        if count:
-            ignored[name] += count
+    ignored.update(others)
     bound(ignored)
     return batch
 
 
-def _names_given(rows: Sequence[Any], shape: _Shape) -> int:
-    """How many names the lines have, each of those that objects have once."""
-    given = {"stamp": len(rows)}
-    inside = 0
-    for place in (*shape.places.values(), *shape.ignored.values()):
-        cells = _cells(rows, place)
-        given[place] = sum(map(is_not, cells, repeat(msgspec.UNSET)))
-        if not _WITH_NAMES.isdisjoint(map(type, cells)):
-            inside += sum(map(count_of_names, cells))
-    objects = sum(
-        len(rows)
-        if max((given[place] for place in leaves), default=0) == len(rows)
-        else _with_any(rows, leaves)
-        for leaves in shape.objects
-    )
-    return sum(given.values()) + inside + objects
+def _collect(
+    objects: Sequence[Mapping[str, Any]],
+    prefix: str,
+    schema: Schema,
+    columns: dict[str, list[Any]],
+    others: Counter[str],
+) -> int:
+    """Put the values of stamps and declared names into columns, and count those of other names.
 
+    Args:
+        objects: one of each line, empty where it has none.
+        prefix: of the names in them.
+        schema: the declared names.
+        columns: by name the value of each line, `UNSET` where there is none.
+        others: how often names came that are not declared.
 
-def _with_any(rows: Sequence[Any], places: Sequence[str]) -> int:
-    """How many rows have a value in one of these places."""
-    cells = zip(*(_cells(rows, place) for place in places), strict=True)
-    return sum(any(one is not msgspec.UNSET for one in row) for row in cells)
-
-
-def _shape_of(text: bytes, schema: Schema) -> _Shape:
-    """What decodes lines that look like the first ones."""
-    try:
-        looked_at = [
-            msgspec.json.decode(line)
-            for line in islice(text.split(b"\n", _LOOKED_AT), _LOOKED_AT)
-            if line
-        ]
-    except (msgspec.DecodeError, RecursionError, UnicodeError):
-        raise NotPlainError("a line is no object of JSON") from None
-    whole: dict[str, Any] = {}
-    for one in looked_at:
-        if not isinstance(one, dict):
-            raise NotPlainError("a line is no object of JSON")
-        _join(whole, one, schema)
-    stamps = [name for name in DEFAULT_COLUMNS if name in whole]
-    if len(stamps) != 1 or ("events" in whole and "events" not in schema.signals):
-        raise NotPlainError("its lines have not one stamp")
-    del whole[stamps[0]]
-    shape = _Shape(stamps_of(stamps[0]))
-    fields, names = _fields(whole, "", "", schema, shape)
-    fields.insert(0, ("stamp", int | float))
-    names["stamp"] = stamps[0]
-    shape.decode = msgspec.json.Decoder(line_struct(fields, names)).decode_lines
-    return shape
-
-
-def _join(whole: dict[str, Any], more: Mapping[str, Any], schema: Schema, prefix: str = "") -> None:
-    """Add the names of an object, and of those in it, to what is known of others."""
-    for key, value in more.items():
+    Returns:
+        How many names stand in the objects, those of objects within them as well.
+    """
+    count = sum(map(len, objects))
+    for key in dict.fromkeys(chain.from_iterable(objects)):
         name = prefix + key
-        is_declared = name in schema.signals or name in schema.events
-        if isinstance(value, dict) and not is_declared:
-            inside = whole.setdefault(key, {})
-            if inside is None:
-                raise NotPlainError("a name is an object, and something else")
-            _join(inside, value, schema, f"{name}.")
-        elif whole.setdefault(key) is not None:
-            raise NotPlainError("a name is an object, and something else")
-
-
-def line_struct(fields: Sequence[Any], names: Mapping[str, str]) -> Any:
-    """The type that lines with these fields, and no others, are decoded to."""
-    return msgspec.defstruct(
-        "Line", fields, rename=dict(names), forbid_unknown_fields=True, gc=False
-    )
-
-
-def _fields(
-    found: Mapping[str, Any], prefix: str, place: str, schema: Schema, shape: _Shape
-) -> tuple[list[Any], dict[str, str]]:
-    """The fields of an object: name, type, default; and the keys that they stand for."""
-    fields: list[Any] = []
-    names = {}
-    for number, (key, value) in enumerate(found.items()):
-        own, name = f"f{number}", prefix + key
-        names[own] = key
-        if name in shape.places or name in shape.ignored:  # `a.b` beside `b` in `a`
+        cells = [one.get(key, msgspec.UNSET) for one in objects]
+        types = set(map(type, cells))
+        if name in columns or name in others:  # `a.b` beside `b` in `a`
             raise NotPlainError("two keys stand for one name")
-        if name in schema.signals:
-            type_ = _SCALAR
-            shape.places[name] = place + own
-        elif name in schema.events:
-            type_ = _EVENT
-            shape.places[name] = place + own
-        elif isinstance(value, dict):
-            before = len(shape.places), len(shape.ignored)
-            inside = _fields(value, f"{name}.", f"{place}{own}.", schema, shape)
-            leaves = islice(shape.places.values(), before[0], None)
-            others = islice(shape.ignored.values(), before[1], None)
-            shape.objects.append([*leaves, *others])
-            object_ = line_struct(*inside)
-            fields.append((own, object_, msgspec.field(default_factory=object_)))
+        if name in schema.signals or name in schema.events or name in DEFAULT_COLUMNS:
+            columns[name] = cells
+        elif types <= _OBJECTS and dict in types:
+            inner = [one if type(one) is dict else {} for one in cells]
+            count += _collect(inner, f"{name}.", schema, columns, others)
             continue
+        elif dict in types:
+            raise NotPlainError("a name is an object, and something else")
         else:
-            type_ = _ANYTHING
-            shape.ignored[name] = place + own
-        fields.append((own, type_, msgspec.UNSET))
-    return fields, names
-
-
-def _cells(rows: Sequence[Any], place: str) -> list[Any]:
-    return list(map(attrgetter(place), rows))
+            others[name] += len(cells) - cells.count(msgspec.UNSET)
+        if not _WITH_NAMES.isdisjoint(types):
+            count += sum(map(count_of_names, cells))
+    return count
 
 
 def instants_of(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
@@ -267,8 +167,8 @@ def instants_of(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
     Raises:
         NotPlainError: they are no plain numbers, or out of range.
     """
-    found = np.array(stamps)
-    if found.dtype.kind not in ("i" if unit.unit == "ns" else "fi"):
+    found = np.array(stamps if set(map(type, stamps)) <= {int, float} else [])
+    if len(found) != len(stamps) or found.dtype.kind not in ("i" if unit.unit == "ns" else "fi"):
         raise NotPlainError("its stamps are no plain numbers")
     try:
         return ticks_of_column(found, unit)
@@ -276,10 +176,7 @@ def instants_of(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
         raise NotPlainError("some instant is out of range") from None
 
 
-def _occurrences(
-    rows: Sequence[Any], place: str, fields: Mapping[str, Kind], schema: Schema
-) -> Occurrences:
-    cells = _cells(rows, place)
+def _occurrences(cells: Sequence[Any], fields: Mapping[str, Kind], schema: Schema) -> Occurrences:
     payloads = {
         name: cells_of_values(
             [

@@ -12,6 +12,7 @@ from io import BufferedReader, RawIOBase
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import RvmonError, TraceError, not_installed
 from rvmon.readers.values import first_line
 
@@ -73,6 +74,27 @@ def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
                 yield plain, raw
         else:
             yield raw, raw
+
+
+@contextmanager
+def named_errors(path: str | Path) -> Iterator[None]:
+    """Errors inside are given the name of a file.
+
+    Raises:
+        TraceError: one happened; also if it cannot be opened, or is no text.
+    """
+    try:
+        yield
+    except UnicodeDecodeError as error:
+        raise TraceError(
+            f"{path}: not UTF-8 text ({error.reason} at byte {error.start}): is this a binary file?"
+        ) from None
+    except TraceError as error:
+        message = str(error)
+        placed = message if message.startswith(str(path)) else f"{path}: {message}"
+        raise type(error)(placed) from None
+    except OSError as error:
+        raise TraceError(cannot_read(path, error)) from None
 
 
 @contextmanager

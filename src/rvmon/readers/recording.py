@@ -27,7 +27,7 @@ from rvmon.readers.messages.forms import (
     MESSAGE_FORMS,
     form_of_folder,
 )
-from rvmon.readers.places import endings_of, is_address, local_path, opened
+from rvmon.readers.places import endings_of, is_address, local_path, named_errors, opened
 from rvmon.readers.rows import Row, Rows
 from rvmon.trace.binding import BY_NAME
 from rvmon.trace.health import Health, HealthKind
@@ -100,12 +100,12 @@ class FileRecording:
         elif self._format == "parquet":
             from rvmon.readers.parquet import parquet_layout
 
-            with self._named_errors():
+            with named_errors(self.path):
                 self._take_names(parquet_layout(local_path(self.path), schema))
         elif self.is_of_messages:
             from rvmon.readers.messages.file import MessageFile
 
-            with self._named_errors():
+            with named_errors(self.path):
                 self._messages = MessageFile(self.path, self._format, schema)
             self.names, self.end = self._messages.names, self._messages.end
 
@@ -135,7 +135,7 @@ class FileRecording:
         Raises:
             TraceError: with file and line; the samples before it have been given out.
         """
-        with self._named_errors():
+        with named_errors(self.path):
             yield from self.rows.samples(self._each_row())
             if not self.rows.count:
                 raise TraceError("holds no sample")
@@ -163,7 +163,7 @@ class FileRecording:
         if not (of_columns and self._ordered):
             yield from self
             return
-        with self._named_errors():
+        with named_errors(self.path):
             yield from self.rows.pieces(self._batches())
             if not self.rows.count:
                 raise TraceError("holds no sample")
@@ -261,7 +261,7 @@ class FileRecording:
     @contextmanager
     def _text(self) -> Iterator[TextIO]:
         """The open text; errors inside are given the file's name."""
-        with self._named_errors():
+        with named_errors(self.path):
             if self.path == "-":
                 yield sys.stdin
             else:
@@ -271,23 +271,6 @@ class FileRecording:
                     TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
                 ):
                     yield text
-
-    @contextmanager
-    def _named_errors(self) -> Iterator[None]:
-        """Errors inside are given the file's name."""
-        try:
-            yield
-        except UnicodeDecodeError as error:
-            raise TraceError(
-                f"{self.path}: not UTF-8 text ({error.reason} at byte {error.start}): "
-                "is this a binary file?"
-            ) from None
-        except TraceError as error:
-            message = str(error)
-            placed = message if message.startswith(self.path) else f"{self.path}: {message}"
-            raise type(error)(placed) from None
-        except OSError as error:
-            raise TraceError(cannot_read(self.path, error)) from None
 
 
 def messages_of(path: str) -> MessageFile:

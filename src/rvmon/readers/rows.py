@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.readers.alternation import Alternations
-from rvmon.readers.coalesce import Conflicts, coalesce, merged, updates_in
+from rvmon.readers.coalesce import Conflicts, merged, updates_in
 from rvmon.readers.doubtful_unit import LOOKED_AT
 from rvmon.trace.health import Health
 from rvmon.trace.sample import Sample, Value
@@ -59,10 +59,7 @@ class Rows:
         Raises:
             TimeOrderError: a row is before the one above it, or late by more than `ROOM` rows.
         """
-        self._begin()
-        for sample in coalesce(self._in_order(rows), self._schema.events, self._conflicts):
-            self.alternations.note(sample.values)
-            yield sample
+        return self.pieces([rows])  # type: ignore[return-value]  # rows become no batches
 
     def pieces(self, pieces: Iterable[Batch | Iterable[Row]]) -> Iterator[Batch | Sample]:
         """The same of a source of which some rows come as columns; so they are given out.

@@ -1,16 +1,21 @@
-"""A finished trace as it is to be judged: pieces of rows, and samples."""
+"""What a program or a person takes for a trace, how it is read, and its pieces to be judged."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict
 
-from rvmon.trace.sample import Outage, Recording, Sample
+from rvmon.trace.sample import Outage, Recording, Sample, Trace
+from rvmon.trace.schema import Schema
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
+    from rvmon.readers.columns import TableRecording
+    from rvmon.readers.pairs import PairRecording
+    from rvmon.readers.recording import FileRecording
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,3 +78,85 @@ class Source:
                 yield own
                 if len(own.times) < len(piece.times):
                     return
+
+
+class SchemaArguments(TypedDict, total=False):
+    """The arguments of `Spec.reading`; it says what they mean."""
+
+    time: str | None
+    columns: Mapping[str, str] | None
+    nan: str | None
+    no_update: Any
+    binding: str | Path | None
+    clock: str | None
+
+
+class ReadingArguments(SchemaArguments, total=False):
+    """The arguments that `Spec.evaluate` and its kin have in common; it says what they mean."""
+
+    sources: Iterable[str] | None
+    allow_missing: bool | Iterable[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What `Spec.evaluate` and its kin are given about a trace.
+
+    Attributes:
+        schema: the declared names, and how the trace gives them.
+        sources: the signals and events that can arrive; `None`: those that the trace has.
+        allowed: the names that a trace in columns may lack though requirements read them; whether
+            all.
+    """
+
+    schema: Schema
+    sources: frozenset[str] | None = None
+    allowed: bool | tuple[str, ...] = False
+
+
+def recording_of(
+    trace: Any, schema: Schema, *, ordered: bool, sources: frozenset[str] | None = None
+) -> Recording:
+    """A trace as a recording; it need not be read yet.
+
+    Args:
+        trace: a path, a table (columns by name, an Arrow table, a data frame), a recording, or an
+            iterable of `(t, values)` with t in seconds.
+        schema: the declared names, and how the trace gives them; a recording says so itself.
+        ordered: whether a stamp that is before the one above it is an error.
+        sources: the names that can arrive; default those that the trace has.
+
+    Raises:
+        TraceError: the trace cannot be read.
+    """
+    recording: FileRecording | TableRecording | PairRecording | None = _of_columns_or_lines(
+        trace, schema, ordered=ordered
+    )
+    if recording is None and hasattr(trace, "names") and hasattr(trace, "end"):
+        given: Recording = trace
+        return given if sources is None else Trace(tuple(given), sources, given.end)
+    if recording is None:
+        from rvmon.readers.pairs import PairRecording
+
+        recording = PairRecording(trace, schema, ordered=ordered)
+    if sources is not None:
+        recording.names = sources
+    return recording
+
+
+def _of_columns_or_lines(
+    trace: Any, schema: Schema, *, ordered: bool
+) -> FileRecording | TableRecording | None:
+    """A file or a table as a recording; `None` if it is neither."""
+    if isinstance(trace, str | Path):
+        from rvmon.readers.recording import FileRecording
+
+        return FileRecording(trace, schema, ordered=ordered)
+    from rvmon.readers.tables import columns_by_name
+
+    columns = columns_by_name(trace)
+    if columns is None:
+        return None
+    from rvmon.readers.columns import TableRecording
+
+    return TableRecording(columns, schema, ordered=ordered)

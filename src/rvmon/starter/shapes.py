@@ -10,14 +10,13 @@ from typing import Any
 
 import msgspec
 
-from rvmon.diagnostics.nearest import cannot_read
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS
-from rvmon.readers.places import local_path, opened
+from rvmon.readers.places import local_path, named_errors, opened
 from rvmon.readers.recording import format_of, messages_of
 from rvmon.starter.column import Shape, Shapes
 from rvmon.starter.messages import message_shapes
@@ -42,20 +41,13 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     form = format_of(path)
     if form in MESSAGE_FORMS:
         return message_shapes(messages_of(path))
-    try:
+    with named_errors(path):
         if form == "parquet":
             return _of_parquet(path, stamps)
         source = opened_as_csv(path, stamps) if form == "csv" else opened(path)
         with source as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
             look = _of_csv if form == "csv" else _of_json
             return look(bounded_lines(text), path, stamps)
-    except OSError as error:
-        raise TraceError(cannot_read(path, error)) from None
-    except UnicodeDecodeError:
-        raise TraceError(f"{path}: not UTF-8 text: is this a binary file?") from None
-    except TraceError as error:
-        message = str(error)
-        raise TraceError(message if path in message else f"{path}: {message}") from None
 
 
 def _of_csv(text: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:

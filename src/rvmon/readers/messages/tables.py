@@ -17,7 +17,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from rvmon.diagnostics.nearest import cannot_read, did_you_mean
+from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.diagnostics.text_file import text_of_file
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import opened_as_csv
@@ -25,7 +25,7 @@ from rvmon.readers.csv_rows import read_layout, split_lines
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import TOPICS
 from rvmon.readers.messages.topic import Message, Topic
-from rvmon.readers.places import endings_of
+from rvmon.readers.places import endings_of, named_errors
 from rvmon.readers.values import FALSE_WORDS, TRUE_WORDS, double_of
 from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_cell
@@ -137,20 +137,12 @@ def _expect(table: Mapping[str, Any], known: Sequence[str], place: Path) -> None
 @contextmanager
 def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
     """The lines of a file, split; errors inside name it."""
-    try:
-        with (
-            opened_as_csv(table.path, table.stamps) as (plain, _),
-            TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
-        ):
-            yield split_lines(bounded_lines(text))
-    except UnicodeDecodeError:
-        raise TraceError(f"{table.path}: not UTF-8 text: is this a binary file?") from None
-    except OSError as error:
-        raise TraceError(cannot_read(table.path, error)) from None
-    except TraceError as error:
-        message = str(error)
-        placed = message if message.startswith(str(table.path)) else f"{table.path}: {message}"
-        raise TraceError(placed) from None
+    with (
+        named_errors(table.path),
+        opened_as_csv(table.path, table.stamps) as (plain, _),
+        TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
+    ):
+        yield split_lines(bounded_lines(text))
 
 
 def _header(table: _Table, rows: Iterator[tuple[int, list[str]]]) -> tuple[Sequence[str], Stamps]:
