@@ -38,8 +38,6 @@ _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 
-_OF_TEXTS: Mapping[str, Callable[..., Any]] = {"number": number}
-
 _OF_ELEMENTS: Mapping[str, Callable[..., Any]] = {"any": some, "all": every}
 
 _ROTATION = ("x", "y", "z", "w")
@@ -134,17 +132,17 @@ def _applied(name: str, args: Sequence[Expression]) -> Term:
             raise RvmonError("`yaw` takes a field that is a quaternion: `yaw(pose.orientation)`")
         quaternion = terms[0].path
         return Applied(yaw, tuple(Field((*quaternion, part)) for part in _ROTATION), "yaw")
-    if name in _OF_TEXTS:
+    if name == "number":
         if len(terms) != 1 or not isinstance(terms[0], Field):
             raise RvmonError("`number` takes a field that is a text: `number(values[Load].value)`")
-        return Applied(_OF_TEXTS[name], terms, name)
+        return Applied(number, terms, name)
     if name in _OF_ARRAYS and len(terms) == 1 and isinstance(terms[0], Field):
         return Applied(_OF_ARRAYS[name], (Elements(terms[0]),), name)
     if name in _OF_ELEMENTS:
         raise RvmonError(f"`{name}` compares an array with a number: `{name}(ranges < 0.3)`")
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:
-        names = [*known, *_OF_TEXTS, *_OF_ELEMENTS, "yaw"]
+        names = [*known, "number", *_OF_ELEMENTS, "yaw"]
         meant = did_you_mean(name, names, f"there are {', '.join(names)}")
         raise RvmonError(f"no function `{name}` in a value: {meant}")
     wanted = len(FUNCTIONS[name].arguments)

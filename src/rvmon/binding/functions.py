@@ -72,19 +72,9 @@ def every(values: Iterable[float], *, holds: Callable[[float, float], bool], lim
     return True if len(known) == len(list(values)) else None
 
 
-def both(first: float, second: float) -> bool:
-    """Whether both are true."""
-    return bool(first) and bool(second)
-
-
-def either(first: float, second: float) -> bool:
-    """Whether one is true."""
-    return bool(first) or bool(second)
-
-
 CONNECTIVES: Mapping[BinaryOp, Callable[[float, float], bool]] = {
-    BinaryOp.AND: both,
-    BinaryOp.OR: either,
+    BinaryOp.AND: lambda first, second: bool(first) and bool(second),
+    BinaryOp.OR: lambda first, second: bool(first) or bool(second),
     BinaryOp.XOR: operator.ne,
 }
 """The connectives of a value."""

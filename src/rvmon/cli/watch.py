@@ -22,7 +22,6 @@ from rvmon.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from rvmon.adapters.dds import DdsSource
     from rvmon.adapters.json_objects import JsonObjects
-    from rvmon.adapters.messages import MessageFeed
     from rvmon.adapters.ros1 import Ros1Source
     from rvmon.adapters.ros2 import Ros2Source
     from rvmon.cli.watch_output import Output
@@ -205,51 +204,15 @@ def _watch_mqtt(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Liv
     return live
 
 
-def _watch_ros1(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    from rvmon.adapters.ros1 import Ros1Source, uses_sim_time
-
-    arguments.sim_time = arguments.sim_time or uses_sim_time()
-    return _watch_topics(
-        arguments, spec, shown, lambda feed: Ros1Source(feed, verdicts=arguments.publish)
-    )
-
-
-def _watch_ros2(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    from rvmon.adapters.ros2 import Ros2Source
-
-    return _watch_topics(
-        arguments, spec, shown, lambda feed: Ros2Source(feed, verdicts=arguments.publish)
-    )
-
-
-def _watch_dds(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    from rvmon.adapters.dds import DdsSource
-
-    domain = arguments.source.partition(":")[2] or os.environ.get("ROS_DOMAIN_ID", "0")
-    if not domain.isdecimal() or int(domain) > _LAST_DOMAIN:
-        raise RvmonError(f"{arguments.source}: expected a domain of DDS, 0 to {_LAST_DOMAIN}")
-    return _watch_topics(
-        arguments,
-        spec,
-        shown,
-        lambda feed: DdsSource(
-            feed,
-            domain=int(domain),
-            definitions=spec.schema.binding.definitions,
-            verdicts=arguments.publish,
-        ),
-    )
-
-
-def _watch_topics(
-    arguments: argparse.Namespace,
-    spec: Spec,
-    shown: Output,
-    made: Callable[[MessageFeed], Ros1Source | Ros2Source | DdsSource],
-) -> Live:
+def _watch_topics(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
     from rvmon.adapters.messages import CLOCK, MessageFeed
     from rvmon.live import SimulatedClock
 
+    domain = _domain_of(arguments.source)
+    if arguments.source.startswith("ros1:"):
+        from rvmon.adapters.ros1 import uses_sim_time
+
+        arguments.sim_time = arguments.sim_time or uses_sim_time()
     followed = None
     if arguments.sim_time:
         if arguments.realtime is not None:
@@ -257,7 +220,20 @@ def _watch_topics(
         followed = SimulatedClock()
     live, hear = _live_here(arguments, spec, shown, followed or _own_clock(arguments))
     feed = MessageFeed(live, spec.schema, clock=followed)
-    source = made(feed)
+    source: Ros1Source | Ros2Source | DdsSource
+    if domain is not None:
+        from rvmon.adapters.dds import DdsSource
+
+        definitions = spec.schema.binding.definitions
+        source = DdsSource(feed, domain=domain, definitions=definitions, verdicts=arguments.publish)
+    elif arguments.source.startswith("ros1:"):
+        from rvmon.adapters.ros1 import Ros1Source
+
+        source = Ros1Source(feed, verdicts=arguments.publish)
+    else:
+        from rvmon.adapters.ros2 import Ros2Source
+
+        source = Ros2Source(feed, verdicts=arguments.publish)
     hear(source.publish)
     with live, source, shown:
         if followed is not None:
@@ -268,6 +244,16 @@ def _watch_topics(
     return live
 
 
+def _domain_of(source: str) -> int | None:
+    """The domain of DDS that a source names; `None` if it is of another kind."""
+    if not source.startswith("dds:"):
+        return None
+    domain = source.partition(":")[2] or os.environ.get("ROS_DOMAIN_ID", "0")
+    if not domain.isdecimal() or int(domain) > _LAST_DOMAIN:
+        raise RvmonError(f"{source}: expected a domain of DDS, 0 to {_LAST_DOMAIN}")
+    return int(domain)
+
+
 _ONE_ROBOT = "a domain or a master is one robot; start one for each"
 _NO_CLOCK = "there is no topic /clock; lines with stamps (t, t_ns, --time) bring their time along"
 _STAMPS = "a binding (--binding) names the field of the stamp"
@@ -276,9 +262,9 @@ _DOORS: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
         _watch_mqtt,
         {"robot": "the first + of the filter is the robot", "sim_time": _NO_CLOCK},
     ),
-    "ros1:": (_watch_ros1, {"robot": _ONE_ROBOT, "time": _STAMPS}),
-    "ros2:": (_watch_ros2, {"robot": _ONE_ROBOT, "time": _STAMPS}),
-    "dds:": (_watch_dds, {"robot": _ONE_ROBOT, "time": _STAMPS}),
+    **dict.fromkeys(
+        ("ros1:", "ros2:", "dds:"), (_watch_topics, {"robot": _ONE_ROBOT, "time": _STAMPS})
+    ),
     "": (
         _watch_lines,
         {"publish": "verdicts go to standard output (--format json)", "sim_time": _NO_CLOCK},

@@ -16,12 +16,11 @@ from rvmon.errors import TraceError
 from rvmon.readers import line_chunks
 from rvmon.readers.batch import NO, YES, Batch, NotPlainError, Occurrences
 from rvmon.readers.cells import cells_of_values
-from rvmon.readers.jsonl_rows import count_of_names, jsonl_samples, names_in
+from rvmon.readers.jsonl_rows import bound, count_of_names, jsonl_samples, names_in
 from rvmon.readers.line_chunks import bounded_lines, whole_pieces
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.rows import Row
 from rvmon.readers.table_batch import ticks_of_column
-from rvmon.trace.ignored import bound
 from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 

@@ -14,13 +14,18 @@ from rvmon.errors import TraceError
 from rvmon.readers.naming import DEFAULT_COLUMNS, aliases_of
 from rvmon.readers.values import DESCRIPTION, as_declared, double_of, fits, shorten
 from rvmon.trace.gaps import Gaps
-from rvmon.trace.ignored import bound
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind, Schema
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import TIME_LIMIT
 
 Line = TypeVar("Line", str, bytes)
+
+MOST_NAMES = 1_000
+"""So many names are told apart."""
+
+MORE = "… and more"
+"""What counts for all other names."""
 
 _MISSING = object()
 
@@ -265,3 +270,16 @@ def _scalar(value: object, kind: Kind, name: str) -> Scalar:
     if fits(made, kind):
         return made  # type: ignore[no-any-return]
     raise TraceError(f"field `{name}`: `{_written(value)}` is not {DESCRIPTION[kind]}")
+
+
+def bound(ignored: Counter[str]) -> None:
+    """Of many names, count all but the first together.
+
+    >>> seen = Counter({f"name{number}": 1 for number in range(MOST_NAMES + 5)})
+    >>> bound(seen)
+    >>> len(seen) - MOST_NAMES, seen["name0"], seen[MORE]
+    (1, 1, 5)
+    """
+    if len(ignored) > MOST_NAMES + 1:
+        further = [name for name in list(ignored)[MOST_NAMES:] if name != MORE]
+        ignored[MORE] += sum(ignored.pop(name) for name in further)

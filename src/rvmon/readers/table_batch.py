@@ -130,10 +130,5 @@ def instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
 
 def _is_whole(column: Any) -> bool:
     """Whether a column is of whole numbers, which doubles may not hold."""
-    kind = getattr(getattr(column, "dtype", None), "kind", "")
-    return kind == "i" or str(getattr(column, "type", getattr(column, "dtype", ""))).lower()[
-        :3
-    ] in (
-        "int",
-        "uin",
-    )
+    kind = getattr(column, "type", getattr(column, "dtype", ""))
+    return str(kind).lower().startswith(("int", "uint"))

@@ -11,8 +11,7 @@ from rvmon.report.markup import e
 from rvmon.report.pages import render
 from rvmon.report.wording import duration_text
 from rvmon.spec.checked.specification import Requirement
-from rvmon.starter.column import Column, Profile
-from rvmon.starter.course import Stretch
+from rvmon.starter.column import Column, Profile, Stretch
 from rvmon.trace.time import format_ticks
 
 _HEIGHT = 40

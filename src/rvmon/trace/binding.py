@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Any
 
 
 class Clock(StrEnum):
@@ -83,7 +84,7 @@ class Applied:
         sign: as it is written; empty of a conversion of units.
     """
 
-    operation: Callable[..., float]
+    operation: Callable[..., Any]
     args: tuple[Term, ...]
     sign: str
 

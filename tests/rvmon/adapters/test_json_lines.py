@@ -8,7 +8,7 @@ from rvmon import Verdict, loads
 from rvmon.adapters.json_lines import feed_lines, read_lines
 from rvmon.adapters.json_objects import JsonObjects, stamp_of
 from rvmon.live import Driver, SimulatedClock
-from rvmon.trace.ignored import MORE, MOST_NAMES
+from rvmon.readers.jsonl_rows import MORE, MOST_NAMES
 
 SPEC = """
 spec s

@@ -6,7 +6,7 @@ import pytest
 from tests.tools.logs import write_ulog
 
 from rvmon.cli import main
-from rvmon.starter.course import MOST, Course
+from rvmon.starter.column import MOST, Course
 
 SPEC = """
 spec base
