@@ -148,8 +148,9 @@ class Spec:
 
         Args:
             trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
-                too), a table (arrays or lists by name, an Arrow table, a data frame), a
-                `Recording`, or an iterable of `(t, values)` with t in seconds.
+                too), a table (arrays or lists by name, an Arrow table, a data frame), a list of
+                paths or of tables that are one recording, a `Recording`, or an iterable of
+                `(t, values)` with t in seconds.
             only: ids of the requirements to judge; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.

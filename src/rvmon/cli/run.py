@@ -69,6 +69,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_reading(parser)
     add_allow_missing(parser)
     parser.add_argument(
+        "--join",
+        action="store_true",
+        help="the files, or those of the folder, are one recording, joined by time: a name is a "
+        "column's, or FILE.COLUMN",
+    )
+    parser.add_argument(
         "--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)"
     )
     add_dask(parser)
@@ -149,10 +155,13 @@ def run(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     from rvmon.cli.judging import spec_and_options
     from rvmon.readers.found import found_recordings
+    from rvmon.readers.joined import JOINT
 
     spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
     _show_warnings(spec)
     traces = list(found_recordings(arguments.traces))
+    if arguments.join:
+        traces = [JOINT.join(traces)]
     if arguments.shard is not None:
         traces = _share(arguments, traces)
     _refuse_places(arguments, traces, spec)

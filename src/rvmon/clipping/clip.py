@@ -12,7 +12,7 @@ from rvmon.readers.csv_rows import Layout, read_layout
 from rvmon.readers.messages.forms import MESSAGE_FORMATS
 from rvmon.readers.parquet import parquet_batches, parquet_file
 from rvmon.readers.places import endings_of, local_path
-from rvmon.readers.recording import FORMATS, format_of
+from rvmon.readers.recording import FORMATS, JOINED, format_of
 from rvmon.readers.tables import arrow_cells
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import ticks_of_stamp
@@ -30,8 +30,8 @@ def refuse_place(path: str, out: str) -> None:
     form = format_of(path)
     if path == "-":
         raise RvmonError("standard input can be read once only: save the recording first")
-    if form == "tables":
-        raise RvmonError(f"{path}: of a folder of tables no piece is written: clip its files")
+    if form in ("tables", JOINED):
+        raise RvmonError(f"{path}: of several files no piece is written: clip each of them")
     if form == "ros2" and local_path(path).is_dir():
         if os.path.lexists(out):
             raise RvmonError(f"cannot write {out}: it is there, and a bag is a new folder")

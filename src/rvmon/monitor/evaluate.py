@@ -11,6 +11,7 @@ from rvmon.diagnostics.shown import shown_path
 from rvmon.monitor.core.planned import planned_core
 from rvmon.monitor.inputs.missing import expect_names
 from rvmon.readers.columns import TableRecording
+from rvmon.readers.joined import Joined
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.rows import Rows
 from rvmon.readers.source import Reading, Source, recording_of
@@ -68,7 +69,7 @@ def open_trace(
     """
     ordered = checked.max_delay is None
     recording = recording_of(trace, reading.schema, ordered=ordered, sources=reading.sources)
-    if reading.sources is None and isinstance(recording, FileRecording | TableRecording):
+    if reading.sources is None and isinstance(recording, FileRecording | TableRecording | Joined):
         mapped = reading.schema.named
         expect_names(checked, recording, mapped, only=only, allowed=reading.allowed)
     return recording
@@ -96,7 +97,7 @@ def evaluate_trace(
     report = judge_source(compiled, source, Asked(None if only is None else tuple(only)))
     rows = getattr(recording, "rows", None)
     health = rows.with_findings(report.health) if isinstance(rows, Rows) else report.health
-    if isinstance(recording, FileRecording | TableRecording):
+    if isinstance(recording, FileRecording | TableRecording | Joined):
         health = (*health, *recording.stamp_doubts())
     name = shown_path(trace) if isinstance(trace, str | PathLike) else ""
     return replace(report, health=tuple(health), trace=name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,8 @@ class TableRecording:
     """
 
     end: int | None = None
+    path = "a table"
+    outages: tuple[()] = ()
 
     def __init__(self, columns: Mapping[str, Any], schema: Schema, *, ordered: bool = True) -> None:
         """Look at the names of columns.
@@ -62,7 +65,7 @@ class TableRecording:
             stamps = Stamps(stamps.column, "iso", is_stated=True)
         self.layout: Layout = layout_of(header, stamps, schema)
         self.names: frozenset[str] | None = self.layout.names
-        self.ignored = self.layout.ignored
+        self.ignored = Counter(self.layout.ignored)
         self.rows = Rows(schema, "row", ordered=ordered)
 
     def pieces(self) -> Iterator[Batch | Sample]:
@@ -101,6 +104,19 @@ class TableRecording:
             raise TraceError(f"columns differ in length: {listed}")
         for row, (stamp, *own) in enumerate(zip(*cells.values(), strict=True)):
             yield row, _ticks(stamp, layout.stamps, row), values_of_cells(layout, own)
+
+    @property
+    def unread(self) -> list[str]:
+        """The columns that stand for nothing."""
+        return list(self.ignored)
+
+    def samples(self) -> Iterator[Sample]:
+        """As going through it."""
+        return iter(self)
+
+    def doubts(self) -> list[Health]:
+        """What is odd about its stamps."""
+        return self.stamp_doubts()
 
     def stamp_doubts(self) -> list[Health]:
         """Whether its first stamps look like milliseconds; of a table that was read."""

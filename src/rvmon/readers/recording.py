@@ -11,6 +11,7 @@ from dataclasses import replace
 from errno import ENOENT
 from io import TextIOWrapper
 from itertools import islice
+from math import inf
 from pathlib import Path
 from stat import S_ISFIFO
 from typing import TYPE_CHECKING, BinaryIO, TextIO
@@ -20,6 +21,7 @@ from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import bare_names, opened_as_csv
 from rvmon.readers.csv_rows import Layout, read_layout, split_lines
 from rvmon.readers.doubtful_unit import LOOKED_AT, doubt_unit
+from rvmon.readers.joined import JOINT, Joined, schemas_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import (
     ARRAYS,
@@ -47,6 +49,9 @@ FORMATS = {
     **MESSAGE_FORMATS,
 }
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
+
+JOINED = "joined"
+"""The format of several files that are one recording: `odom.csv + status.csv`."""
 
 
 class FileRecording:
@@ -82,7 +87,7 @@ class FileRecording:
         brings_stamps = self.is_of_messages and self._format not in ARRAYS
         if brings_stamps and schema.stamps is not None:
             raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
-        if not self.is_of_messages and schema.binding != BY_NAME:
+        if self._format not in (*MESSAGE_FORMS, JOINED) and schema.binding != BY_NAME:
             message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
             raise TraceError(f"{self.path}: {message}")
         unit = "message" if self.is_of_messages else "row" if self._format == "parquet" else "line"
@@ -92,6 +97,7 @@ class FileRecording:
         self.names: frozenset[str] | None = None
         self.end: int | None = None
         self._messages: MessageFile | None = None
+        self._joined: Joined | None = None
         self._known: tuple[list[str], Layout] | None = None
         if self._format == "csv" and self.path != "-":
             with self._text() as text:
@@ -108,6 +114,14 @@ class FileRecording:
             with named_errors(self.path):
                 self._messages = MessageFile(self.path, self._format, schema)
             self.names, self.end = self._messages.names, self._messages.end
+        elif self._format == JOINED:
+            paths = self.path.split(JOINT)
+            of_messages = [format_of(path) in MESSAGE_FORMS for path in paths]
+            files = zip(paths, schemas_of(paths, of_messages, schema), strict=True)
+            parts = [FileRecording(*one, ordered=ordered) for one in files]
+            self._joined = Joined(parts, self.rows)
+            self.ignored, self.names = self._joined.ignored, self._joined.names
+            self.end = self._joined.end
 
     @property
     def is_of_messages(self) -> bool:
@@ -117,12 +131,14 @@ class FileRecording:
     @property
     def unread(self) -> Sequence[str]:
         """The columns, or topics and fields, that nothing is declared for."""
-        return list(self.ignored) if self._messages is None else self._messages.unread
+        held = self._messages or self._joined
+        return list(self.ignored) if held is None else held.unread
 
     @property
     def outages(self) -> Sequence[Outage]:
         """What it lost, in order; text is whole, or an error."""
-        return () if self._messages is None else self._messages.outages
+        held = self._messages or self._joined
+        return () if held is None else held.outages
 
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
@@ -136,13 +152,19 @@ class FileRecording:
             TraceError: with file and line; the samples before it have been given out.
         """
         with named_errors(self.path):
-            yield from self.rows.samples(self._each_row())
+            yield from self.samples()
             if not self.rows.count:
                 raise TraceError("holds no sample")
+
+    def samples(self) -> Iterator[Sample]:
+        """The same, of which there may be none; its errors do not name the file."""
+        return self.rows.samples(self._each_row())
 
     def _each_row(self) -> Iterator[Row]:
         if self._messages is not None:
             yield from self._messages.rows(ordered=self._ordered)
+        elif self._joined is not None:
+            yield from self._joined.read_rows()
         elif self._format == "jsonl" and not can_be_read_again(self.path):
             from rvmon.readers.jsonl_rows import jsonl_samples
 
@@ -159,7 +181,9 @@ class FileRecording:
         Raises:
             TraceError: with file and line.
         """
-        of_columns = self._messages is None and can_be_read_again(self.path)
+        of_columns = (
+            self._messages is None and self._joined is None and can_be_read_again(self.path)
+        )
         if not (of_columns and self._ordered):
             yield from self
             return
@@ -198,7 +222,7 @@ class FileRecording:
     def fraction_read(self) -> float:
         """How much of the file has been read, 0 to 1; 0 where that is not known."""
         if self._messages is not None:
-            return min(1.0, self.rows.count / max(1, self._messages.count))
+            return min(1.0, self.rows.count / (self._messages.count or inf))
         if self._open_file is None or self._open_file.closed:
             return 0.0
         return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
@@ -211,11 +235,14 @@ class FileRecording:
         """
         if self._messages is not None:
             return self._messages.skew.doubts()
+        if self._joined is not None:
+            return self._joined.stamp_doubts()
         first = self.rows.first
         if not first and self._stamps.unit == "s" and self.path != "-":
             bare = replace(self._schema, signals={}, events={})
             again = FileRecording(self.path, bare, ordered=self._ordered)
-            deque(islice(again, LOOKED_AT), 0)
+            with named_errors(self.path):
+                deque(islice(again.samples(), LOOKED_AT), 0)
             first, self._stamps = again.rows.first, again._stamps
         return doubt_unit(first, self._stamps)
 
@@ -225,7 +252,11 @@ class FileRecording:
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
         ]
-        return ignored + self.rows.conflicts() + self.stamp_doubts() + self._cut_off()
+        return ignored + self.rows.conflicts() + self.doubts()
+
+    def doubts(self) -> list[Health]:
+        """What is odd about its stamps and its end."""
+        return self.stamp_doubts() + self._cut_off()
 
     def _cut_off(self) -> list[Health]:
         """That the last cell may be half of one: in CSV the end of a line alone says that it ends.
@@ -303,6 +334,8 @@ def format_of(path: str) -> str:
     """
     if path == "-":
         return "jsonl"
+    if JOINT in path and not os.path.lexists(path):
+        return JOINED
     if not is_address(path) and (form := form_of_folder(path)):
         return form
     if is_address(path) and path.endswith("/"):

@@ -8,6 +8,8 @@ from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
+from rvmon.readers.joined import JOINT, Joined
+from rvmon.readers.rows import Rows
 from rvmon.trace.sample import Outage, Recording, Sample, Trace
 from rvmon.trace.schema import Schema
 
@@ -120,8 +122,9 @@ def recording_of(
     """A trace as a recording; it need not be read yet.
 
     Args:
-        trace: a path, a table (columns by name, an Arrow table, a data frame), a recording, or an
-            iterable of `(t, values)` with t in seconds.
+        trace: a path, a table (columns by name, an Arrow table, a data frame), a list of paths or
+            of tables that are one recording, a recording, or an iterable of `(t, values)` with t in
+            seconds.
         schema: the declared names, and how the trace gives them; a recording says so itself.
         ordered: whether a stamp that is before the one above it is an error.
         sources: the names that can arrive; default those that the trace has.
@@ -129,9 +132,7 @@ def recording_of(
     Raises:
         TraceError: the trace cannot be read.
     """
-    recording: FileRecording | TableRecording | PairRecording | None = _of_columns_or_lines(
-        trace, schema, ordered=ordered
-    )
+    recording = _of_columns_or_lines(trace, schema, ordered=ordered)
     if recording is None and hasattr(trace, "names") and hasattr(trace, "end"):
         given: Recording = trace
         return given if sources is None else Trace(tuple(given), sources, given.end)
@@ -146,17 +147,25 @@ def recording_of(
 
 def _of_columns_or_lines(
     trace: Any, schema: Schema, *, ordered: bool
-) -> FileRecording | TableRecording | None:
-    """A file or a table as a recording; `None` if it is neither."""
+) -> FileRecording | TableRecording | Joined | PairRecording | None:
+    """A file or a table, or several, as a recording; `None` if it is neither."""
+    from rvmon.readers.tables import columns_by_name
+
+    listed = trace if isinstance(trace, list | tuple) and trace else [None]
+    if all(isinstance(one, str | Path) for one in listed):
+        trace = JOINT.join(map(str, listed))
     if isinstance(trace, str | Path):
         from rvmon.readers.recording import FileRecording
 
         return FileRecording(trace, schema, ordered=ordered)
-    from rvmon.readers.tables import columns_by_name
-
-    columns = columns_by_name(trace)
-    if columns is None:
-        return None
     from rvmon.readers.columns import TableRecording
 
-    return TableRecording(columns, schema, ordered=ordered)
+    if columns_by_name(listed[0]) is not None:
+        tables = [
+            TableRecording(columns_by_name(one) or {}, schema, ordered=ordered) for one in listed
+        ]
+        for number, table in enumerate(tables, 1):
+            table.path = f"table {number}"
+        return Joined(tables, Rows(schema, "row", ordered=ordered))
+    columns = columns_by_name(trace)
+    return None if columns is None else TableRecording(columns, schema, ordered=ordered)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from io import TextIOWrapper
 from typing import Any
@@ -13,11 +14,12 @@ import msgspec
 from rvmon.errors import TraceError
 from rvmon.readers.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.readers.csv_rows import split_lines
+from rvmon.readers.joined import JOINT, topics_of
 from rvmon.readers.line_chunks import bounded_lines
 from rvmon.readers.messages.forms import MESSAGE_FORMS
 from rvmon.readers.naming import DEFAULT_COLUMNS
 from rvmon.readers.places import local_path, named_errors, opened
-from rvmon.readers.recording import format_of, messages_of
+from rvmon.readers.recording import JOINED, format_of, messages_of
 from rvmon.starter.column import Shape, Shapes
 from rvmon.starter.messages import message_shapes
 from rvmon.starter.seen import Seen, shapes_seen
@@ -39,6 +41,8 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
         TraceError: the file cannot be read, or has no time column.
     """
     form = format_of(path)
+    if form == JOINED:
+        return _of_files(path.split(JOINT), stamps)
     if form in MESSAGE_FORMS:
         return message_shapes(messages_of(path))
     with named_errors(path):
@@ -48,6 +52,19 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
         with source as (plain, _), TextIOWrapper(plain, "utf-8-sig", newline="") as text:
             look = _of_csv if form == "csv" else _of_json
             return look(bounded_lines(text), path, stamps)
+
+
+def _of_files(paths: Sequence[str], stamps: Stamps | None) -> Shapes:
+    """The names of several files; what two of them have is called `FILE.NAME`."""
+    found = [shapes_of(path, stamps) for path in paths]
+    counts = Counter(name for one in found for name in (*one.declared, *one.left_out))
+    declared: dict[str, Shape] = {}
+    left_out: dict[str, str] = {}
+    for shapes, (_, topic) in zip(found, topics_of(paths), strict=True):
+        full = {name: name if counts[name] == 1 else f"{topic}.{name}" for name in counts}
+        declared |= {full[name]: shape for name, shape in shapes.declared.items()}
+        left_out |= {full[name]: why for name, why in shapes.left_out.items()}
+    return Shapes(declared, left_out)
 
 
 def _of_csv(text: Iterable[str], path: str, stamps: Stamps | None) -> Shapes:

@@ -18,6 +18,7 @@ from rvmon.spec.checked.specification import CheckedSpec
 
 if TYPE_CHECKING:
     from rvmon.readers.columns import TableRecording
+    from rvmon.readers.joined import Joined
 
 _SHOWN = 8
 """Columns that are listed where none is like a name."""
@@ -46,7 +47,7 @@ def names_read(
 
 def expect_names(
     spec: CheckedSpec,
-    recording: FileRecording | TableRecording,
+    recording: FileRecording | TableRecording | Joined,
     mapped: Mapping[str, str],
     *,
     only: Sequence[str] | None,

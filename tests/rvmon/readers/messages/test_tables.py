@@ -181,4 +181,4 @@ def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, ca
     capsys.readouterr()
     clip = ["clip", "runs/two", "--spec", "s.rv", "--failure", "R1#1", "--before", "1s", "-o", "x"]
     assert main(clip) == 2
-    assert "clip its files" in capsys.readouterr().err
+    assert "clip each of them" in capsys.readouterr().err

@@ -1,0 +1,160 @@
+"""Several files of one log, as a logger leaves them that writes one for each topic."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from heapq import merge
+from itertools import takewhile
+from typing import Protocol
+
+from rvmon.errors import TraceError
+from rvmon.readers.places import name_of, named_errors
+from rvmon.readers.rows import Row, Rows
+from rvmon.trace.binding import BY_NAME
+from rvmon.trace.health import Health
+from rvmon.trace.sample import Outage, Recording, Sample
+from rvmon.trace.schema import Schema
+
+JOINT = " + "
+"""Between the paths of files that are one recording."""
+
+
+class File(Recording, Protocol):
+    """One of the files; see `rvmon.readers.recording.FileRecording`."""
+
+    path: str
+    ignored: Counter[str]
+    rows: Rows
+
+    @property
+    def unread(self) -> Sequence[str]:
+        """The columns that nothing is declared for."""
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost."""
+
+    def samples(self) -> Iterator[Sample]:
+        """Its samples, of which there may be none."""
+
+    def doubts(self) -> list[Health]:
+        """What is odd about it."""
+
+
+class Joined:
+    """Files that are one recording: their samples in order of time, each with the names it has.
+
+    A name is that of a column, or `FILE.COLUMN`, with the file's name without what all of them
+    begin with: `status.armed` is the column `armed` of `log_17_status_0.csv`. A name lasts as long
+    as its own file says: nothing is carried into rows of others, and nothing is resampled.
+
+    Args:
+        files: of any formats, each opened by its schema of `schemas_of`; or tables in memory.
+        rows: makes samples of theirs.
+
+    Attributes:
+        names: declared names that have a file; `None`: any may come.
+        end: the last instant, ticks, if all of them say one.
+        unread: the columns that nothing is declared for.
+        ignored: the same, counted.
+        outages: what was lost, in order.
+        count: 0: nobody has counted the rows.
+
+    Raises:
+        TraceError: two files have one name.
+    """
+
+    count = 0
+
+    def __init__(self, files: Sequence[File], rows: Rows) -> None:
+        self._files = files
+        self.rows = rows
+        found: dict[str, str] = {}
+        for file in files:
+            for name in sorted(file.names or ()):
+                if name in found:
+                    raise TraceError(
+                        f"`{name}` is in {found[name]} and in {file.path}: declare "
+                        f"`FILE.{name}` of the file that is meant, or leave the column out"
+                    )
+                found[name] = file.path
+        is_known = all(file.names is not None for file in files)
+        self.names: frozenset[str] | None = frozenset(found) if is_known else None
+        ends = [file.end for file in files if file.end is not None]
+        self.end = max(ends) if len(ends) == len(files) else None
+        self.unread = [column for file in files for column in file.unread]
+        self.ignored = sum((file.ignored for file in files), Counter[str]())
+        self.outages = sorted(_outages_of(files), key=lambda one: one.since)
+
+    def read_rows(self) -> Iterator[Row]:
+        """Number, ticks and values of each sample.
+
+        Raises:
+            TraceError: with file and line.
+        """
+        samples = merge(*map(_samples_of, self._files), key=lambda one: one.t)
+        return ((number, one.t, one.values) for number, one in enumerate(samples, 1))
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Samples in order of time, equal stamps merged; errors are those of `read_rows`."""
+        return self.rows.samples(self.read_rows())
+
+    def stamp_doubts(self) -> list[Health]:
+        """What is odd about each file."""
+        return [one for file in self._files for one in (*file.rows.conflicts(), *file.doubts())]
+
+
+def _samples_of(part: File) -> Iterator[Sample]:
+    """The samples of a file, of which there need be none: a topic may be silent."""
+    with named_errors(part.path):
+        yield from part.samples()
+
+
+def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:
+    """Of each file its name, and that without what all begin with and the number of an instance.
+
+    >>> topics_of(["log_17_odom_0.csv", "log_17_status_0.csv"])
+    [('log_17_odom_0', 'odom'), ('log_17_status_0', 'status')]
+    """
+    stems = [name_of(path).partition(".")[0] for path in paths]
+    alike = sum(1 for _ in takewhile(lambda ones: len({*ones}) == 1, zip(*stems, strict=False)))
+    cut = stems[0][:alike].rfind("_") + 1 if len(stems) > 1 else 0
+    return [(stem, re.sub(r"_0$", "", stem[cut:])) for stem in stems]
+
+
+def schemas_of(paths: Sequence[str], of_messages: Sequence[bool], schema: Schema) -> list[Schema]:
+    """What is read of each file: a name that begins with its own is that of the column behind it.
+
+    Args:
+        paths: of the files.
+        of_messages: which of them hold messages, where topics lead to names.
+        schema: the declared names, and how the files give them.
+    """
+    return [
+        replace(schema, stamps=None) if is_of_messages else _schema_of(topics, schema)
+        for is_of_messages, topics in zip(of_messages, topics_of(paths), strict=True)
+    ]
+
+
+def _schema_of(topics: tuple[str, str], schema: Schema) -> Schema:
+    fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
+    own = {
+        name: name.removeprefix(f"{topic}.")
+        for topic in topics
+        for name in (*schema.signals, *schema.events, *fields)
+        if name.startswith(f"{topic}.")
+    }
+    for name, column in schema.columns.items():
+        leading = [topic for topic in topics if column.startswith(f"{topic}.")]
+        own[name] = column.removeprefix(f"{leading[0]}.") if leading else column
+    return replace(schema, columns=own, binding=BY_NAME)
+
+
+def _outages_of(parts: Sequence[File]) -> Iterator[Outage]:
+    """Outages of files as those of the names that they feed."""
+    for part in parts:
+        for one in part.outages:
+            yield replace(one, names=part.names) if one.names is None else one
