@@ -11,8 +11,7 @@ import numpy as np
 from tests.tools.compare import Key
 from tests.tools.doors import content_of, whole
 
-from rvmon.monitor.robustness.monitor import RobustnessMonitor
-from rvmon.monitor.robustness.values import Measured, Robustness
+from rvmon.monitor.robustness import Measured, Robustness, RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.testing.case import Case
 from rvmon.trace.sample import Sample

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor
-    from rvmon.monitor.robustness.monitor import RobustnessMonitor
-    from rvmon.monitor.robustness.values import Margins
+    from rvmon.monitor.robustness import Margins, RobustnessMonitor
     from rvmon.readers.source import Reading, ReadingArguments, SchemaArguments, Source
     from rvmon.spec.checked.specification import CheckedSpec, Requirement
     from rvmon.trace.sample import Recording
@@ -132,7 +131,7 @@ class Spec:
         Raises:
             SnapshotError: they are none, damaged, of another specification, or of another rvmon.
         """
-        from rvmon.monitor.build import restore
+        from rvmon.monitor.core.monitor import restore
 
         return restore(self._compiled, data)
 
@@ -194,14 +193,10 @@ class Spec:
                 once or in parts.
             robustness: whether each attempt is to have its robustness.
         """
-        from rvmon.monitor.evaluate import Asked, judge_source
+        from rvmon.monitor.evaluate import judge_and_measure, judge_source
 
-        asked = Asked(requirements_asked(self.checked, only), decided)
-        if robustness:
-            from rvmon.monitor.measure import judge_and_measure
-
-            return judge_and_measure(self._compiled, source, asked)
-        return judge_source(self._compiled, source, asked)
+        judge = judge_and_measure if robustness else judge_source
+        return judge(self._compiled, source, requirements_asked(self.checked, only), decided)
 
     def _reading(
         self,
@@ -271,7 +266,7 @@ class Spec:
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
-        from rvmon.monitor.measure import margins_of
+        from rvmon.monitor.evaluate import margins_of
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         end = None if until is None else ticks_of_seconds(until)
@@ -296,7 +291,7 @@ class Spec:
         Raises:
             UnknownNameError: `only`, `settle` or `sources` names what does not exist.
         """
-        from rvmon.monitor.robustness.monitor import RobustnessMonitor
+        from rvmon.monitor.robustness import RobustnessMonitor
 
         only, names = requirements_asked(self.checked, only), sources_asked(self.checked, sources)
         return RobustnessMonitor(self._compiled, only, settle, names, streams=streams)

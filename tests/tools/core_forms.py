@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from rvmon.errors import TimeOrderError
 from rvmon.monitor import CompiledSpec, build_monitor
-from rvmon.monitor.build import restore
-from rvmon.monitor.core.monitor import Monitor
+from rvmon.monitor.core.monitor import Monitor, restore
 from rvmon.monitor.core.planned import PlannedCore, planned_core
 from rvmon.monitor.core.recorded import report_of_run
 from rvmon.testing.case import Case

@@ -6,7 +6,7 @@ import random
 from collections.abc import Mapping, Sequence
 
 from rvmon.monitor import Monitor
-from rvmon.monitor.build import restore
+from rvmon.monitor.core.monitor import restore
 from rvmon.trace.sample import Value
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report

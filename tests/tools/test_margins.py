@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import loads
-from rvmon.monitor.robustness.monitor import RobustnessMonitor
+from rvmon.monitor.robustness import RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.case import Case, show_case

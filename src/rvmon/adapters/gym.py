@@ -13,7 +13,7 @@ except ImportError:
     raise not_installed("an environment", "gymnasium") from None
 
 if TYPE_CHECKING:
-    from rvmon.monitor.robustness.values import Measured
+    from rvmon.monitor.robustness import Measured
     from rvmon.session import Spec
     from rvmon.verdict.attempt import Attempt
 

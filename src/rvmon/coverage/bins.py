@@ -41,7 +41,7 @@ class Bins:
         Raises:
             RvmonError: a formula is beyond the core.
         """
-        return planned_as(self.spec, (), Kept(pack(self.plan).data, frozenset(), {}))
+        return planned_as(self.spec, (), Kept(pack(self.plan).data))
 
     @cached_property
     def plan(self) -> Plan:

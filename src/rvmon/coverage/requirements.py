@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cached_property
 
 from rvmon import native
-from rvmon.core.plan import pack
 from rvmon.coverage.core_run import Judged, Passages, attempts_of, passages_of
 from rvmon.coverage.hits import Hit
 from rvmon.coverage.model import Group, Item, Subject, group_of
@@ -16,9 +15,7 @@ from rvmon.explain.graph import Graph, graph_of
 from rvmon.monitor.compiled.code_plan import plan_alone
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.packed_cache import Kept
-from rvmon.monitor.core.planned import PlannedCore, planned_as
-from rvmon.monitor.inputs.health import readers_of
+from rvmon.monitor.core.planned import PlannedCore, kept_of, planned_as
 from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Formula, Unary, UnaryOp
 from rvmon.spec.checked.goals import BinKind
 from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
@@ -211,9 +208,8 @@ class WatchedRequirements:
 def _planned(compiled: CompiledSpec, traced: Collection[str]) -> PlannedCore:
     chosen = tuple(compiled.requirements.values())
     plan = plan_alone(compiled, traced=traced)
-    single = frozenset().union(*(one.single_payloads for one in chosen))
-    made = Kept(pack(plan).data, single, readers_of(chosen))
-    return planned_as(compiled.checked, tuple(compiled.requirements), made, compiled)
+    ids = tuple(compiled.requirements)
+    return planned_as(compiled.checked, ids, kept_of(plan, chosen), compiled)
 
 
 def _instant(attempt: Judged) -> int:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 
-from rvmon.explain.intervals import Spans
-from rvmon.explain.truths import Question, Seen, subformulas
+from rvmon.explain.truths import Question, Seen, Spans, subformulas
 from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
 from rvmon.spec.checked.specification import Requirement
 from rvmon.spec.checked.tense import has_future

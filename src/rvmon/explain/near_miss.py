@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from rvmon.explain.intervals import holds
-from rvmon.explain.truths import Question, Seen, Truth, look_through
+from rvmon.explain.truths import Question, Seen, Truth, holds, look_through
 from rvmon.spec.checked.formula import (
     Binary,
     BinaryOp,

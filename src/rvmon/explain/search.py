@@ -55,7 +55,7 @@ class Player:
             if name in {one.requirement.id for one in requirements}
         )
         plan = plan_alone(compiled, self._ids, stepped=True)
-        kept = Kept(pack(plan).data, frozenset(), {})
+        kept = Kept(pack(plan).data)
         self._planned = planned_as(compiled.checked, self._ids, kept, compiled)
         self._run = self._planned.monitor(frozenset())
 

@@ -6,11 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.explain.example import small_step
-from rvmon.explain.intervals import Spans, both, outside
 from rvmon.explain.late_arrival import late_in, waits_of
-from rvmon.explain.truths import TruthRecorder, look_through, parts_of, subformulas
+from rvmon.explain.truths import (
+    Seen,
+    Spans,
+    both,
+    look_through,
+    outside,
+    parts_of,
+    subformulas,
+    truths_of_parts,
+)
 from rvmon.spec.checked.formula import BoundAtom, Constant, Formula
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.spec.print.printer import format_formula
 from rvmon.trace.sample import Sample
 from rvmon.verdict.attempt import Attempt
@@ -88,26 +96,24 @@ def dissect(
     questions = [parts_of(requirement, attempt), *waits.values()]
     seen = look_through(spec, questions, samples, end, names)
     late = late_in([attempt], waits, seen).get(attempt.number)
-    recorder = TruthRecorder(requirement, attempt, seen)
-    return Breakdown(attempt, start, stop, begin, late, part_truths_of(recorder, start, stop))
+    part_truths = part_truths_of(requirement, attempt, seen, start, stop)
+    return Breakdown(attempt, start, stop, begin, late, part_truths)
 
 
-def part_truths_of(recorder: TruthRecorder, start: int, stop: int) -> tuple[PartTruth, ...]:
+def part_truths_of(
+    requirement: Requirement, attempt: Attempt, seen: Seen, start: int, stop: int
+) -> tuple[PartTruth, ...]:
     """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time."""
-    requirement = recorder.requirement
+    truths = truths_of_parts(requirement, attempt, seen)
     part_truths = []
     parts: list[tuple[str, Formula]] = [("owed", requirement.consequent)]
-    if not isinstance(requirement.trigger, BoundAtom) and not _is_true(requirement.trigger):
+    if not isinstance(requirement.trigger, BoundAtom) and requirement.trigger != Constant(True):
         parts.insert(0, ("trigger", requirement.trigger))
     for part, whole in parts:
         for depth, formula in subformulas(whole, 0):
-            truth = recorder.truth(formula)
+            truth = truths[id(formula)]
             shown = ((start, stop),)
             true = both(truth.sure, shown)
             false = outside(both(truth.may, shown), start, stop)
             part_truths.append(PartTruth(depth, format_formula(formula), part, true, false))
     return tuple(part_truths)
-
-
-def _is_true(formula: Formula) -> bool:
-    return isinstance(formula, Constant) and formula.value

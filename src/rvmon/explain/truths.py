@@ -1,13 +1,14 @@
-"""Where formulas are true over a whole recording, in spans of ticks."""
+"""Where formulas are true over a whole recording, in sorted and disjoint intervals of ticks."""
 
 from __future__ import annotations
 
 from array import array
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
-from rvmon.explain.intervals import FOREVER, Spans, both, outside, union
 from rvmon.formula.core import Core
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
@@ -23,6 +24,51 @@ from rvmon.verdict.attempt import Attempt
 
 if TYPE_CHECKING:
     from rvmon.readers.batch import Batch
+
+
+Spans = tuple[tuple[int, int], ...]
+"""Closed intervals of ticks, ascending, none touching the next."""
+
+FOREVER = 1 << 63
+"""Later than any tick."""
+
+
+def union(intervals: Iterable[tuple[int, int]]) -> Spans:
+    """The ticks of some intervals; empty ones are dropped.
+
+    >>> union([(5, 7), (1, 2), (3, 4)])
+    ((1, 7),)
+    """
+    merged: list[tuple[int, int]] = []
+    for low, high in sorted(intervals):
+        if low > high:
+            continue
+        if merged and low <= merged[-1][1] + 1:
+            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
+        else:
+            merged.append((low, high))
+    return tuple(merged)
+
+
+def holds(spans: Spans, t: int) -> bool:
+    """Whether a tick lies in one of the spans."""
+    place = bisect_right(spans, t, key=lambda span: span[0])
+    return place > 0 and t <= spans[place - 1][1]
+
+
+def both(left: Spans, right: Spans) -> Spans:
+    """The ticks that lie in both."""
+    return union((max(a, c), min(b, d)) for a, b in left for c, d in right)
+
+
+def outside(spans: Spans, low: int, high: int) -> Spans:
+    """The ticks from `low` to `high` that lie in none.
+
+    >>> outside(((2, 3),), 0, 5)
+    ((0, 1), (4, 5))
+    """
+    edges = [(low - 1, low - 1), *spans, (high + 1, high + 1)]
+    return union((a + 1, b - 1) for (_, a), (b, _) in pairwise(edges))
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,31 +168,6 @@ def look_through(
     ticks = _Ticks(positions, begin or 0, end)
     truths = {whose: one.truths(ticks) for whose, one in groups.items()}
     return Seen(names, begin, end, positions, frozenset(valueless), truths)
-
-
-def truths_of(
-    spec: CheckedSpec,
-    formulas: Sequence[Formula],
-    samples: Iterable[Sample],
-    end: int,
-    names: frozenset[str] | None = None,
-    *,
-    for_each: ForEach | None = None,
-    captured: Mapping[str, Scalar] | None = None,
-) -> list[Truth]:
-    """Where formulas are true in a recording, see `look_through`.
-
-    Args:
-        spec: the specification.
-        formulas: may speak of the future.
-        samples: the recording, in order.
-        end: its last instant, ticks.
-        names: the signals and events that have a source; `None`: all.
-        for_each: see `Question`.
-        captured: see `Question`.
-    """
-    question = Question(tuple(formulas), for_each, captured or {})
-    return look_through(spec, [question], samples, end, names).truths(question)
 
 
 class _Group:
@@ -315,28 +336,21 @@ def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
             pass
 
 
-class TruthRecorder:
-    """Sees the truth of what a requirement is made of over a recording.
+def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
+    """The trigger, what is owed, and all that they are made of."""
+    wholes = (requirement.trigger, requirement.consequent)
+    formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
+    return Question(formulas, requirement.for_each, attempt.captured)
+
+
+def truths_of_parts(requirement: Requirement, attempt: Attempt, seen: Seen) -> dict[int, Truth]:
+    """Where the trigger, what is owed and their parts are true, by `id` of the formula.
 
     Args:
         requirement: that is taken apart.
         attempt: of it.
         seen: of the recording, which was looked through for `parts_of` both.
     """
-
-    def __init__(self, requirement: Requirement, attempt: Attempt, seen: Seen) -> None:
-        self.requirement = requirement
-        question = parts_of(requirement, attempt)
-        found = zip(question.formulas, seen.truths(question), strict=True)
-        self._truths = {id(formula): truth for formula, truth in found}
-
-    def truth(self, formula: Formula) -> Truth:
-        """Where the trigger, what is owed, or a part of them, is true."""
-        return self._truths[id(formula)]
-
-
-def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
-    """The trigger, what is owed, and all that they are made of."""
-    wholes = (requirement.trigger, requirement.consequent)
-    formulas = tuple(one for whole in wholes for _, one in subformulas(whole, 0))
-    return Question(formulas, requirement.for_each, attempt.captured)
+    question = parts_of(requirement, attempt)
+    found = zip(question.formulas, seen.truths(question), strict=True)
+    return {id(formula): truth for formula, truth in found}

@@ -6,10 +6,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rvmon.monitor.build import build_monitor
     from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.monitor.compiled.specification import CompiledSpec, compile_spec
-    from rvmon.monitor.core.monitor import Monitor
+    from rvmon.monitor.core.monitor import Monitor, build_monitor
 
 __all__ = ["CompiledRequirement", "CompiledSpec", "Monitor", "build_monitor", "compile_spec"]
 
@@ -18,7 +17,7 @@ _HOMES = {
     "CompiledRequirement": "rvmon.monitor.compiled.requirement",
     "CompiledSpec": "rvmon.monitor.compiled.specification",
     "Monitor": "rvmon.monitor.core.monitor",
-    "build_monitor": "rvmon.monitor.build",
+    "build_monitor": "rvmon.monitor.core.monitor",
     "compile_spec": "rvmon.monitor.compiled.specification",
 }
 

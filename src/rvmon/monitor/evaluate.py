@@ -1,60 +1,55 @@
-"""A finished trace judged by the core, whatever holds it."""
+"""A finished trace judged, or measured, by the core, whatever holds it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rvmon.diagnostics.shown import shown_path
+from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.monitor.core.planned import planned_core
+from rvmon.monitor.core.recording import RecordingRun, judge_recording
 from rvmon.monitor.inputs.missing import expect_names
+from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
 from rvmon.readers.columns import TableRecording
 from rvmon.readers.joined import Joined
 from rvmon.readers.recording import FileRecording
 from rvmon.readers.rows import Rows
 from rvmon.readers.source import Reading, Source, recording_of
-from rvmon.trace.sample import Recording
+from rvmon.trace.sample import Recording, Sample
+from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
-    from rvmon.monitor.compiled.specification import CompiledSpec
-    from rvmon.readers.source import Source
+    from numpy.typing import NDArray
+
+    from rvmon.readers.batch import Batch
     from rvmon.spec.checked.specification import CheckedSpec
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
+
+Decided = Callable[[Sequence[Attempt]], object]
 
 
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """What is wanted of a recording.
-
-    Attributes:
-        only: ids of the requirements; `None`: all.
-        decided: called with all attempts that were decided before a fault of the recording.
-    """
-
-    only: tuple[str, ...] | None = None
-    decided: Callable[[Sequence[Attempt]], object] = len
-
-
-def judge_source(compiled: CompiledSpec, source: Source, asked: Asked) -> Report:
+def judge_source(
+    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
+) -> Report:
     """Judge a recording: rows of columns together, samples one by one.
 
     Args:
         compiled: the specification.
         source: the recording.
-        asked: what is wanted.
+        only: ids of the requirements; `None`: all.
+        decided: called with all attempts that were decided before a fault of the recording.
 
     Raises:
         RvmonError: a requirement is beyond the core.
         TraceError: the recording cannot be read.
     """
-    from rvmon.monitor.core.recording import judge_recording
-
-    planned = planned_core(compiled, asked.only)
-    return judge_recording(compiled.checked, planned, source, asked.decided)
+    planned = planned_core(compiled, only)
+    return judge_recording(compiled.checked, planned, source, decided)
 
 
 def open_trace(
@@ -94,10 +89,151 @@ def evaluate_trace(
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     source = Source(recording, until)
-    report = judge_source(compiled, source, Asked(None if only is None else tuple(only)))
+    report = judge_source(compiled, source, only)
     rows = getattr(recording, "rows", None)
     health = rows.with_findings(report.health) if isinstance(rows, Rows) else report.health
     if isinstance(recording, FileRecording | TableRecording | Joined):
         health = (*health, *recording.stamp_doubts())
     name = shown_path(trace) if isinstance(trace, str | PathLike) else ""
     return replace(report, health=tuple(health), trace=name)
+
+
+_ROWS = 4096
+"""So many are measured, and their figures taken, at once: they suit a cache of the processor."""
+
+
+def margins_of(
+    compiled: CompiledSpec,
+    trace: Any,
+    reading: Reading,
+    *,
+    only: Sequence[str] | None = None,
+    until: int | None = None,
+    streams: bool = True,
+) -> Margins:
+    """The robustness of all attempts on a trace.
+
+    Args:
+        compiled: the specification.
+        trace: as `Spec.evaluate` takes it; so are the errors.
+        reading: how it is read.
+        only: ids of the requirements; default all.
+        until: the end of the trace in ticks, if after its last sample.
+        streams: whether to measure each position, too.
+    """
+    recording = open_trace(compiled.checked, trace, reading, only=only)
+    source = Source(recording, until)
+    run = _Run(compiled, source, only, streams=streams)
+    for piece in source.pieces():
+        run.take(piece)
+    return run.margins()
+
+
+def judge_and_measure(
+    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
+) -> Report:
+    """Judge a recording, and give each attempt its robustness.
+
+    The recording is read once: each piece is measured, then judged. Arguments and errors are those
+    of `judge_source`.
+    """
+    run = _Run(compiled, source, only, streams=False)
+
+    def shown(pieces: Iterator[Any]) -> Iterator[Any]:
+        for piece in source.shown(pieces):
+            _take_to_end(run, source, piece)  # nobody may come back behind the last one
+            yield piece
+
+    report = judge_source(compiled, replace(source, shown=shown), only, decided)
+    margins = run.margins()
+    return replace(report, attempts=tuple(map(margins.of, report.attempts)))
+
+
+def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:
+    """Take a piece as far as the trace goes."""
+    until = source.until if source.is_cut else None
+    if isinstance(piece, Sample):
+        if until is None or piece.t <= until:
+            run.take(piece)
+    else:
+        run.take(piece if until is None else piece.up_to(until))
+
+
+class _Run:
+    """Measures a recording."""
+
+    def __init__(
+        self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
+    ) -> None:
+        planned = planned_core(compiled, only, measured=True)
+        self._run = RecordingRun(compiled.checked, planned, source, finds=False)
+        self._run.core.measure(FIGURES, streams)
+        self._found = RecordedMargins(planned.packed.ids)
+
+    def take(self, piece: Batch | Sample) -> None:
+        if isinstance(piece, Sample):
+            self._run.take(piece)
+        else:
+            for first in range(0, len(piece.times), _ROWS):
+                self._run.take(piece.cut(first, min(first + _ROWS, len(piece.times))))
+                self._found.add(self._run.core.margins())
+
+    def margins(self) -> Margins:
+        self._run.finish()
+        self._found.add(self._run.core.margins())
+        return self._found.margins()
+
+
+_FIGURES = ("low", "high", "kept")
+
+MARGIN = np.dtype(
+    [
+        ("t", np.int64),
+        *((name, np.float64) for name in _FIGURES),
+        *(("requirement", np.int32), ("number", np.uint32)),
+        *((name, np.uint8) for name in ("in_doubt", "of_position")),
+    ],
+    align=True,
+)
+"""`rv_margin` of `core.h`."""
+
+
+class RecordedMargins:
+    """The figures of a run.
+
+    Args:
+        ids: of requirements, by number.
+    """
+
+    def __init__(self, ids: Sequence[str]) -> None:
+        self._ids = ids
+        self._attempts: dict[Key, Robustness] = {}
+        self._doubtful: dict[Key, Robustness] = {}
+        self._parts: dict[int, list[Sequence[NDArray[Any]]]] = {}
+
+    def add(self, found: bytes) -> None:
+        """Take figures as bytes of `MARGIN`."""
+        margins = np.frombuffer(found, MARGIN)
+        of_position = margins["of_position"] == 1
+        if not of_position.all():
+            self._add_attempts(margins[~of_position])
+            margins = margins[of_position]
+        several = len(self._ids) > 1
+        numbers = np.unique(margins["requirement"]).tolist() if several else [0]
+        for number in numbers if len(margins) else ():
+            own = margins[margins["requirement"] == number] if several else margins
+            columns = [own[name].copy() for name in ("t", *_FIGURES)]
+            self._parts.setdefault(number, []).append(columns)
+
+    def _add_attempts(self, margins: NDArray[Any]) -> None:
+        for _, low, high, kept, requirement, number, in_doubt, _ in margins.tolist():
+            figures = self._doubtful if in_doubt else self._attempts
+            figures[self._ids[requirement], number] = Robustness(low, high, kept)
+
+    def margins(self) -> Margins:
+        """All of them."""
+        streams = {
+            self._ids[number]: Stream(*map(np.concatenate, zip(*parts, strict=True)))
+            for number, parts in self._parts.items()
+        }
+        return Margins(self._attempts, self._doubtful, streams)

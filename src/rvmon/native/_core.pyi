@@ -1,7 +1,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from rvmon.monitor.robustness.values import Measured, Robustness
+from rvmon.monitor.robustness import Measured, Robustness
 from rvmon.verdict.attempt import Attempt
 
 source_hash: str

@@ -12,7 +12,7 @@ from rvmon.errors import RvmonError
 from rvmon.explain.late_arrival import late_in, waits_of
 from rvmon.explain.near_miss import miss_in, parts_asked
 from rvmon.explain.subformulas import PartTruth, part_truths_of
-from rvmon.explain.truths import Question, Seen, TruthRecorder, look_through, parts_of
+from rvmon.explain.truths import Question, Seen, look_through, parts_of
 from rvmon.report.markup import Child
 from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
@@ -280,7 +280,7 @@ class _Panels:
         if start > stop:
             return ()
         requirement = self._content.spec.requirements[attempt.requirement]
-        return part_truths_of(TruthRecorder(requirement, attempt, self._seen), start, stop)
+        return part_truths_of(requirement, attempt, self._seen, start, stop)
 
     def _miss(self, name: str) -> str:
         """What the trigger lacked: as was found when the run was judged, or by looking now."""

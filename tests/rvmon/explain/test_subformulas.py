@@ -5,9 +5,16 @@ import random
 import pytest
 from tests.tools import build
 
-from rvmon.explain.intervals import both, outside, union
 from rvmon.explain.subformulas import dissect
-from rvmon.explain.truths import TruthRecorder, look_through, parts_of, subformulas
+from rvmon.explain.truths import (
+    TruthRecorder,
+    both,
+    look_through,
+    outside,
+    parts_of,
+    subformulas,
+    union,
+)
 from rvmon.monitor import build_monitor, compile_spec
 from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.case import show_case

@@ -59,7 +59,7 @@ class Losses:
     def lose(
         self, names: Iterable[str] | None, since: int, until: int | None, why: str
     ) -> Sequence[Turn]:
-        """What is to be done so that names are lost; see `rvmon.monitor.core.fed.FedMonitor`."""
+        """What is to be done so that names are lost; see `rvmon.monitor.core.feed.FedMonitor`."""
         some = self._named(names)
         self._note(HealthKind.DROPPED, None if names is None else some, since, why)
         if until is None:

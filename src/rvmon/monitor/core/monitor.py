@@ -3,32 +3,29 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from heapq import nsmallest
-from typing import Any, NoReturn, ParamSpec
+from typing import Any, NoReturn
 
 from rvmon import native
-from rvmon.errors import RvmonError, SnapshotError, TraceError
+from rvmon.errors import RvmonError, SnapshotError, TraceError, UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec
-from rvmon.monitor.core.fed import FedMonitor
-from rvmon.monitor.core.feed import Feed
-from rvmon.monitor.core.findings import health_of_run
-from rvmon.monitor.core.listeners import Callback, Listeners
-from rvmon.monitor.core.one_call import OneCall, capped, not_passed, overlap
-from rvmon.monitor.core.planned import VERDICTS, PlannedCore
-from rvmon.monitor.core.snapshot import Options, put_back, written
+from rvmon.monitor.core.feed import FedMonitor, Feed
+from rvmon.monitor.core.input_health import health_of_run
+from rvmon.monitor.core.one_call import Callback, Listeners, OneCall, capped, not_passed
+from rvmon.monitor.core.planned import VERDICTS, PlannedCore, planned_core
+from rvmon.monitor.core.snapshot import Options, document_of, put_back, written
+from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
+from rvmon.spec.checked.selection import requirements_asked
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict, fold
 
-P = ParamSpec("P")
-
 
 class Monitor(FedMonitor[Attempt]):
-    """Judges a stream of samples; made by `rvmon.monitor.build`.
+    """Judges a stream of samples; made by `rvmon.monitor.core.monitor`.
 
     What takes one sample is a function of the core, which gives samples back to Python for a closer
     look that are no plain values in a `dict`, or refused.
@@ -54,25 +51,13 @@ class Monitor(FedMonitor[Attempt]):
         if options.keep is not None:
             self._core.keep(options.keep)
         self._listeners = Listeners()
-        self._one_call = OneCall(self)
+        self._one_call = OneCall(self._core)
         self._begin()
 
     @property
     def core(self) -> native.Monitor:
         """The run of the core."""
         return self._core
-
-    def _enter(self) -> None:
-        """Have the core take no samples quickly, and note how far the run has come."""
-        if not self._core.hold(True):
-            raise overlap()
-        self._note_times()
-
-    def _leave(self) -> None:
-        self._core.hold(False)
-
-    def _note_times(self) -> None:
-        self._began, self._last, self._reached = self._core.times()
 
     def reset(self) -> None:
         """Forget the run; the next sample starts another. Callbacks stay."""
@@ -82,9 +67,9 @@ class Monitor(FedMonitor[Attempt]):
         checked, options = self.compiled.checked, self.options
         self._feed = Feed(checked, self._planned, self._core, options.sources, options.settle)
         self._report: Report | None = None
-        self._interrupted: int | None = None
+        self._one_call.interrupted = None
         self._core.reset()
-        self._note_times()
+        self._one_call.note_times()
         self._attend()
 
     def _attend(self) -> None:
@@ -153,11 +138,9 @@ class Monitor(FedMonitor[Attempt]):
         """Have a function called with each attempt that fails; otherwise as `on_decided`."""
         return self._listeners.add(callback, self._attend, failures_only=True)
 
-    def _tell(
-        self, tell: Callable[P, None], *args: P.args, **kwargs: P.kwargs
-    ) -> Sequence[Attempt]:
+    def _tell(self, tell: Callable[[], None]) -> Sequence[Attempt]:
         """Make a call, and no other until it is over; who listens hears what it decided."""
-        decided = self._one_call(self._decided, partial(tell, *args, **kwargs))
+        decided = self._one_call(self._decided, tell)
         self._listeners.call(decided)
         return decided
 
@@ -197,16 +180,16 @@ class Monitor(FedMonitor[Attempt]):
         self._feed.close()
         end = self._core.finish(t_ns)
         decided = self._core.flush()
-        self._note_times()
-        report = self._reported(end)
-        self._report = report if self._interrupted is None else capped(report, self._interrupted)
+        self._one_call.note_times()
+        report, interrupted = self._reported(end), self._one_call.interrupted
+        self._report = report if interrupted is None else capped(report, interrupted)
         return self._report, decided
 
     def _reported(self, end: int | None) -> Report:
         """What is said of the run, which is over."""
         from rvmon.monitor.core.recorded import report_of_run  # NumPy is needed at the end alone
 
-        report = report_of_run(self._planned, self._core, self._began or 0, end)
+        report = report_of_run(self._planned, self._core, self._one_call.began or 0, end)
         health = health_of_run(self._planned, self._core, self._absent, self._feed.health())
         return replace(report, health=health)
 
@@ -243,7 +226,7 @@ class Monitor(FedMonitor[Attempt]):
             seen = [verdict for verdict in so_far if counts[VERDICTS.index(verdict)]]
             # What has passed was triggered: it is undetermined only if something came too late.
             found[name] = fold(seen, complete=bool(determined or not seen))
-        return found if self._interrupted is None else not_passed(found)
+        return found if self._one_call.interrupted is None else not_passed(found)
 
     def snapshot(self) -> bytes:
         """The run as bytes, from which `Spec.restore` makes a monitor that goes on alike.
@@ -270,7 +253,7 @@ class Monitor(FedMonitor[Attempt]):
     def _put_away(self) -> bytes:
         if self._report is not None:
             raise SnapshotError("the run is finished: keep its report, or call reset()")
-        state = {"interrupted": self._interrupted, **self._feed.state()}
+        state = {"interrupted": self._one_call.interrupted, **self._feed.state()}
         return written(self.compiled, self.options, self._planned, self._core, state)
 
     def take_up(self, document: Mapping[str, Any]) -> None:
@@ -284,10 +267,10 @@ class Monitor(FedMonitor[Attempt]):
         """
         state = put_back(document, self._planned, self._core)
         interrupted = state["interrupted"]
-        self._interrupted = None if interrupted is None else whole_ticks(interrupted)
+        self._one_call.interrupted = None if interrupted is None else whole_ticks(interrupted)
         self._feed.take_up(state)
         self._attend()
-        self._note_times()
+        self._one_call.note_times()
 
     @property
     def open(self) -> Sequence[Attempt]:
@@ -316,7 +299,66 @@ class Monitor(FedMonitor[Attempt]):
         return self._one_call(self._next_due)
 
     def _next_due(self) -> int | None:
-        if self._reached is None or self._report is not None:
+        reached = self._one_call.reached
+        if reached is None or self._report is not None:
             return None
         found = self._core.next_due()
-        return None if found is None else max(found, self._reached + 1)
+        return None if found is None else max(found, reached + 1)
+
+
+def build_monitor(
+    compiled: CompiledSpec,
+    *,
+    only: Iterable[str] | None = None,
+    settle: str = "now",
+    sources: Iterable[str] | None = None,
+    keep: int | None = None,
+) -> Monitor:
+    """Build a monitor from a compiled specification.
+
+    Args:
+        compiled: from `compile_spec`; any number of monitors can share it.
+        only: ids of the requirements to judge; default all.
+        settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
+            each when the next stamp settles it.
+        sources: the signals and events that can arrive; the others are unknown throughout.
+        keep: so many records of each verdict, the newest, are kept per requirement; default all.
+
+    Raises:
+        UnknownNameError: `only` or `settle` names what does not exist.
+        RvmonError: a requirement is beyond the core; `keep` is no count.
+    """
+    if keep is not None and (type(keep) is not int or keep < 0):
+        raise RvmonError(f"keep={keep!r}: expected a whole number from 0 on, or None to keep all")
+    if settle not in WAYS_TO_SETTLE:
+        ways = ", ".join(WAYS_TO_SETTLE)
+        raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
+    given = None if sources is None else frozenset(sources)
+    planned = planned_core(compiled, requirements_asked(compiled.checked, only))
+    return Monitor(planned, compiled, Options(settle, given, keep))
+
+
+def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
+    """The monitor that a snapshot was taken of.
+
+    Raises:
+        SnapshotError: the bytes are no snapshot, or one of another specification or version.
+    """
+    document = document_of(compiled, data)
+    try:
+        sources = document["sources"]
+        if sources is not None and not all(isinstance(one, str) for one in sources):
+            raise TypeError("names are texts")
+        monitor = build_monitor(
+            compiled,
+            only=document["only"],
+            settle=document["settle"],
+            sources=sources,
+            keep=document["keep"],
+        )
+        monitor.take_up(document)
+    except SnapshotError:
+        raise
+    except (RvmonError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+        raise SnapshotError("the snapshot is damaged: what it holds fits no monitor") from None
+    return monitor

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rvmon.cache import cache_folder, file_stamps, keep, read_kept
@@ -26,8 +26,8 @@ class Kept:
     """
 
     data: bytes
-    single: frozenset[str]
-    readers: Mapping[str, tuple[str, ...]]
+    single: frozenset[str] = frozenset()
+    readers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 class Place:

@@ -28,8 +28,10 @@ from rvmon.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from rvmon.core.packed import Packed
+    from rvmon.monitor.compiled.requirement import CompiledRequirement
     from rvmon.monitor.compiled.specification import CompiledSpec
     from rvmon.monitor.core.notes import Note
+    from rvmon.plan.plan import Plan
 
 
 class CapturedValues:
@@ -260,16 +262,23 @@ def planned_core(
     return found
 
 
+def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
+    """A plan of requirements, packed."""
+    from rvmon.core.plan import pack
+
+    single = frozenset().union(*(one.single_payloads for one in chosen))
+    readers: dict[str, tuple[str, ...]] = {}
+    for one in chosen:
+        for name in one.reads:
+            readers[name] = (*readers.get(name, ()), one.requirement.id)
+    return Kept(pack(plan).data, single, readers)
+
+
 def _made(compiled: CompiledSpec, ids: tuple[str, ...], *, measured: bool) -> Kept:
     # What makes it is imported now: it is seldom made where it is kept.
-    from rvmon.core.plan import pack
     from rvmon.monitor.compiled.code_plan import plan_alone
-    from rvmon.monitor.inputs.health import readers_of
 
-    plan = plan_alone(compiled, ids, measured=measured)
-    chosen = compiled.chosen(ids)
-    single = frozenset().union(*(one.single_payloads for one in chosen))
-    return Kept(pack(plan).data, single, readers_of(chosen))
+    return kept_of(plan_alone(compiled, ids, measured=measured), compiled.chosen(ids))
 
 
 def _checked(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.monitor.core.findings import Findings
+from rvmon.monitor.core.input_health import Findings
 from rvmon.monitor.core.losses import Losses
 from rvmon.monitor.core.planned import PlannedCore
 from rvmon.monitor.core.recorded import report_of_run

@@ -32,7 +32,7 @@ _LEFT_OUT = ("span", "source", "text", "title", "doc")
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a monitor was asked for; see `rvmon.monitor.build.build_monitor`."""
+    """What a monitor was asked for; see `rvmon.monitor.core.monitor.build_monitor`."""
 
     settle: str
     sources: frozenset[str] | None

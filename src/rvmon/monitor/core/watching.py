@@ -64,7 +64,7 @@ class TruthsRun:
         self._names = names
         self._read = plan.graph.by_name
         self._gap = plan.gap
-        self._planned = planned_as(spec, (), Kept(pack(plan).data, frozenset(), {}))
+        self._planned = planned_as(spec, (), Kept(pack(plan).data))
         declared = frozenset(self._planned.numbers)
         self._run = self._planned.monitor(frozenset() if names is None else declared - names)
         self._validator = Validator(spec, None if names is None else names & declared, frozenset())

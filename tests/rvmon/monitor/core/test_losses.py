@@ -9,7 +9,7 @@ from tests.tools.lost import Found, Lost, told
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.monitor import build_monitor, compile_spec
-from rvmon.monitor.build import restore
+from rvmon.monitor.core.monitor import restore
 from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace

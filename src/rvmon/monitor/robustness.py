@@ -1,0 +1,231 @@
+"""The robustness of attempts: figures, and a monitor that gives them while samples come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, overload
+
+from rvmon.errors import TraceError, UnknownNameError
+from rvmon.monitor.compiled.specification import CompiledSpec
+from rvmon.monitor.core.feed import FedMonitor, Feed
+from rvmon.monitor.core.one_call import OneCall
+from rvmon.monitor.core.planned import planned_core
+from rvmon.monitor.inputs.intake import WAYS_TO_SETTLE
+from rvmon.trace.time import ticks_of_seconds, whole_ticks
+from rvmon.verdict.attempt import Attempt, Decision, measured_attempt
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Robustness:
+    """How far a formula is from the other truth value, in base units.
+
+    Attributes:
+        low: the least that it can be, whatever is not known and whatever had come after the end.
+        high: the greatest.
+        kept: the least, if all is well behind the end that only has to be kept up.
+    """
+
+    low: float
+    high: float
+    kept: float
+
+    def of(self, attempt: Attempt) -> float | None:
+        """The figure for a decided attempt: its distance from the other verdict, at least."""
+        match attempt.decision, attempt.verdict:
+            case Decision.OPEN, _:
+                return None
+            case _ if self.low == self.high:
+                return self.low
+            case Decision.HELD_TO_END, _:
+                return self.kept
+            case Decision.PREFIX, Verdict.PASS:
+                return self.low
+            case Decision.PREFIX, Verdict.FAIL:
+                return self.high
+            case _:
+                return None
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A figure of a run.
+
+    Attributes:
+        requirement: its id.
+        number: of the attempt; `None` for what the requirement owes at a position, as in a stream.
+        t: the instant of the trigger, or of the position, ticks.
+        robustness: the figure.
+        in_doubt: whether it is not known that there was a trigger.
+    """
+
+    requirement: str
+    number: int | None
+    t: int
+    robustness: Robustness
+    in_doubt: bool = False
+
+
+_FIELDS = (
+    *((Measured, name) for name in ("requirement", "number", "t", "robustness", "in_doubt")),
+    *((Robustness, name) for name in ("low", "high", "kept")),
+)
+"""In the order of `module_margins.h`."""
+
+FIGURES = Measured, Robustness, tuple(getattr(type_, name) for type_, name in _FIELDS)
+"""What the core makes figures of: types, and what sets their fields."""
+
+
+class Stream(Sequence[tuple[int, Robustness]]):
+    """Figures at instants, as arrays; each is made when it is asked for.
+
+    Args:
+        times: int64[n] ticks.
+        low: float64[n]; so are the others.
+        high: as in `Robustness`.
+        kept: as in `Robustness`.
+    """
+
+    def __init__(self, times: Any, low: Any, high: Any, kept: Any) -> None:
+        self.times, self.low, self.high, self.kept = times, low, high, kept
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __iter__(self) -> Iterator[tuple[int, Robustness]]:
+        figures = map(Robustness, self.low.tolist(), self.high.tolist(), self.kept.tolist())
+        return zip(self.times.tolist(), figures, strict=True)
+
+    @overload
+    def __getitem__(self, place: int) -> tuple[int, Robustness]: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> Stream: ...
+
+    def __getitem__(self, place: int | slice) -> tuple[int, Robustness] | Stream:
+        found = [one[place] for one in (self.times, self.low, self.high, self.kept)]
+        if isinstance(place, slice):
+            return Stream(*found)
+        t, *figures = (one.item() for one in found)
+        return t, Robustness(*figures)
+
+
+Key = tuple[str, int]
+"""Requirement and number of an attempt."""
+
+
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """The robustness of all attempts of a run.
+
+    Attributes:
+        attempts: by requirement and number.
+        doubtful: those in doubt that have a record, the same way.
+        streams: by requirement, at the instants of samples: the robustness of what it owes there.
+            Requirements with `let` or `for each` have none: it would depend on the attempt.
+    """
+
+    attempts: Mapping[Key, Robustness]
+    doubtful: Mapping[Key, Robustness]
+    streams: Mapping[str, Sequence[tuple[int, Robustness]]]
+
+    def of(self, attempt: Attempt) -> Attempt:
+        """An attempt with its figure."""
+        figures = self.doubtful if attempt.in_doubt else self.attempts
+        found = figures.get((attempt.requirement, attempt.number))
+        return attempt if found is None else measured_attempt(attempt, found.of(attempt))
+
+
+class RobustnessMonitor(FedMonitor[Measured]):
+    """Measures a stream of samples; made by `Spec.robustness_monitor`.
+
+    What a call returns are the figures that nothing can change any more. A sample that is later
+    than `max delay` is refused, and figures that were given stay whatever came too late.
+
+    Args:
+        compiled: the specification.
+        only: ids of the requirements; default all.
+        settle: `now` or `next`, as for a monitor.
+        sources: the names that can arrive; `None`: all.
+        streams: whether to measure each position, and not the attempts alone.
+
+    Raises:
+        UnknownNameError: there is no such way to settle.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledSpec,
+        only: Sequence[str] | None = None,
+        settle: str = "now",
+        sources: frozenset[str] | None = None,
+        *,
+        streams: bool = False,
+    ) -> None:
+        if settle not in WAYS_TO_SETTLE:
+            ways = ", ".join(WAYS_TO_SETTLE)
+            raise UnknownNameError(f"no way to settle `{settle}`: there are {ways}")
+        checked = compiled.checked
+        self._planned = planned_core(compiled, only, measured=True)
+        absent = frozenset() if sources is None else frozenset(self._planned.numbers) - sources
+        self._core = self._planned.monitor(absent, self._take_at, self._take)
+        self._feed = Feed(checked, self._planned, self._core, sources, settle)
+        self._core.measure(FIGURES, streams)
+        self._one_call = OneCall(self._core)
+        self._is_over = False
+        self._attend()
+
+    def _attend(self) -> None:
+        """Let the core take the next sample itself, unless there is more to do with it."""
+        core: Any = self._core  # its steps give figures now
+        if self._feed.is_direct:
+            self.step, self.step_ns = core.step, core.step_ns
+        else:
+            self.step, self.step_ns = self._take_at, self._take
+
+    def _take(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Measured]:
+        """Take a sample that the core does not take itself."""
+        return self._tell(lambda: self._step(t_ns, values))
+
+    def _tell(self, tell: Callable[[], None]) -> Sequence[Measured]:
+        """Make a call, and no other until it is over; the figures that it settled."""
+        return self._one_call(self._settled, tell)
+
+    def _settled(self, tell: Callable[[], None]) -> Sequence[Measured]:
+        tell()
+        self._attend()
+        return self._core.figures()
+
+    def _step(self, t_ns: int, values: Mapping[str, Any]) -> None:
+        t_ns = self._taken_time(t_ns)
+        self._feed.take(t_ns, self._feed.check(t_ns, values))
+
+    @property
+    def open(self) -> Sequence[Measured]:
+        """What is known now of the attempts that are not settled: bounds that only draw closer."""
+        return self._one_call(self._core.open_figures)
+
+    def finish(self, t: float | None = None) -> Sequence[Measured]:
+        """End the run, at `t` seconds if that is later than all so far; see `finish_ns`."""
+        return self.finish_ns(None if t is None else ticks_of_seconds(t))
+
+    def finish_ns(self, t_ns: int | None = None) -> Sequence[Measured]:
+        """End the run, at `t_ns` if that is later than all so far, and return the other figures."""
+        return self._one_call(self._finish, t_ns)
+
+    def _finish(self, t_ns: int | None) -> Sequence[Measured]:
+        if self._is_over:
+            return ()
+        if t_ns is not None:
+            t_ns = whole_ticks(t_ns)
+        self._feed.close()
+        self._core.finish(t_ns)
+        self._is_over = True
+        return self._core.figures()
+
+    def _taken_time(self, t: int) -> int:
+        """A time that was given, as a plain integer."""
+        if self._is_over:
+            raise TraceError("the run is finished: make a monitor for the next")
+        return whole_ticks(t)

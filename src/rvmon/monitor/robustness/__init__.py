@@ -1,1 +1,0 @@
-"""How far attempts are from the other verdict, followed beside the verdicts."""
