@@ -117,7 +117,7 @@ def _open(waiting: Mapping[Key, Waiting], found: Sequence[Attempt]) -> Iterator[
         return
     for attempt in found:
         one = waiting[key_of(attempt)]
-        for part in one.misnamed(attempt.owed):
+        for part in one.misnamed(attempt.required):
             yield f"{attempt} is said to owe {part}, which waits for nothing"
         deadline = one.deadline()
         if attempt.deadline != deadline:

@@ -252,9 +252,9 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
         if name in until:
             left = f"{max(0, until[name] - status.now) / TICKS_PER_SECOND:.1f} s"
         counts = [str(status.counts[name, one] or "") for one in (Verdict.PASS, Verdict.FAIL)]
-        owed = f"{status.owed[name]:,}" if status.owed.get(name) else ""
+        waiting = f"{status.open_counts[name]:,}" if status.open_counts.get(name) else ""
         text = Text(spec.requirements[name].text, no_wrap=is_cut, overflow="ellipsis")
-        table.add_row(name, verdict_text(status.verdicts[name]), *counts, owed, left, text)
+        table.add_row(name, verdict_text(status.verdicts[name]), *counts, waiting, left, text)
     return Group(
         Text(f"{heading}{run}to {format_ticks(status.now)}, {status.samples:,} samples{lost}"),
         table,

@@ -128,7 +128,9 @@ class WatchedRequirement:
                     edges.setdefault(edge_name((one.source, one.target)), []).append(upon)
             # What is owed for ever is met by the end of the run alone: no edge leads to `P`.
             entered = {self.graph.places[0].name, *(one.target for one in self.graph.edges)}
-            owed = [_item(one.name, one.owed) for one in self.graph.places if one.name in entered]
+            owed = [
+                _item(one.name, one.required) for one in self.graph.places if one.name in entered
+            ]
             yield group_of(locations_of(name), Subject.STATES, owed, title=title)
             steps = [_item(step, "; or ".join(upon)) for step, upon in edges.items()]
             yield group_of(edges_of(name), Subject.TRANSITIONS, steps, title=title)

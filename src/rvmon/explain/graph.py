@@ -76,12 +76,12 @@ class Place:
 
     Attributes:
         name: a short one: `start`, `A`, `B`, …, `P`, `F`.
-        owed: what is still owed there; empty at the ends.
+        required: what is required there; empty at the ends.
         location: its place in the automaton.
     """
 
     name: str
-    owed: str
+    required: str
     location: int
 
 
@@ -337,7 +337,7 @@ def graph_lines(graph: Graph) -> list[str]:
 def _heading(place: Place) -> list[str]:
     if place.name == "start":
         return ["  start, at the trigger"]
-    text = f"owed: {place.owed}"
+    text = f"required: {place.required}"
     return textwrap.wrap(text, WIDTH, initial_indent=f"  {place.name}  ", subsequent_indent=" " * 6)
 
 
@@ -364,7 +364,7 @@ def graph_dot(graph: Graph, title: str) -> str:
     lines = [f"digraph {quoted(title)} {{", "  rankdir=LR;", '  node [fontname="sans-serif"];']
     for place in graph.places:
         shape = "doublecircle" if place.name in ENDS else "box"
-        text = place.name if place.name in ENDS else f"{place.name}\n{place.owed}"
+        text = place.name if place.name in ENDS else f"{place.name}\n{place.required}"
         lines.append(f"  {quoted(place.name)} [shape={shape}, label={quoted(text)}];")
     for edge in graph.edges:
         text = "\n".join(filter(None, (label_of(edge), edge.sets)))

@@ -29,9 +29,9 @@ class PartTruth:
     """One subformula over the window.
 
     Attributes:
-        depth: how deep it lies; 0 for what is owed.
+        depth: how deep it lies; 0 for what is required.
         text: as in the spec.
-        part: `trigger` or `owed`.
+        part: `trigger` or `required`.
         true: the ticks of the window at which it is true.
         false: those at which it is false; at the others it is not known.
     """
@@ -106,7 +106,7 @@ def part_truths_of(
     """The truth of the trigger, of what is owed, and of all their parts, over a stretch of time."""
     truths = truths_of_parts(requirement, attempt, seen)
     part_truths = []
-    parts: list[tuple[str, Formula]] = [("owed", requirement.consequent)]
+    parts: list[tuple[str, Formula]] = [("required", requirement.consequent)]
     if not isinstance(requirement.trigger, BoundAtom) and requirement.trigger != Constant(True):
         parts.insert(0, ("trigger", requirement.trigger))
     for part, whole in parts:

@@ -139,7 +139,7 @@ def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str
     locations = [
         {
             "name": place.name,
-            "owed": place.owed,
+            "required": place.required,
             "clock_cuts_ns": automaton.locations[place.location].cuts,
             "verdict": {FAILED: Verdict.FAIL, PASSED: Verdict.PASS}.get(place.location),
         }

@@ -96,7 +96,7 @@ class Status:
         now: the instant to which time has come, ns.
         verdicts: of each requirement so far, over all runs.
         counts: how many attempts of a requirement had a verdict since it is watched.
-        owed: how many attempts of each requirement are open now; those without any may lack.
+        open_counts: how many attempts of each requirement are open now; those without any may lack.
         open: their records with their deadlines: all, or as many as were asked for.
         samples: so many were judged, over all runs.
         lost: so many were not.
@@ -109,7 +109,7 @@ class Status:
     now: int
     verdicts: Mapping[str, Verdict]
     counts: Counter[tuple[str, Verdict]]
-    owed: Mapping[str, int]
+    open_counts: Mapping[str, int]
     open: tuple[Attempt, ...]
     samples: int
     lost: int
@@ -283,7 +283,7 @@ class Robot:
     def status(self, t: int, most: int | None) -> Status:
         """How it stands at an instant, with so many records of what is open."""
         now = self._monitor.verdicts
-        owed, records = self._monitor.owed(most)
+        counts, records = self._monitor.open_counts(most)
         return Status(
             robot=self.name,
             run=self.run,
@@ -291,7 +291,7 @@ class Robot:
             now=t,
             verdicts={name: fold([*self._before[name], now[name]]) for name in self._watch.ids},
             counts=self._counts.copy(),
-            owed=owed,
+            open_counts=counts,
             open=tuple(records),
             samples=self._samples,
             lost=self._lost,

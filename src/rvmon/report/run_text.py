@@ -83,7 +83,7 @@ def print_reports(
 ) -> None:
     """Print the verdicts on each recording, and for several the counts of runs.
 
-    Every F comes with cause, window and spec line; every I with what is still owed.
+    Every F comes with cause, window and spec line; every I with what is still required.
     """
     from rvmon.report.terminal import Terminal
 

@@ -66,11 +66,11 @@ class Attempt(Record):
         verdict: `P`, `F` or `I` (undecided).
         decision: what settled it.
         reason: one sentence for people.
-        deadline: the last instant before time alone settles what is still owed (or was), ticks: if
-            no position comes that does so before, it is decided a tick later.
+        deadline: the last instant before time alone settles what is still required (or was),
+            ticks: if no position comes that does so before, it is decided a tick later.
         at_trigger: values of its propositions at the trigger, by their text.
         at_decision: the same at the decision.
-        owed: what was open at the end, as text of the spec.
+        required: what was open at the end, as text of the spec.
         captured: values captured by `let` and `for each`.
         blame: what failed, for `F`.
         forecast: `P` or `F` if no continuation can change that any more, though undecided.
@@ -88,7 +88,7 @@ class Attempt(Record):
     deadline: int | None = None
     at_trigger: Mapping[str, Scalar] = field(default_factory=dict)
     at_decision: Mapping[str, Scalar] = field(default_factory=dict)
-    owed: str = ""
+    required: str = ""
     captured: Mapping[str, Scalar] = field(default_factory=dict)
     blame: Blame | None = None
     forecast: Verdict | None = None

@@ -62,7 +62,7 @@ def test_many_propositions_do_not_make_many_classes():
 
 @pytest.mark.parametrize("high", [None, 5])
 def test_conjunctions_of_recurring_demands_close(high):
-    """A location is what of three is still owed, however many ways lead there."""
+    """A location is what of three is still required, however many ways lead there."""
     demands = two(eventually(p, 0, high), "and", eventually(q, 0, high))
     demands = two(demands, "and", eventually(r, 0, high))
     assert build(always(demands)).clocks == (0 if high is None else 3)

@@ -38,7 +38,7 @@ def test_attempts_are_shown_with_their_verdict(door, capsys, named, verdict):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split()[1] == verdict
     assert all(len(line) <= 80 for line in lines)
-    assert any(line.strip() == "owed" for line in lines)
+    assert any(line.strip() == "required" for line in lines)
 
 
 def test_an_attempt_in_doubt_has_a_name_of_its_own(door, capsys):

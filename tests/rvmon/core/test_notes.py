@@ -80,9 +80,9 @@ def test_many_open_attempts_say_what_they_wait_for():
     assert [one.deadline for one in waiting[::1000]] == [
         (t + 200_000) * MS for t in range(0, 20_000, 1000)
     ]
-    assert waiting[7].owed == "`within 200 s q` by 200.007 s"
+    assert waiting[7].required == "`within 200 s q` by 200.007 s"
     assert dict(waiting[7].at_trigger) == {"p": True, "q": False}
-    counts, oldest = monitor.owed(1)
+    counts, oldest = monitor.open_counts(1)
     assert counts == {"R": 20_000}
     assert [one.number for one in oldest] == [1]
 

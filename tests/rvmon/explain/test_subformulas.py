@@ -7,12 +7,12 @@ from tests.tools import build
 
 from rvmon.explain.subformulas import dissect
 from rvmon.explain.truths import (
-    TruthRecorder,
     both,
     look_through,
     outside,
     parts_of,
     subformulas,
+    truths_of_parts,
     union,
 )
 from rvmon.monitor import build_monitor, compile_spec
@@ -53,10 +53,10 @@ def test_subformulas_have_the_truth_of_the_oracle(time, seed):
         word = word_of(spec, samples, end=end, names=case.names)
         attempt = Attempt("R1", 1, samples[0].t, None, Verdict.INCONCLUSIVE)
         seen = look_through(spec, [parts_of(requirement, attempt)], samples, end, case.names)
-        eye = TruthRecorder(requirement, attempt, seen)
+        parts = truths_of_parts(requirement, attempt, seen)
         truths = Truths(word, {})
         for _, formula in subformulas(requirement.consequent, 0):
-            found = eye.truth(formula)
+            found = parts[id(formula)]
             sure, may = found.sure, found.may
             for i, letter in enumerate(word.letters):
                 shown = _shown(sure, may, letter.instant)
@@ -126,5 +126,5 @@ def test_the_window_reaches_around_the_attempt():
     attempt = monitor.finish_ns(30).attempts[0]
     breakdown = dissect(spec, samples, 30, attempt)
     assert breakdown.start <= attempt.triggered < attempt.decided <= breakdown.end
-    owed = next(s for s in breakdown.part_truths if s.part == "owed" and s.depth == 0)
+    owed = next(s for s in breakdown.part_truths if s.part == "required" and s.depth == 0)
     assert attempt.triggered in ticks(owed.false)

@@ -83,7 +83,7 @@ def test_a_generator_ends_when_it_has_given_all():
     clock.set_ns(2)
     driver.work()
     status = driver.status()[""]
-    assert (status.counts["R", Verdict.PASS], status.owed["R"], status.samples) == (1, 1, 3)
+    assert (status.counts["R", Verdict.PASS], status.open_counts["R"], status.samples) == (1, 1, 3)
 
 
 def test_a_monitor_stops_no_call(driver, caplog):

@@ -209,7 +209,7 @@ def test_a_way_to_settle_that_there_is_not_is_refused():
 
 def test_the_page_about_it_is_true():
     """What the reference shows of the online monitor is what it gives."""
-    page = Path(__file__).parents[4] / "docs" / "reference" / "robustness.md"
+    page = Path(__file__).parents[3] / "docs" / "reference" / "robustness.md"
     failures, tried = doctest.testfile(str(page), module_relative=False)
     assert (failures, tried > 4) == (0, True)
 

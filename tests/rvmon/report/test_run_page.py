@@ -185,7 +185,7 @@ def test_the_offending_sample_and_the_threshold_are_marked():
 
 
 def test_a_window_ends_with_the_decision_if_nothing_else_ends_it():
-    """Only what is still owed fades out to the right."""
+    """Only what is still required fades out to the right."""
     page = run_page(content(judged("t", [(0.0, {"closed": True, "gap": 1.0})])))
     for number, classes in (("D2-1", ["window"]), ("D3-1", ["window"])):
         section = page[page.index(f'<section id="{number}"') :].split("</section>")[0]

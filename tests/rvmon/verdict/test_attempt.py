@@ -13,7 +13,7 @@ REST = {
     "deadline": 7,
     "at_trigger": {"a": True},
     "at_decision": {"a": False},
-    "owed": "F a",
+    "required": "F a",
     "captured": {},
     "blame": None,
     "forecast": None,
@@ -45,7 +45,7 @@ def test_the_rest_is_worked_out_once_and_only_if_someone_looks():
         False,
     )
     assert calls == []
-    assert (attempt.reason, attempt.deadline, attempt.owed) == ("too late", 7, "F a")
+    assert (attempt.reason, attempt.deadline, attempt.required) == ("too late", 7, "F a")
     assert calls == [(3, "noted")]
     assert attempt == Attempt("R1", 3, 0, 5, Verdict.FAIL, **REST)
 

@@ -17,7 +17,7 @@ from rvmon.verdict.verdict import LAW, Verdict
 def attempts() -> list[Attempt]:
     """One attempt of each verdict, the first with everything that a record can hold."""
     return [
-        Attempt("R2", 2, 4, None, Verdict.INCONCLUSIVE, Decision.OPEN, deadline=9, owed="F p"),
+        Attempt("R2", 2, 4, None, Verdict.INCONCLUSIVE, Decision.OPEN, deadline=9, required="F p"),
         Attempt(
             "R2",
             1,

@@ -275,13 +275,13 @@ class Monitor(FedMonitor[Attempt]):
     @property
     def open(self) -> Sequence[Attempt]:
         """The attempts that are undecided now."""
-        return self.owed()[1]
+        return self.open_counts()[1]
 
-    def owed(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
+    def open_counts(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
         """How many attempts of each requirement are open, and `open` or the oldest of it."""
-        return self._one_call(self._owed, most)
+        return self._one_call(self._open_counts, most)
 
-    def _owed(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
+    def _open_counts(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
         found = () if self._report is not None else self._core.open()
         if most is None:
             return Counter(one.requirement for one in found), found

@@ -191,7 +191,7 @@ class Told:
             "deadline": why.deadline,
             "at_trigger": truths_shown(self._texts, self._then(note)),
             "at_decision": seen,
-            "owed": why.owed,
+            "required": why.required,
             "blame": why.blame,
             "forecast": forecast,
         }
@@ -322,7 +322,7 @@ class Told:
 
 
 def _replaced(why: Explanation, reason: str) -> Explanation:
-    return Explanation(reason, why.owed, why.deadline, why.blame)
+    return Explanation(reason, why.required, why.deadline, why.blame)
 
 
 def _instant(word: int) -> int | None:

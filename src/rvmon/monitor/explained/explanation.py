@@ -97,7 +97,7 @@ class Explanation:
     """What a record says beside the verdict; see `rvmon.verdict.attempt.Attempt`."""
 
     reason: str = ""
-    owed: str = ""
+    required: str = ""
     deadline: int | None = None
     blame: Blame | None = None
 
@@ -117,10 +117,10 @@ def earlier(
     return min(found, default=None)
 
 
-def still_owed(owed: str, end: int | None) -> str:
+def still_required(required: str, end: int | None) -> str:
     """What an undecided attempt waits for, or waited for when the trace ended."""
     when = "" if end is None else f" when the recording ended at {format_ticks(end)}"
-    return f"still owed{when}: {owed}"
+    return f"still required{when}: {required}"
 
 
 def unborn_of(

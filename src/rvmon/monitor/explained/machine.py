@@ -16,7 +16,7 @@ from rvmon.monitor.explained.explanation import (
     Undecided,
     earlier,
     longer,
-    still_owed,
+    still_required,
     unborn,
 )
 from rvmon.monitor.reasons.cause import Cause, CauseFinder
@@ -152,7 +152,7 @@ class MachineRuns:
         owed = compiled.words.owed(after(self.residuals[location], ages), anchors)
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
         lasting = longer(compiled.obligation.owed, attempt.triggered, end)
-        reason = f"{still_owed(owed, end)}{lasting}{doubt}{unborn(attempt.unborn, end)}"
+        reason = f"{still_required(owed, end)}{lasting}{doubt}{unborn(attempt.unborn, end)}"
         alone = (self._alone(attempt.worse), self._alone(attempt.better))
         return Explanation(reason, owed, deadline=earlier(*alone, void=attempt.void))
 

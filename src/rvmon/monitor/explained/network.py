@@ -28,7 +28,7 @@ from rvmon.monitor.explained.explanation import (
     Undecided,
     earlier,
     longer,
-    still_owed,
+    still_required,
     unborn,
 )
 from rvmon.monitor.reasons.cause import Cause
@@ -273,7 +273,7 @@ class NetworkRuns:
         core = compiled.obligation.owed
         owed = owed_at(network, core, position, compiled.words)
         doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-        waiting = still_owed(owed or "what lies ahead", end)
+        waiting = still_required(owed or "what lies ahead", end)
         lasting = longer(core, attempt.triggered, end)
         reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end)}"
         alone = (_alone(self.worse, attempt.worse), _alone(self.better, attempt.better))

@@ -86,7 +86,7 @@ def test_open_attempts_say_what_they_wait_for(monitor):
     [attempt] = monitor.open
     assert (attempt.requirement, attempt.number, attempt.triggered) == ("R1", 1, 10**9)
     assert attempt.deadline == 4 * 10**9
-    assert "within 3 s released" in attempt.owed
+    assert "within 3 s released" in attempt.required
 
 
 @pytest.mark.parametrize("t", [math.inf, math.nan, 1e300])

@@ -360,9 +360,9 @@ def test_of_much_that_is_open_the_oldest_is_enough():
     monitor = rvmon.loads(text).monitor(only=["U1", "L1"])
     for t in range(4):
         monitor.step(t, {"e": True, "beat": t == 3, "x": 0.0, "y": 1.0})
-    counts, records = monitor.owed(2)
+    counts, records = monitor.open_counts(2)
     assert counts["U1"] == 4
     assert sum(counts.values()) == len(monitor.open)
     assert {one.name: one.deadline for one in records} == {"L1#1": None, "U1#1": 9_000_000_000}
     assert all(one in monitor.open for one in records)
-    assert monitor.owed() == (counts, monitor.open)
+    assert monitor.open_counts() == (counts, monitor.open)

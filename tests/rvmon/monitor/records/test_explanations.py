@@ -135,7 +135,8 @@ def test_an_undecided_attempt_says_what_is_owed_and_till_when():
     samples = [(1, {"go": True})]
     _, [left] = run("upon go\nthen within 3 s released", samples, 2)
     assert (
-        left.reason == "still owed when the recording ended at 2 s: `within 3 s released` by 4 s; "
+        left.reason
+        == "still required when the recording ended at 2 s: `within 3 s released` by 4 s; "
         "a recording more than 2 s longer would have decided it"
     )
     assert left.deadline == 4 * 10**9
@@ -150,7 +151,7 @@ def test_what_time_has_ruled_out_is_owed_no_more():
     monitor.step_ns(0, {"p": False, "q": False, "go": True})
     monitor.advance_ns(6)
     [left] = monitor.finish_ns().attempts
-    assert left.owed == "`within 9 ns q` by 9 ns"
+    assert left.required == "`within 9 ns q` by 9 ns"
 
 
 def test_captured_values_are_recorded():
@@ -169,7 +170,7 @@ def test_what_is_owed_is_told_once():
     monitor.step(0, {"p": False, "q": False})
     monitor.step(2, {"p": True})
     [owed] = monitor.open
-    assert owed.owed == "`within 5 s q` by 7 s"
+    assert owed.required == "`within 5 s q` by 7 s"
 
 
 @pytest.mark.parametrize("advances", [(), (10**9,), (2 * 10**9,), (2 * 10**9 + 1,)])
@@ -258,5 +259,5 @@ def test_what_is_owed_in_a_loop_is_that_of_now():
     for now in range(1, 6):
         monitor.advance_ns(now)
         [left] = monitor.open
-        assert left.owed.startswith(f"`always[1 ns, 1 ns] start` until {now} ns, or ")
+        assert left.required.startswith(f"`always[1 ns, 1 ns] start` until {now} ns, or ")
         assert left.deadline == now

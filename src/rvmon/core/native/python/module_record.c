@@ -102,7 +102,7 @@ static PyGetSetDef record_getset[] = {
     RVMON_LATE("deadline", DEADLINE),
     RVMON_LATE("at_trigger", AT_TRIGGER),
     RVMON_LATE("at_decision", AT_DECISION),
-    RVMON_LATE("owed", OWED),
+    RVMON_LATE("required", REQUIRED),
     RVMON_LATE("captured", CAPTURED),
     RVMON_LATE("blame", BLAME),
     RVMON_LATE("forecast", FORECAST),
