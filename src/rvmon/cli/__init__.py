@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 GROUPS = {
     "write requirements": {
         "look": "what a recording holds, over time",
-        "init": "a starter specification from a recording, or a campaign",
-        "bind": "which topics of a recording feed a specification: a proposal",
+        "init": "a first specification or binding from a recording; a campaign",
         "check": "what is wrong in specifications, or can never hold together",
         "explain": "a requirement, or a diagnostic's code, in plain words",
         "format": "the canonical layout",

@@ -1,4 +1,4 @@
-"""`rvmon init`: a starter specification from a recording, or a starter campaign of tests."""
+"""`rvmon init`: what a recording begins with: a specification, or a binding for one; a campaign."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.output import busy, say
+from rvmon.cli.options import add_const, constants_of
+from rvmon.cli.output import busy, say, warn
 from rvmon.cli.reading import add_time, time_words
 from rvmon.errors import RvmonError
 from rvmon.report.percent import counted
@@ -23,13 +24,20 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "init",
         description="Write a starter specification from a recording: signals with guessed types, "
-        "ranges and rates, events, and requirements that run at once. Or, with --campaign, a "
+        "ranges and rates, events, and requirements that run at once. With --for, print a binding "
+        "(TOML): which topics and fields of a bag or MCAP file feed a specification, by what "
+        "messages mean, by units, types and words, with the values that they have there; what "
+        "nothing fits clearly is left open, and the exit code is then 1. With --campaign, write a "
         "campaign of tests that runs at once, to be made one of a system of your own.",
-        epilog="examples: rvmon init examples/base.csv -o mine.rv; rvmon init --campaign mine",
+        epilog="examples: rvmon init examples/base.csv -o mine.rv; rvmon init --campaign mine; "
+        "rvmon init monday.bag --for base.rv > base.toml && rvmon run base.rv monday.bag --binding "
+        "base.toml",
     )
     parser.add_argument(
         "data", metavar="DATA", nargs="?", help="a recording, as `rvmon run` takes it"
     )
+    parser.add_argument("--for", metavar="SPEC", dest="spec", help="print a binding for this")
+    add_const(parser)
     parser.add_argument(
         "--campaign",
         metavar="DIR",
@@ -48,6 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise RvmonError("error: name a recording, or --campaign with a folder")
     if arguments.campaign is not None:
         return _write_campaign(Path(arguments.campaign), force=arguments.force)
+    if arguments.spec is not None:
+        return _print_binding(arguments)
     from rvmon.starter.profile import profile_of
     from rvmon.starter.write import starter_text
 
@@ -70,6 +80,31 @@ def run(arguments: argparse.Namespace) -> int:
     words = ["rvmon", "run", output, arguments.data, *time_words(arguments)]
     say(f"try:   {shlex.join(words)}")
     return 0
+
+
+def _print_binding(arguments: argparse.Namespace) -> int:
+    """Propose which topics feed a specification; 1 if something is left open."""
+    from rvmon.binding.propose import propose
+    from rvmon.readers.recording import messages_of
+    from rvmon.session import load
+
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    with busy(f"reading {arguments.data}"):
+        proposal = propose(spec.checked, messages_of(arguments.data))
+    words = shlex.join(["rvmon", "run", arguments.spec, arguments.data, "--binding"])
+    say(f"# Proposed: look it over. {words} THIS_FILE")
+    say(proposal.text, end="")
+    if proposal.unmatched:
+        names = ", ".join(f"`{name}`" for name in proposal.unmatched)
+        warn(f"warning: what feeds {names} is left open: nothing in {arguments.data} is clearly it")
+    for name in proposal.unlabelled:
+        warn(
+            f"warning: `{name}` is a number in {arguments.data}: say which `labels` stand for which"
+        )
+    for group in proposal.shared:
+        names = " and ".join(f"`{name}`" for name in group)
+        warn(f"warning: {names} are fed by one and the same field: is that meant?")
+    return int(bool(proposal.unmatched or proposal.unlabelled))
 
 
 def _write_campaign(folder: Path, *, force: bool) -> int:

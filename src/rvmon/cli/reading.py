@@ -72,7 +72,7 @@ def add_binding(parser: argparse.ArgumentParser) -> None:
         "--binding",
         metavar="FILE",
         help="TOML that maps topics and fields of messages (bags, MCAP) to names; "
-        "`rvmon bind` proposes one",
+        "`rvmon init DATA --for SPEC` proposes one",
     )
 
 

@@ -44,7 +44,7 @@ def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
     """Right for all that a recording says; open for the rest; it passes `check`, and runs."""
     robot = ROBOTS[name]
     spec, bag = write(robot, tmp_path)
-    status = main(["bind", spec, bag])
+    status = main(["init", bag, "--for", spec])
     told = capsys.readouterr()
     found = dict(flat(tomllib.loads(told.out).get("bind", {})))
     wrong = {
@@ -68,7 +68,7 @@ def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
     """What the messages hold is shown beside what they should mean."""
     topics = {"/battery": ("sensor_msgs/msg/BatteryState", {"percentage": 75.0})}
     spec, bag = write(Robot(topics, "signal battery_level : real [%]", {}), tmp_path)
-    assert main(["bind", spec, bag]) == 0
+    assert main(["init", bag, "--for", spec]) == 0
     told = capsys.readouterr().out
     assert 'value = "percentage"  # always 75\nunit = "1"\n# It looks like per cent' in told
     binding = tmp_path / "a.toml"
@@ -78,6 +78,7 @@ def test_a_ratio_that_is_sent_as_per_cent_is_told(tmp_path, capsys):
 
 def test_a_leader_is_a_guess(tmp_path, capsys):
     """That it is the first of several is told where it is proposed."""
-    main(["bind", *write(REPORTED["turtle"], tmp_path)])
+    spec, bag = write(REPORTED["turtle"], tmp_path)
+    main(["init", bag, "--for", spec])
     told = capsys.readouterr().out
     assert "[bind.leader_x]  # real [m]\n# A guess: `leader` is taken for number 1.\n" in told

@@ -1,4 +1,4 @@
-"""`rvmon bind`, and `--binding` of the other commands."""
+"""`rvmon init --for`, and `--binding` of the other commands."""
 
 import math
 
@@ -51,7 +51,7 @@ def words(tmp_path):
 
 def bound(words, capsys):
     """What is proposed, with the labels that only a person knows."""
-    assert main(["bind", *words]) == 1
+    assert main(["init", words[1], "--for", words[0]]) == 1
     told = capsys.readouterr()
     assert "`scan_state` is a number" in told.err
     open_ = '# labels = { 0 = "idle" }  # which number stands for which: it holds 1'
@@ -84,7 +84,7 @@ def test_what_finds_nothing_is_told(words, tmp_path, capsys):
     """In the binding and beside it."""
     (tmp_path / "base.rv").write_text(SPEC.replace("mode ", "arm_torque"))
     (tmp_path / "base.rv").write_text(SPEC.replace("event  go", "event  go, zapped"))
-    assert main(["bind", *words]) == 1
+    assert main(["init", words[1], "--for", words[0]]) == 1
     told = capsys.readouterr()
     assert "# Nothing was found for `zapped` (event):" in told.out
     assert "what feeds `zapped` is left open" in told.err
@@ -104,7 +104,7 @@ def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys):
 def test_columns_have_no_topics(words, tmp_path, capsys):
     """Their names are mapped."""
     (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
-    assert main(["bind", words[0], str(tmp_path / "a.csv")]) == 2
+    assert main(["init", str(tmp_path / "a.csv"), "--for", words[0]]) == 2
     assert "use --map" in capsys.readouterr().err
 
 
@@ -183,7 +183,7 @@ def test_two_names_on_one_field_are_told(words, tmp_path, capsys):
     """Beside the proposal, and by `check`."""
     two = SPEC.replace("signal heading ", "signal robot_speed : real [m/s]\nsignal heading ")
     (tmp_path / "base.rv").write_text(two)
-    main(["bind", *words])
+    main(["init", words[1], "--for", words[0]])
     assert "`speed` and `robot_speed` are fed by one and the same field" in capsys.readouterr().err
     field = 'topic = "/base/odom"\nvalue = "twist.twist.linear.x"\nunit = "m/s"\n'
     path = tmp_path / "two.toml"

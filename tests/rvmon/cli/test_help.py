@@ -12,7 +12,7 @@ import handover.cli
 from rvmon.cli import COMMANDS, _parser, main
 
 ROOT = Path(__file__).parents[3]
-PARSED = {"bind", "lsp", "watch"}
+PARSED = {"lsp", "watch"}
 """Commands whose examples need a bag, a compiler or a pipe."""
 HANDOVER = ("run", "demo", "close", "replay", "shrink", "mutate", "evidence")
 
@@ -55,7 +55,7 @@ def test_every_example_of_help_runs(command, tmp_path, monkeypatch, capsys):
         if words[0] == "rvmon":
             own += 1
             assert _parser(words[1:]).parse_args(words[1:])
-            if command not in PARSED:
+            if command not in PARSED and "monday.bag" not in words:
                 assert main(words[1:]) in (0, 1), one
     assert own
 

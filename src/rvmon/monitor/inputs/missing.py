@@ -112,7 +112,7 @@ def _listed(
         yield f"  {what}s that nothing is declared for: {shown}{more}"
     maps = [shlex.quote(f"{name}={column or what.upper()}") for name, column in close.items()]
     which, them = (f"which {what} it is", "it") if len(maps) == 1 else ("which they are", "them")
-    bind = ", or `rvmon bind SPEC DATA` in a file" if what == "topic" else ""
+    bind = ", or `rvmon init DATA --for SPEC` in a file" if what == "topic" else ""
     yield f"  name {which}: {' '.join(f'--map {one}' for one in maps)}, in Python columns=…{bind}"
     yield (
         f"  or leave what reads {them} inconclusive: --allow-missing={','.join(close)}, "

@@ -236,7 +236,7 @@ def test_what_points_down_is_no_height_and_no_climbing(tmp_path, capsys):
     text = "spec s\nsignal climb_rate : real [m/s]\nsignal speed_z : real [m/s]\n"
     text += "requirement R\n always (climb_rate < 2 m/s and speed_z < 2 m/s)\n"
     (tmp_path / "a.rv").write_text(text)
-    assert main(["bind", str(tmp_path / "a.rv"), str(tmp_path / "a.tlog")]) == 1
+    assert main(["init", str(tmp_path / "a.tlog"), "--for", str(tmp_path / "a.rv")]) == 1
     told = capsys.readouterr()
     assert 'value = "vz"' in told.out.partition("[bind.speed_z]")[2]
     assert "`climb_rate` is left open" in told.err

@@ -137,7 +137,7 @@ def test_a_file_says_which_is_which(tmp_path, capsys):
     assert main(["run", str(spec), str(place)]) == 2
     assert "`pose.x` is declared [m/s], and `x` of topic /pose" in capsys.readouterr().err
     spec.write_text(ONE + "signal height : real [m]\n")
-    assert main(["bind", str(spec), str(place)]) == 1
+    assert main(["init", str(place), "--for", str(spec)]) == 1
     assert '[bind.speed]  # real\ntopic = "/speed"' in capsys.readouterr().out
 
 

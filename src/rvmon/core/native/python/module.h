@@ -23,7 +23,7 @@ typedef struct {
 /* The fields that are objects; from REASON on those that are worked out late. */
 enum {
     REQUIREMENT, DECIDED, VERDICT, DECISION, DETAILS, NOTED, REASON, DEADLINE, AT_TRIGGER, AT_DECISION,
-    OWED, CAPTURED, BLAME, FORECAST, ROBUSTNESS, OBJECTS
+    REQUIRED, CAPTURED, BLAME, FORECAST, ROBUSTNESS, OBJECTS
 };
 
 typedef struct {
