@@ -43,9 +43,9 @@ def base(tmp_path, monkeypatch):
     return tmp_path
 
 
-def clip(*words):
+def clip(data, *words):
     """The exit code of making `a.rvcase`."""
-    return main(["clip", "--spec", "specs/base.rv", "--failure", "R1", "-o", "a.rvcase", *words])
+    return main(["clip", "specs/base.rv", data, "R1", "-o", "a.rvcase", *words])
 
 
 READING = ["--time", "stamp:ms", "--map", "speed=v", "--const", "T=2 s"]
@@ -93,7 +93,7 @@ def test_a_bag_with_a_binding_comes_along(base, capsys):
 
 def test_the_piece_can_be_had_as_well(base):
     """Both are written."""
-    words = ["clip", "a.csv", "--spec", "specs/base.rv", "--failure", "R1", "-o", "b.csv"]
+    words = ["clip", "specs/base.rv", "a.csv", "R1", "-o", "b.csv"]
     assert main([*words, "--reproducer", "b.rvcase", *READING]) == 0
     assert (base / "b.csv").exists()
     with zipfile.ZipFile(base / "b.rvcase") as packed:
@@ -236,9 +236,9 @@ def test_damage_is_told(base, capsys):
         (["run", "a.rv"], "required: TRACE"),
         (["why", "a.rv", "a.csv"], "required: ID#N"),
         (["why", "a.rvcase", "a.csv", "R#1"], "name only an attempt"),
-        (["clip", "a.csv", "--spec", "a.rv", "--from", "0", "-o", "b.rvcase"], "by --failure R1#3"),
-        (["clip", "a.csv", "--spec", "a.rv", "--failure", "R", "--reproducer", "b"], ".rvcase"),
-        (["clip", "a.csv", "--spec", "a.rv", "--failure", "R"], "name where it goes to"),
+        (["clip", "a.rv", "a.csv", "--from", "0", "-o", "b.rvcase"], "name it, such as R1#3"),
+        (["clip", "a.rv", "a.csv", "R", "--reproducer", "b"], ".rvcase"),
+        (["clip", "a.rv", "a.csv", "R"], "name where it goes to"),
     ],
 )
 def test_mistakes_are_told(tmp_path, capsys, monkeypatch, words, told):

@@ -42,12 +42,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Cut a recording around an attempt, in the recording's own format. The last "
         "values of signals before the cut are carried to its start. The piece is evaluated again; "
         "the exit code is 1 if the attempt gets another verdict there.",
-        epilog="example: rvmon clip examples/base.csv --spec examples/base.rv --failure "
-        "B2#2 --before 1s -o piece.csv",
+        epilog="example: rvmon clip examples/base.rv examples/base.csv B2#2 --before 1s -o "
+        "piece.csv",
     )
+    parser.add_argument("spec", metavar="SPEC", help="a .rv file")
     parser.add_argument("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
-    parser.add_argument("--spec", metavar="SPEC", required=True, help="a .rv file")
-    parser.add_argument("--failure", metavar="ID#N", help=ATTEMPT_HELP)
+    parser.add_argument("attempt", metavar="ID#N", nargs="?", help=ATTEMPT_HELP)
     parser.add_argument(
         "--before",
         metavar="TIME",
@@ -85,10 +85,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     data = arguments.data
     out, case = _places(arguments)
-    if case is not None and arguments.failure is None:
-        raise RvmonError("a reproducer shows an attempt: name it by --failure R1#3")
-    if arguments.failure is None and arguments.start is None and arguments.stop is None:
-        raise RvmonError("name what to cut out: --failure R1#3, or --from T and --to T")
+    if case is not None and arguments.attempt is None:
+        raise RvmonError("a reproducer shows an attempt: name it, such as R1#3")
+    if arguments.attempt is None and arguments.start is None and arguments.stop is None:
+        raise RvmonError("name what to cut out: an attempt such as R1#3, or --from T and --to T")
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     if out is not None:
         refuse_place(data, out)
@@ -98,8 +98,8 @@ def run(arguments: argparse.Namespace) -> int:
             refuse_over([one], read)
             refuse_no_file(one)
     attempt = None
-    if arguments.failure is not None:
-        name, exact = named_attempt(arguments.failure, spec)
+    if arguments.attempt is not None:
+        name, exact = named_attempt(arguments.attempt, spec)
         attempt = chosen_attempt(_report(spec, arguments, data, name), name, exact)
     piece = _piece(spec, arguments, attempt)
     with TemporaryDirectory(prefix="rvmon-") as folder:

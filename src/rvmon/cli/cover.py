@@ -10,6 +10,7 @@ from rvmon.cli.numbers import percentage
 from rvmon.cli.options import add_format, add_max_memory
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.report.folder import write_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -90,12 +91,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         from rvmon.report.coverage_page import coverage_page
 
-        _write(arguments.report, coverage_page(summary))
+        write_file(arguments.report, coverage_page(summary))
     if arguments.ucis is not None:
         from rvmon import __version__
         from rvmon.report.coverage_ucis import coverage_ucis
 
-        _write(arguments.ucis, coverage_ucis(summary, __version__))
+        write_file(arguments.ucis, coverage_ucis(summary, __version__))
     if arguments.format == "json":
         import msgspec
 
@@ -163,17 +164,6 @@ def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Gro
         print_bins(summary, groups, console)
     if arguments.tests:
         print_tests(summary, console)
-
-
-def _write(path: str, text: str) -> None:
-    from rvmon.writing import write_whole
-
-    try:
-        write_whole(path, text)
-    except OSError as error:
-        raise RvmonError(
-            f"cannot write {path}: {error.strerror or error}: name a file in a folder that is there"
-        ) from None
 
 
 def _code(summary: Summary, arguments: argparse.Namespace) -> int:

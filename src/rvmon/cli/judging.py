@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import asked_ids, constants_of
+from rvmon.cli.output import bar, shown_while_reading
+from rvmon.cli.post_analysis import post_analysis
 from rvmon.cli.reading import allowed_names, opened, reading_spec
+from rvmon.diagnostics.shown import shown_path
+from rvmon.errors import TraceError, WorkerLostError
+from rvmon.execute.parallel import execute
+from rvmon.monitor.inputs.missing import expect_names
+from rvmon.readers.places import without_copies
 from rvmon.readers.recording import FileRecording, can_be_read_again
+from rvmon.readers.source import Source
 from rvmon.session import Spec, load
 from rvmon.trace.sample import Sample
+from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdict.covered import IllegalHit
 
 if TYPE_CHECKING:
@@ -18,27 +29,6 @@ if TYPE_CHECKING:
 
     from rvmon.coverage.hits import Hits
     from rvmon.coverage.monitor import CoverageMonitor
-    from rvmon.verdict.report import Report
-
-
-import time
-from collections.abc import Sequence
-from dataclasses import field
-from functools import partial
-from typing import TYPE_CHECKING
-
-from rvmon.cli.output import bar, shown_while_reading
-from rvmon.cli.post_analysis import post_analysis
-from rvmon.diagnostics.shown import shown_path
-from rvmon.errors import TraceError, WorkerLostError
-from rvmon.execute.parallel import execute
-from rvmon.monitor.inputs.missing import expect_names
-from rvmon.readers.places import without_copies
-from rvmon.readers.source import Source
-from rvmon.trace.time import ticks_of_seconds
-
-if TYPE_CHECKING:
-    from rvmon.coverage.hits import Hits
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 

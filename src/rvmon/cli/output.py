@@ -5,28 +5,21 @@ from __future__ import annotations
 import codecs
 import io
 import sys
-from collections.abc import Sequence
-from shutil import get_terminal_size
-from typing import TYPE_CHECKING
-
-from rvmon.diagnostics.shown import shown, shown_json
-
-if TYPE_CHECKING:
-    from rvmon.diagnostics.diagnostic import Diagnostic
-
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from itertools import islice
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, TypeVar
 
+from rvmon.diagnostics.shown import shown, shown_json
 from rvmon.trace.sample import Sample
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+    from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.readers.recording import FileRecording
-
 
 _SPELLED = str.maketrans(
     dict(zip("✓✗–−─·→▶▼●○◆◇■█▇▁░│├└╱╲×", "+x---.>>v*o*o###_.||`/\\x", strict=True))

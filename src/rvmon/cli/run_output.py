@@ -31,14 +31,11 @@ from rvmon.readers.messages.forms import form_of_folder
 from rvmon.readers.source import Source
 from rvmon.report.folder import write_file
 from rvmon.session import Spec
-from rvmon.verdict.rows import VerdictRow
+from rvmon.verdict.rows import VerdictRow, broken_rows
 
 if TYPE_CHECKING:
-    from rvmon.cli.judging import Judged
-    from rvmon.session import Spec
     from rvmon.trace.sample import Sample
     from rvmon.verdict.known_failures import KnownFailures
-    from rvmon.verdict.rows import VerdictRow
 
 
 def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
@@ -57,8 +54,6 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
 
 def rows_of(judged: Iterable[Judged]) -> Iterator[VerdictRow]:
     """The verdicts on recordings as rows."""
-    from rvmon.verdict.rows import broken_rows
-
     for one in judged:
         if one.report is not None:
             yield from one.report.rows()

@@ -41,12 +41,12 @@ def base(tmp_path, monkeypatch):
 
 def clip(*words):
     """The exit code of cutting `a.csv`."""
-    return main(["clip", "a.csv", "--spec", "base.rv", *words])
+    return main(["clip", "base.rv", "a.csv", *words])
 
 
 def test_rows_are_copied_as_they_stand_and_values_are_carried(base, capsys):
     """What was last known comes first, of names that the specification declares."""
-    assert clip("--failure", "R1#1", "--before", "1s", "--after", "1 s", "-o", "b.csv") == 0
+    assert clip("R1#1", "--before", "1s", "--after", "1 s", "-o", "b.csv") == 0
     rows = (base / "b.csv").read_text().splitlines()
     assert rows == [ROWS[0], "14,0.7,False,,".lower(), *ROWS[4:7]]
     assert capsys.readouterr().out.splitlines() == [
@@ -64,7 +64,7 @@ def test_quoted_ends_of_lines_stay(base):
 
 def test_an_episode_is_cut_around_what_failed(base, capsys):
     """It may have begun hours before; in the piece it begins with it."""
-    assert clip("--failure", "R2", "--before", "0", "--after", "0", "-o", "b.csv") == 0
+    assert clip("R2", "--before", "0", "--after", "0", "-o", "b.csv") == 0
     assert (base / "b.csv").read_text().splitlines() == [ROWS[0], "17,,false,,", ROWS[6]] or (
         base / "b.csv"
     ).read_text().splitlines() == [ROWS[0], ROWS[6]]
@@ -73,25 +73,25 @@ def test_an_episode_is_cut_around_what_failed(base, capsys):
 
 def test_what_a_past_operator_remembers_needs_more_before(base, capsys):
     """The piece is written, and said to differ."""
-    assert clip("--failure", "R3#1", "--before", "2s", "-o", "b.csv") == 1
+    assert clip("R3#1", "--before", "2s", "-o", "b.csv") == 1
     told = capsys.readouterr().err
     assert "R3#1 is P in a.csv and not so in b.csv, where R3 is F" in told
     assert "a longer --before" in told
-    assert clip("--failure", "R3#1", "--before", "5s", "-o", "b.csv") == 0
+    assert clip("R3#1", "--before", "5s", "-o", "b.csv") == 0
 
 
 def test_what_ends_too_early_is_said(base, capsys):
     """Time decides a deadline only if there is a row behind it: by itself, that is taken along."""
-    assert clip("--failure", "R1#1", "--to", "16.2", "-o", "b.csv") == 1
+    assert clip("R1#1", "--to", "16.2", "-o", "b.csv") == 1
     assert "it was decided at 16.000000001 s: a later --to" in capsys.readouterr().err
-    assert clip("--failure", "R1#1", "--after", "100ms", "-o", "b.csv") == 0
+    assert clip("R1#1", "--after", "100ms", "-o", "b.csv") == 0
     assert (base / "b.csv").read_text().splitlines()[-1] == ROWS[5]
 
 
 def test_a_recording_that_breaks_off_can_be_cut(base, capsys):
     """What was decided before counts; what lies behind the piece is not read."""
     (base / "a.csv").write_text("\n".join([*ROWS, "broken"]))
-    assert clip("--failure", "R1#1", "--after", "2s", "-o", "b.csv") == 0
+    assert clip("R1#1", "--after", "2s", "-o", "b.csv") == 0
     assert "what was decided before that counts" in capsys.readouterr().err
 
 
@@ -101,22 +101,22 @@ def test_late_rows_are_found(base, capsys):
     (base / "a.csv").write_text(
         "t,speed,ready,go\n0,0.5,false,\n9,0.4,,\n8,0.3,,\n12,,,\n10,,,1\n20,,,\n"
     )
-    assert clip("--failure", "R1#1", "--before", "0.5s", "--after", "2s", "-o", "b.csv") == 0
+    assert clip("R1#1", "--before", "0.5s", "--after", "2s", "-o", "b.csv") == 0
     assert (base / "b.csv").read_text() == "t,speed,ready,go\n9.5,0.4,false,\n12,,,\n10,,,1\n"
 
 
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["-o", "b.csv"], "name what to cut out: --failure R1#3, or --from T and --to T"),
-        (["--failure", "R1", "-o", "a.csv"], "cannot write a.csv: it is an input"),
-        (["--failure", "R1", "-o", "link.csv"], "cannot write link.csv: it is an input"),
-        (["--failure", "R1", "-o", "b.bag"], "a piece of a.csv ends in .csv"),
-        (["--failure", "R1", "-o", "no/b.csv"], "there is no folder no"),
-        (["--failure", "R1#7", "-o", "b.csv"], "no attempt R1#7: there is R1#1 only"),
-        (["--failure", "R9", "-o", "b.csv"], "no requirement `R9`"),
-        (["--failure", "R1", "--before=-1s", "-o", "b.csv"], "expected a time of at least 0"),
-        (["--failure", "R1", "--before", "1 day", "-o", "b.csv"], "expected a time such as 12.5"),
+        (["-o", "b.csv"], "name what to cut out: an attempt such as R1#3, or --from T and --to T"),
+        (["R1", "-o", "a.csv"], "cannot write a.csv: it is an input"),
+        (["R1", "-o", "link.csv"], "cannot write link.csv: it is an input"),
+        (["R1", "-o", "b.bag"], "a piece of a.csv ends in .csv"),
+        (["R1", "-o", "no/b.csv"], "there is no folder no"),
+        (["R1#7", "-o", "b.csv"], "no attempt R1#7: there is R1#1 only"),
+        (["R9", "-o", "b.csv"], "no requirement `R9`"),
+        (["R1", "--before=-1s", "-o", "b.csv"], "expected a time of at least 0"),
+        (["R1", "--before", "1 day", "-o", "b.csv"], "expected a time such as 12.5"),
         (["--from", "18", "--to", "19", "-o", "b.csv"], "there is nothing between 18 s and 19 s"),
         (["--from", "18", "--clock", "header", "-o", "b.csv"], "use --map"),
     ],
@@ -138,6 +138,6 @@ def test_a_bag_is_not_replaced(base, capsys):
 
     write_ros2(base / "bag", [("/speed", START, {"data": 2.0})], "sqlite3")
     (base / "b").mkdir()
-    words = ["clip", "bag", "--spec", "base.rv", "--failure", "R2", "-o", "b", "--allow-missing"]
+    words = ["clip", "base.rv", "bag", "R2", "-o", "b", "--allow-missing"]
     assert main(words) == 2
     assert "cannot write b: it is there, and a bag is a new folder" in capsys.readouterr().err

@@ -83,7 +83,7 @@ def test_what_is_said_to_be_the_same_is_so(tmp_path, capsys, name):
         failed = [one for one in spec.evaluate(path).attempts if one.verdict == "F"]
         for number, attempt in enumerate(failed[:4]):
             out = folder / f"out{number}{''.join(path.suffixes)}"
-            words = ["clip", path, "--spec", tmp_path / "shop.rv", "--failure", attempt.name]
+            words = ["clip", tmp_path / "shop.rv", path, attempt.name]
             words += ["--before", "30ms", "--after", "40ms", "-o", out]
             codes.append(main([str(word) for word in words]))
             again = spec.evaluate(out)
@@ -135,7 +135,7 @@ def test_messages_are_copied_byte_for_byte(tmp_path, name):
     place = sorted(t for _, t, _ in sent)
     start, stop = place[100], place[200]
     words = ["--from", f"{start}ns", "--to", f"{stop}ns"]
-    assert main(["clip", str(path), "--spec", str(tmp_path / "s.rv"), *words, "-o", str(out)]) == 0
+    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
     whole = [one for one in messages(path) if start <= one[4] <= stop]
     piece = messages(out)
     carried = [one for one in piece if one not in whole]
@@ -185,8 +185,8 @@ def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
     (tmp_path / "s.rv").write_text(
         "spec s\nsignal speed : real\nrequirement R\n  always speed < 6\n"
     )
-    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "0", "--after", "1s"]
-    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    words = ["R", "--before", "0", "--after", "1s"]
+    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
     found = messages(out)
     assert [one[0] for one in found] == ["/map", "/speed", "/speed"]
     assert found[0][4] == START + 6 * 10**9
@@ -203,7 +203,7 @@ def test_topics_without_messages_stay(tmp_path, name):
     (tmp_path / "s.rv").write_text(FAST.format(2))
     out = tmp_path / f"out{path.suffix}"
     words = ["--from", f"{START + 10**9}ns", "-o", str(out)]
-    assert main(["clip", str(path), "--spec", str(tmp_path / "s.rv"), *words]) == 0
+    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words]) == 0
     assert spec.evaluate(out).verdicts == {"R": "F", "R2": "NT"}
 
 
@@ -216,8 +216,11 @@ def test_a_file_without_an_index_is_cut(tmp_path):
     bare |= {"repeat_channels": False, "repeat_schemas": False}
     path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False, **bare)
     (tmp_path / "s.rv").write_text(FAST.format(2))
-    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "1s", "--after", "1s"]
-    assert main(["clip", str(path), *words, "-o", str(tmp_path / "b.mcap")]) == 0
+    words = ["R", "--before", "1s", "--after", "1s"]
+    assert (
+        main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(tmp_path / "b.mcap")])
+        == 0
+    )
 
 
 def test_a_database_alone_is_cut(tmp_path):
@@ -226,9 +229,9 @@ def test_a_database_alone_is_cut(tmp_path):
     folder = write_ros2(tmp_path / "bag", sent, "sqlite3")
     path = next(folder.glob("*.db3")).rename(tmp_path / "a.db3")
     (tmp_path / "s.rv").write_text(FAST.format(2))
-    words = ["--spec", str(tmp_path / "s.rv"), "--failure", "R", "--before", "1s", "--after", "1s"]
+    words = ["R", "--before", "1s", "--after", "1s"]
     out = tmp_path / "b.db3"
-    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
     assert rvmon.loads(FAST.format(2)).evaluate(out).end == START + 5 * 10**9
 
 
@@ -244,10 +247,10 @@ def test_stamps_of_headers_are_cut_by_what_was_recorded(tmp_path, late):
     (tmp_path / "s.rv").write_text(
         "spec s\nsignal state : int\nrequirement R\n  always state < 6\n"
     )
-    words = ["--spec", str(tmp_path / "s.rv"), "--map", "state=/base/scan.state", "--clock"]
-    words += ["header", "--failure", "R", "--before", "2s", "--after", "1s"]
+    words = ["R", "--map", "state=/base/scan.state", "--clock"]
+    words += ["header", "--before", "2s", "--after", "1s"]
     out = tmp_path / "out"
-    assert main(["clip", str(path), *words, "-o", str(out)]) == 0
+    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words, "-o", str(out)]) == 0
     stamps = [one[4] - START for one in messages(out)]
     assert stamps[-4:] == [(t + late) * 10**9 for t in (4, 5, 6, 7)]
 
@@ -284,9 +287,9 @@ def test_parquet_keeps_its_types(tmp_path, kind):
         "requirement R\n  upon go then speed < 1\n"
     )
     unit = {"float64": "s", "int64": "ns"}.get(kind, "iso")
-    words = ["--spec", str(tmp_path / "s.rv"), "--time", f"stamp:{unit}", "--failure", "R#1"]
+    words = ["R#1", "--time", f"stamp:{unit}"]
     words += ["--before", "100ms", "--after", "125ms", "-o", str(out)]
-    assert main(["clip", str(path), *words]) == 0
+    assert main(["clip", str(tmp_path / "s.rv"), str(path), *words]) == 0
     piece = parquet.read_table(out)
     assert piece.schema.types == table.schema.types
     assert piece.column("other").to_pylist() == [None, 4, 5]

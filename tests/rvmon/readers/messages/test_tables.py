@@ -179,6 +179,6 @@ def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, ca
     assert main(["init", "runs/one"]) == 0
     assert main(["run", "one.rv", "runs/one", "--strict"]) == 0
     capsys.readouterr()
-    clip = ["clip", "runs/two", "--spec", "s.rv", "--failure", "R1#1", "--before", "1s", "-o", "x"]
+    clip = ["clip", "s.rv", "runs/two", "R1#1", "--before", "1s", "-o", "x"]
     assert main(clip) == 2
     assert "clip each of them" in capsys.readouterr().err
