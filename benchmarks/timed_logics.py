@@ -22,13 +22,12 @@ from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import UnaryOperation
-from rvmon.timed.model.guards import is_linear
+from rvmon.timed.model.guards import compares_of, is_linear
 from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
 from rvmon.timed.model.operators import UnaryOp
 from rvmon.timed.runs.concrete import replay
 from rvmon.timed.runs.run import Ending
 from rvmon.timed.search.verify import verify
-from rvmon.timed.zones.zone_unions import compares_of
 
 FORMULAS = 6
 """Of each logic on each network."""

@@ -21,7 +21,7 @@ from handover.model import handover_network
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import load_network, loads_network
 from rvmon.timed.model.network import Network, Query
-from rvmon.timed.search.problem import Budget
+from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[1] / "examples" / "models"

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from rvmon.errors import ModelError
 from rvmon.timed.language.load import load_network
-from rvmon.timed.search.problem import Budget
+from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
 
 MANIFEST = Path(__file__).with_name("uppaal_originals.txt")

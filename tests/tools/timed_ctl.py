@@ -20,10 +20,9 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import parts_of
+from rvmon.timed.model.guards import is_plain, parts_of
 from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
-from rvmon.timed.zones.zone_unions import is_plain
 from tests.tools.timed_regions import Region, RegionGraph, satisfies
 
 Regions = frozenset[Region]

@@ -11,7 +11,7 @@ from rvmon.errors import ModelError
 from rvmon.export.network_dot import network_dot
 from rvmon.export.uppaal import uppaal_xml
 from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.search.problem import Budget
+from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
 
 SMALL = Budget(states=300, seconds=5.0)

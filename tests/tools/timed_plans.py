@@ -11,7 +11,8 @@ from rvmon.timed.model.guards import normal_form
 from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
 from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Plan
-from rvmon.timed.search.sought import Choose, Seek, Sought
+from rvmon.timed.search.outcome import Policy
+from rvmon.timed.search.sought import Seek, Sought
 from tests.tools.timed_generate import random_model
 
 _LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"
@@ -26,7 +27,7 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
         some, other, nested = (f.body for f in formulas if isinstance(f, PathFormula))
         some, other, nested = normal_form(some), normal_form(other), normal_form(nested, False)
         for sought in (
-            *(Sought(Seek.GOAL, some, choose=choose) for choose in Choose),
+            *(Sought(Seek.GOAL, some, choose=choose) for choose in Policy),
             Sought(Seek.GOAL, some, bound=3),
             Sought(Seek.DEADLOCK, some, other),
             Sought(Seek.STAY, None, other),

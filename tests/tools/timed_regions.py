@@ -27,7 +27,14 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete, normal_form, with_deadlock
+from rvmon.timed.model.guards import (
+    compares_of,
+    has_paths,
+    is_discrete,
+    normal_form,
+    speaks_of_deadlock,
+    with_deadlock,
+)
 from rvmon.timed.model.network import Edge, LeadsToFormula, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.runs.concrete import (
@@ -41,7 +48,6 @@ from rvmon.timed.runs.concrete import (
     wait,
 )
 from rvmon.timed.runs.run import Action
-from rvmon.timed.zones.zone_unions import compares_of, has_paths, speaks_of_deadlock
 
 
 class TooManyRegionsError(Exception):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from rvmon.timed.model.expressions import Expression, PathFormula
-from rvmon.timed.model.guards import normal_form, with_deadlock
+from rvmon.timed.model.guards import has_paths, normal_form, speaks_of_deadlock, with_deadlock
 from rvmon.timed.model.network import LeadsToFormula, Network
 from rvmon.timed.model.operators import PathOp
 from rvmon.timed.runs.concrete import (
@@ -17,7 +17,6 @@ from rvmon.timed.runs.concrete import (
 )
 from rvmon.timed.runs.run import Run
 from rvmon.timed.search.outcome import Outcome
-from rvmon.timed.zones.zone_unions import has_paths, speaks_of_deadlock
 from tests.tools.timed_regions import RegionGraph, satisfies
 
 Instants = list[tuple[Fraction, Configuration]]

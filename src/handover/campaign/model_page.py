@@ -106,7 +106,8 @@ def claims() -> list[str]:
 
 def _verifier() -> Callable[[str], ET.Element]:
     from handover.model import handover_network
-    from rvmon.timed.runs.simulate import estimate
+    from rvmon.timed.language.elaborate import query_on
+    from rvmon.timed.runs.statistics import sample
     from rvmon.timed.search.verify import verify
 
     network = handover_network()
@@ -116,14 +117,16 @@ def _verifier() -> Callable[[str], ET.Element]:
         requirement = name.removesuffix(SUFFIX)
         some, every = (verify(network, queries[query]).holds for query in (requirement, name))
         claim, query = queries[name], queries[requirement]
-        found = estimate(network, query, runs=SIMULATED, seed=1, until=SIMULATED_UNITS)
+        goal = query.text.removeprefix("E<>")
+        asked = query_on(network, f"Pr[<={SIMULATED_UNITS}; {SIMULATED}](<> {goal})")
+        share = sample(network, asked, seed=1)
         return e(
             "tr",
             None,
             e("th", {"scope": "row"}, requirement),
             e("td", None, checked_text(some)),
-            e("td", None, f"{100 * found.successes / found.runs:.1f} % "
-              f"({interval_text(found.successes, found.runs)})"),
+            e("td", None, f"{100 * share.value:.1f} % "
+              f"({interval_text(round(share.value * share.runs), share.runs)})"),
             e("td", None, checked_text(every)),
             e("td", {"class": "text", "title": claim.text}, claim.remark),
         )  # fmt: skip

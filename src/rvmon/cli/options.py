@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import argparse
 
     from rvmon.session import Spec
-    from rvmon.timed.search.problem import Budget
+    from rvmon.timed.search.outcome import Budget
 
 
 def add_only(parser: argparse.ArgumentParser, what: str = "these requirements") -> None:
@@ -101,7 +101,7 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
 
 def budget_of(arguments: argparse.Namespace) -> Budget:
     """When a search gives up."""
-    from rvmon.timed.search.problem import Budget
+    from rvmon.timed.search.outcome import Budget
 
     return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
 

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rvmon.cli.numbers import positive
 from rvmon.cli.options import add_budget, add_format, budget_of
 from rvmon.cli.output import rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
@@ -17,11 +16,10 @@ from rvmon.errors import RvmonError, UnknownNameError
 if TYPE_CHECKING:
     from rvmon.session import Spec
     from rvmon.timed.model.network import Network
-    from rvmon.timed.observation.outcome import Observation
+    from rvmon.timed.observation.observe import Observation
     from rvmon.timed.runs.run import Run
     from rvmon.timed.runs.statistics import Sampled
-    from rvmon.timed.search.outcome import Outcome
-    from rvmon.timed.search.problem import Budget, Watch
+    from rvmon.timed.search.outcome import Budget, Outcome, Watch
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -54,18 +52,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         choices=("locations", "edges", "edge-pairs"),
         help="instead show few runs that go through all of these",
     )
-    instead.add_argument(
-        "--simulate",
-        metavar="N",
-        type=positive,
-        help="instead of deciding, count what N random runs do: figures, not proofs",
-    )
-    parser.add_argument(
-        "--until",
-        metavar="UNITS",
-        type=positive,
-        help="length of simulated runs, for unbounded queries",
-    )
     parser.add_argument("--seed", metavar="S", type=int, default=1, help="of simulated runs")
     parser.add_argument(
         "--trace",
@@ -94,8 +80,6 @@ def run(arguments: argparse.Namespace) -> int:
             return check_spec(network, arguments, budget, watch)
     if arguments.suite is not None:
         return _show_suite(network, arguments, budget)
-    if arguments.simulate is not None:
-        return _simulate(network, arguments)
     return _decide(network, arguments, budget)
 
 
@@ -105,7 +89,6 @@ def _refuse_unused(arguments: argparse.Namespace) -> None:
     for option, value, used, why in (
         ("--query", arguments.query, by_query, "with --spec or --suite"),
         ("--bind", arguments.bind, arguments.spec, "without --spec"),
-        ("--until", arguments.until, arguments.simulate, "without --simulate"),
     ):
         if value and not used:
             raise RvmonError(f"{option} does nothing {why}")
@@ -201,9 +184,6 @@ def _print_json(network: Network, outcomes: Sequence[Outcome], sampled: Sequence
     say_json(json.dumps(data, indent=2))
 
 
-# Suites and simulation.
-
-
 def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
     from rvmon.timed.describe import run_lines, suite_data
     from rvmon.timed.search.suite import Criterion, build_suite, item_text
@@ -225,26 +205,6 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
     if suite.stopped:
         say(f"  the search was cut short: {suite.stopped}")
     return int(bool(suite.stopped))
-
-
-def _simulate(network: Network, arguments: argparse.Namespace) -> int:
-    from rvmon.timed.language.elaborate import chosen_queries
-    from rvmon.timed.runs.simulate import estimate
-
-    answers = []
-    for query in chosen_queries(network, arguments.query):
-        found = estimate(
-            network, query, runs=arguments.simulate, seed=arguments.seed, until=arguments.until
-        )
-        answers.append({"query": query.text, "share": found.share, "low": found.low,
-                        "high": found.high, "runs": found.runs})  # fmt: skip
-        if arguments.format == "text":
-            say(" ".join(query.text.split()))
-            say(f"    {found.share:.4f} of {found.runs:,} simulated runs; ", end="")
-            say(f"with 95 % confidence from {found.low:.4f} to {found.high:.4f}")
-    if arguments.format == "json":
-        say_json(json.dumps({"simulated": answers}, indent=2))
-    return 0
 
 
 @contextmanager

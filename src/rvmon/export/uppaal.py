@@ -15,6 +15,7 @@ from rvmon.diagnostics.shown import shown, shown_line
 from rvmon.export.functions import function_lines, type_text, updates_text
 from rvmon.export.names import Names, Thing
 from rvmon.timed.model.expressions import TRUE, PathFormula, Variable
+from rvmon.timed.model.guards import has_paths
 from rvmon.timed.model.network import (
     Automaton,
     Edge,
@@ -25,7 +26,6 @@ from rvmon.timed.model.network import (
     QueryFormula,
 )
 from rvmon.timed.model.operators import LocationKind, PathOp
-from rvmon.timed.zones.zone_unions import has_paths
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _HEAD = """<?xml version="1.0" encoding="utf-8"?>

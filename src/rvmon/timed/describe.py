@@ -9,7 +9,7 @@ from typing import Any
 
 from rvmon.timed.model.expressions import Variable
 from rvmon.timed.model.network import Network
-from rvmon.timed.observation.outcome import Observation
+from rvmon.timed.observation.observe import Observation
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
 from rvmon.timed.runs.statistics import ERROR, Sampled
 from rvmon.timed.search.outcome import Outcome

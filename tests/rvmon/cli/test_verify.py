@@ -75,11 +75,9 @@ def test_the_run_is_shown_in_seconds(tmp_path, capsys):
         ([str(MODELS / "bridge.ta"), "--max-memory", "0"], "at least 1"),
         ([str(MODELS / "bridge.ta"), "--max-seconds", "nan"], "a time in seconds"),
         ([str(MODELS / "bridge.ta"), "--max-seconds", "-1"], "at least 0"),
-        ([str(MODELS / "bridge.ta"), "--simulate", "0"], "at least 1"),
         ([str(MODELS / "bridge.ta"), "--spec", "a.rv", "--suite", "edges"], "not allowed with"),
         ([str(MODELS / "bridge.ta"), "--suite", "edges", "--query", "over"], "does nothing"),
         ([str(MODELS / "bridge.ta"), "--bind", "a=b"], "does nothing without --spec"),
-        ([str(MODELS / "bridge.ta"), "--until", "3"], "does nothing without --simulate"),
     ],
 )
 def test_wrong_input_exits_with_2(arguments, message, capsys):
@@ -147,17 +145,6 @@ def test_suites(lamp, capsys):
     suite = json.loads(capsys.readouterr().out)
     assert suite["missing"] == []
     assert suite["runs"][0]["trace"]
-
-
-def test_simulation(lamp, capsys):
-    """A share of simulated runs is given with its bounds, and called simulated."""
-    model, _ = lamp
-    words = ["verify", model, "--simulate", "200", "--query", "E<>[<=100] Lamp.on"]
-    assert main(words) == 0
-    assert "of 200 simulated runs; with 95 % confidence" in capsys.readouterr().out
-    assert main([*words, "--format", "json"]) == 0
-    (answer,) = json.loads(capsys.readouterr().out)["simulated"]
-    assert answer["low"] <= answer["share"] <= answer["high"]
 
 
 def test_a_binding_needs_a_signal(lamp, capsys):

@@ -13,23 +13,19 @@ Design 34, 2009, section 5 (state estimation); the end as quiescence, as in Tret
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from math import inf
 
 from rvmon.timed.conformance.outcome import Allowed, Conformance, Divergence, Recorded
-from rvmon.timed.model.expressions import TRUE
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.search.explore import explore
+from rvmon.timed.search.explore import Node, explore
 from rvmon.timed.search.meter import Meter
-from rvmon.timed.search.problem import UNLIMITED, Budget, Node
+from rvmon.timed.search.outcome import UNLIMITED, Budget
 from rvmon.timed.zones.dbm import Zone, constrain, cut, normalise
-from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.symbolic import Steps
-from rvmon.timed.zones.zone_unions import Constraint
+from rvmon.timed.zones.symbolic import Steps, check_start
 from rvmon.trace.time import TICKS_PER_UNIT
 
 RESOLUTION = TICKS_PER_UNIT["ms"]
@@ -94,19 +90,21 @@ def conform(
     return Conformance(len(actions), None, meter.stopped)
 
 
-@dataclass(frozen=True, slots=True)
 class _Quiet:
     """Moves that nobody sees, up to an instant."""
 
-    steps: Steps
-    begin: Sequence[tuple[State, Zone]]
-    observed: frozenset[str]
-    latest: int
-
-    @property
-    def dim(self) -> int:
-        """One more than the number of clocks, the timer included."""
-        return self.steps.dim
+    def __init__(
+        self,
+        steps: Steps,
+        begin: Sequence[tuple[State, Zone]],
+        observed: frozenset[str],
+        latest: int,
+    ) -> None:
+        self.steps = steps
+        self.dim = steps.dim
+        self.begin = begin
+        self.observed = observed
+        self.latest = latest
 
     def start(self) -> Sequence[tuple[State, Zone]]:
         """The states that explain the recording so far."""
@@ -121,10 +119,6 @@ class _Quiet:
             if constrain(fresh, dim, 0, dim - 1, float(self.latest)):
                 yield move, state, normalise(fresh)
 
-    def goal(self, _site: State, _zone: Zone) -> Constraint | None:
-        """Nothing: all states are wanted."""
-        return None
-
 
 class _Watcher:
     """The network with a last clock that is never reset."""
@@ -134,7 +128,7 @@ class _Watcher:
         timer = 1 + len(network.clocks)
         self._observed = observed
         self._network = network
-        self._steps = Steps(network, TRUE, 1, [(timer, -inf)], [(timer, inf)])
+        self._steps = Steps(network, 1, [(timer, -inf)], [(timer, inf)])
         self._dim = self._steps.dim
 
     def start(self) -> Iterator[tuple[State, Zone]]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from math import prod
 
 from rvmon.diagnostics import Span
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
@@ -44,6 +45,11 @@ class Slot:
     extents: tuple[range, ...] = ()
     indices: tuple[Expression, ...] = ()
     span: Span | None = field(default=None, compare=False)
+
+    @property
+    def size(self) -> int:
+        """The number of elements of the array; 1 of a single one."""
+        return prod(map(len, self.extents))
 
 
 @dataclass(frozen=True, slots=True)

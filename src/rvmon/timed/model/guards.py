@@ -108,6 +108,26 @@ def is_linear(expression: Expression) -> bool:
     return any(isinstance(part, PathFormula) and part.op in linear for part in parts)
 
 
+def compares_of(expression: Expression) -> Iterator[ClockCompare]:
+    """All comparisons of clocks in an expression."""
+    return (part for part in parts_of(expression) if isinstance(part, ClockCompare))
+
+
+def speaks_of_deadlock(formula: Expression) -> bool:
+    """Whether `deadlock` occurs in a formula."""
+    return any(isinstance(part, Deadlock) for part in parts_of(formula))
+
+
+def has_paths(formula: Expression) -> bool:
+    """Whether a path operator occurs in a formula."""
+    return any(isinstance(part, PathFormula) for part in parts_of(formula))
+
+
+def is_plain(formula: Expression) -> bool:
+    """Whether a formula speaks of the state alone: of no runs and no deadlock."""
+    return not any(isinstance(part, PathFormula | Deadlock) for part in parts_of(formula))
+
+
 def normal_form(expression: Expression, positive: bool = True) -> Expression:
     """The expression, or its negation, with `and` and `or` over discrete parts and atoms."""
     if is_discrete(expression):

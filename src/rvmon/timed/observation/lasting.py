@@ -16,8 +16,8 @@ from itertools import pairwise
 
 from rvmon.formula.core import And, Core, Next, Or, Release, Until
 from rvmon.timed.observation.observer import Observed, ObservedLink, ObservedSite, Phase
+from rvmon.timed.search.explore import Node
 from rvmon.timed.search.meter import Meter
-from rvmon.timed.search.problem import Node
 from rvmon.timed.zones.dbm import STRICT, Zone, blurred, constrain, normalise, reset
 
 _Node = Node[ObservedSite, ObservedLink]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from rvmon.automaton.construct import Budget as TableBudget
@@ -34,17 +34,15 @@ from rvmon.timed.observation.observer import (
     is_failed,
     is_passed,
 )
-from rvmon.timed.observation.outcome import Observation
 from rvmon.timed.observation.propositions import Labelling, NotExpressibleError
-from rvmon.timed.runs.paths import PathStep, invariant_of
+from rvmon.timed.runs.paths import PathStep, invariant_of, make_run
 from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.runs.timing import TimedStep
-from rvmon.timed.search.explore import explore
+from rvmon.timed.search.explore import Node, explore
 from rvmon.timed.search.meter import Meter
-from rvmon.timed.search.problem import UNLIMITED, Budget, Node, Watch
-from rvmon.timed.search.witness import make_run
+from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.zones.dbm import STRICT
-from rvmon.timed.zones.deadlock import check_start
+from rvmon.timed.zones.symbolic import check_start
 from rvmon.timed.zones.zone_unions import Constraint
 from rvmon.trace.time import TICKS_PER_UNIT
 
@@ -54,6 +52,34 @@ UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such a
 """What is reported of a requirement without deadline that no finite run fails."""
 
 _Node = Node[ObservedSite, ObservedLink]
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """A requirement on all runs of a network.
+
+    Attributes:
+        requirement: its id.
+        text: the requirement in words.
+        holds: whether no attempt of any run fails; `None` if the budget ended first, or if the
+            network cannot express it.
+        triggered: a run with an attempt; `None`: there is none, so that the claim is vacuous.
+        passing: a run with an attempt that passes.
+        failing: a run with an attempt that fails.
+        network: in whose unit the runs are.
+        statistics: what it cost.
+        remark: why it is not decided, or what the answer does not cover.
+    """
+
+    requirement: str
+    text: str
+    holds: bool | None
+    triggered: Run | None
+    passing: Run | None
+    failing: Run | None
+    network: Network
+    statistics: Statistics
+    remark: str = ""
 
 
 def observe(

@@ -20,7 +20,6 @@ from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.obligation import Obligation
 from rvmon.spec.checked.formula import Bound, BoundAtom
 from rvmon.timed.conformance.conform import names_of
-from rvmon.timed.model.expressions import TRUE
 from rvmon.timed.model.network import Network
 from rvmon.timed.observation.propositions import Labelling, NotExpressibleError, speaks_of_events
 from rvmon.timed.zones.dbm import STRICT, Zone, cut, delay, normalise, reset, zero
@@ -122,7 +121,7 @@ class Observed:
         self._trigger = obligation.trigger
         self._pulse = pulse
         clocks = max(1, automaton.clocks)
-        self.steps = Steps(network, TRUE, observers=clocks + 1 + ticks)
+        self.steps = Steps(network, observers=clocks + 1 + ticks)
         self.dim = self.steps.dim
         self.base = 1 + len(network.clocks)
         self.since = self.base + clocks
@@ -162,9 +161,6 @@ class Observed:
                 yield from self._behind(site, move, fresh)
         if site.phase is not Phase.IDLE and site.state.delays:
             yield from self._later(site, zone)
-
-    def goal(self, _site: ObservedSite, _zone: Zone) -> None:
-        """Nothing: all sites are wanted."""
 
     def rests(self, site: ObservedSite) -> bool:
         """Whether time can pass for ever in a site and its attempt stays open."""

@@ -1,11 +1,17 @@
-"""Paths of symbolic states step by step: what is done, where it leads, when it can happen."""
+"""Paths of symbolic states step by step, and the runs along them.
+
+A run has the exact window of each wait, and concrete times that the plain rules have checked.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from rvmon.timed.runs.timing import TimedStep
+from rvmon.timed.model.network import Network
+from rvmon.timed.runs.concrete import replay
+from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep
+from rvmon.timed.runs.timing import TimedStep, earliest, timing_of, windows
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint
 
@@ -56,3 +62,43 @@ def crossing_step(state: State, leave: Constraint, enter: Constraint) -> PathSte
     """The instant at which a run crosses from one piece of a formula to another."""
     timed = TimedStep(state.delays, (*invariant_of(state), *leave), (), enter)
     return PathStep(timed, None, state)
+
+
+def move_path(start: State, moves: Iterable[Move]) -> list[PathStep]:
+    """Moves in turn."""
+    steps, here = [], start
+    for move in moves:
+        steps.append(move_step(here, move))
+        here = move.target
+    return steps
+
+
+def make_run(
+    network: Network,
+    start: State,
+    steps: Sequence[PathStep],
+    ending: Ending = Ending.REACHED,
+    loop: int | None = None,
+) -> Run:
+    """The run along a path that does everything as early as possible."""
+    timing = timing_of([step.timed for step in steps])
+    assert timing is not None  # noqa: S101 - the search found a run along the path
+    run_steps = tuple(
+        RunStep(window, wait, action_of(step.move), position_of(step.state))
+        for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
+    )
+    run = Run(position_of(start), run_steps, ending, loop, timing)
+    replay(network, run)
+    return run
+
+
+def action_of(move: Move | None) -> Action | None:
+    """The edges of a move."""
+    if move is None:
+        return None
+    return Action(tuple((edge.automaton, edge.edge) for edge in move.edges))
+
+
+def position_of(state: State) -> Position:
+    """A discrete state as runs show it."""
+    return Position(state.vector.locations, state.values)

@@ -1,4 +1,4 @@
-"""Random runs of a network, and shares of them with confidence bounds: figures, not proofs.
+"""Random runs of a network.
 
 How chance decides: each automaton draws one of the moves that it begins and that are possible now
 or after a delay, in proportion to their weights, and a delay for it: uniformly from the window in
@@ -13,27 +13,15 @@ Systems, CAV 2011 (races between components; weights among the moves of one).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from math import ceil, inf, prod
 from random import Random
 
-from rvmon.confidence import interval
-from rvmon.timed.model.expressions import Expression, PathFormula
-from rvmon.timed.model.guards import normal_form
-from rvmon.timed.model.network import Network, Query
-from rvmon.timed.model.operators import PathOp
+from rvmon.timed.model.expressions import Expression
+from rvmon.timed.model.network import Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import (
-    Constraint,
-    ConstraintMaker,
-    constraint_maker,
-    formula_bounds,
-    has_paths,
-    speaks_of_deadlock,
-)
+from rvmon.timed.zones.zone_unions import Constraint, ConstraintMaker, constraint_maker
 
 GRID = 1_000
 """Steps of simulated time in one unit: all times are whole numbers of them."""
@@ -42,87 +30,13 @@ MOST_MOVES = 100_000
 """A run with more moves before its end is taken for a Zeno loop."""
 
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """A share of simulated runs.
-
-    Attributes:
-        runs: how many were simulated.
-        successes: how many of them did what the query says.
-        low: the share is not below, with the given confidence.
-        high: nor above.
-        confidence: such as 0.95.
-    """
-
-    runs: int
-    successes: int
-    low: float
-    high: float
-    confidence: float
-
-    @property
-    def share(self) -> float:
-        """Successes among the runs."""
-        return self.successes / self.runs
-
-
-def estimate(
-    network: Network,
-    query: Query,
-    *,
-    runs: int,
-    seed: int,
-    until: int | None = None,
-    mean_wait: float = 10.0,
-    confidence: float = 0.95,
-) -> Estimate:
-    """Simulate runs and count those that do what a query says.
-
-    Args:
-        network: what to simulate.
-        query: `E<> p` or `A<> p`: the share of runs that meet p; `A[] p` or `E[] p`: of those that
-            never leave it; within the query's bound, or `until`.
-        runs: how many, at least 1.
-        seed: of all choices.
-        until: units of time that a run lasts, if the query has no bound.
-        mean_wait: units of time by which a wait without end exceeds its beginning on average.
-        confidence: that the true share lies within the bounds, over all seeds.
-
-    Raises:
-        ModelError: the query cannot be judged on one run, or the network cannot start.
-    """
-    check_start(network)
-    sought, meets, horizon = _goal(query, until)
-    trial = trial_of(network, sought, horizon, Random(seed), mean_wait)  # noqa: S311 - repeatable
-    found = sum(trial() for _ in range(runs))
-    successes = found if meets else runs - found
-    low, high = interval(successes, runs, confidence)
-    return Estimate(runs, successes, low, high, confidence)
-
-
 def trial_of(
     network: Network, sought: Expression, horizon: int, random: Random, mean_wait: float
 ) -> Callable[[], bool]:
     """What simulates one run and says whether it meets a normalised formula within a horizon."""
-    space = Space(network, formula_bounds(sought, network))
+    space = Space(network)
     constraints = constraint_maker(sought)
     return lambda: _reaches(space, constraints, horizon * GRID, random, mean_wait * GRID)
-
-
-def _goal(query: Query, until: int | None) -> tuple[Expression, bool, int]:
-    """What a run must reach, whether that is a success, and within how many units."""
-    formula = query.formula
-    if not isinstance(formula, PathFormula) or has_paths(formula.body):
-        fix = "use E<>, A<>, A[] or E[] with a state formula"
-        raise model_error("TA020", "this cannot be evaluated on one run", query.span, fix)
-    if speaks_of_deadlock(formula.body):
-        raise model_error("TA020", "a simulated run does not know deadlocks", query.span)
-    horizon = until if formula.bound is None else formula.bound
-    if horizon is None:
-        fix = "bound it, as in E<>[<=100] p, or give the length of a run"
-        raise model_error("TA020", "a simulated run needs an end", query.span, fix)
-    meets = formula.op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
-    return normal_form(formula.body, positive=meets), meets, horizon
 
 
 def _reaches(

@@ -18,14 +18,13 @@ from statistics import NormalDist
 
 from rvmon.confidence import interval
 from rvmon.timed.model.evaluate import evaluator
-from rvmon.timed.model.guards import normal_form
+from rvmon.timed.model.guards import is_plain, normal_form
 from rvmon.timed.model.network import Chance, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.simulate import GRID, stretches, trial_of
-from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import is_plain
+from rvmon.timed.zones.symbolic import check_start
 
 RUNS = 1_000
 """Runs of an estimate that does not say how many."""

@@ -16,8 +16,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rvmon.timed.runs.timing import TimedStep, close, on_grid, timing_of
-from rvmon.timed.zones.dbm import Zone
-from rvmon.timed.zones.federation import universe
+from rvmon.timed.zones.dbm import Zone, universe
 
 if TYPE_CHECKING:
     import numpy as np

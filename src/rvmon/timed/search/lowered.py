@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
-from math import inf, log, prod
+from math import inf, log
 
 from rvmon.timed.model.expressions import (
     TRUE,
@@ -18,23 +18,19 @@ from rvmon.timed.model.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_discrete, resets_in
+from rvmon.timed.model.guards import has_paths, resets_in, speaks_of_deadlock
 from rvmon.timed.model.network import Edge, Network
 from rvmon.timed.model.operators import BinaryOp, LocationKind, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.search.linear import WayState
-from rvmon.timed.search.nested import together
+from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.programs import Programs
-from rvmon.timed.search.sought import Alternative, Seek, Sought
+from rvmon.timed.search.sought import Seek, Sought
 from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds, location_bounds
-from rvmon.timed.zones.zone_unions import (
-    has_paths,
-    speaks_of_deadlock,
-)
+from rvmon.timed.zones.zone_unions import MOST_PIECES, Alternative, alternatives_of, together
 
 MAGIC = 0x5A4E3031
 MOST_CLOCKS = 1000
-MOST_PIECES = 4000
 MOST_TREE_ROWS = 1000
 LARGEST = (1 << 31) - 2
 _OPS = {ClockOp.LT: 0, ClockOp.LE: 1, ClockOp.GE: 2, ClockOp.GT: 3}
@@ -101,7 +97,8 @@ class Plan:
             (1, [arc for state in states for arc in state.arcs]),
         ]
         late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
-        head = [MAGIC, sought.kind, sought.choose, timer, sought.has_timer, sought.is_levelled]
+        choose = list(Policy).index(sought.choose)
+        head = [MAGIC, sought.kind, choose, timer, sought.has_timer, sought.is_levelled]
         sets = 0 if sought.ways is None else sought.ways.sets
         self.numbers = _packed([*head, int(late or 0), sets, len(network.locals)], sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
@@ -145,7 +142,7 @@ class Plan:
         slot = edge.sync.slot
         channel = self._network.channels[slot.first]
         flags = edge.sync.sends | channel.broadcast << 1 | channel.urgent << 2
-        last = slot.first + prod(map(len, slot.extents))
+        last = slot.first + slot.size
         return [*row, self._programs.add_index(slot), slot.first, last, flags]
 
     def _data(self, expression: Expression) -> int:
@@ -274,41 +271,3 @@ def _limit_rows(bounds: ClockBounds) -> list[int]:
             if number > -inf:
                 rows += [clock, is_lower, int(min(number, LARGEST))]
     return rows
-
-
-def alternatives_of(
-    formula: Expression | None, due: Sequence[ClockCompare] = ()
-) -> list[Alternative]:
-    """A normalised formula as alternatives, in each of which more bounds hold; none for `None`."""
-    if formula is None:
-        return []
-    found = []
-    for conditions, compares in _split(formula):
-        together: Expression = TRUE
-        for condition in conditions:
-            if together == TRUE:
-                together = condition
-            else:
-                together = BinaryOperation(BinaryOp.AND, together, condition)
-        found.append(Alternative(together, (*compares, *due)))
-    return found
-
-
-_Parts = tuple[list[Expression], list[ClockCompare]]
-
-
-def _split(formula: Expression) -> list[_Parts]:
-    if is_discrete(formula):
-        return [([formula], [])]
-    match formula:
-        case ClockCompare():
-            return [([], [formula])]
-        case BinaryOperation(BinaryOp.AND, left, right):
-            some, others = _split(left), _split(right)
-            if len(some) * len(others) > MOST_PIECES:
-                raise model_error("TA019", "the query has too many alternatives", None)
-            return [(a + c, b + d) for a, b in some for c, d in others]
-        case BinaryOperation(BinaryOp.OR, left, right):
-            return [*_split(left), *_split(right)]
-        case _:
-            raise AssertionError(f"{formula} is not normalised")

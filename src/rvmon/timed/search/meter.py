@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rvmon.timed.search.problem import Budget, Progress, Statistics, Watch
+from rvmon.timed.search.outcome import Budget, Progress, Statistics, Watch
 
 CHECK_EVERY = 128
 """States between two looks at the clock and at the memory."""

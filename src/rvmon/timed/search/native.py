@@ -11,21 +11,23 @@ from math import inf
 from rvmon.native.zones import search
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.paths import PathStep, crossing_step, mark_step, move_step
+from rvmon.timed.runs.paths import PathStep, crossing_step, make_run, mark_step, move_step
 from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.runs.timing import timing_of
 from rvmon.timed.search.loops import time_passes
 from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.meter import Meter
-from rvmon.timed.search.nested import together
-from rvmon.timed.search.sought import Alternative, Seek, Sought
-from rvmon.timed.search.witness import make_run
-from rvmon.timed.zones.compile import atoms_of
+from rvmon.timed.search.sought import Seek, Sought
 from rvmon.timed.zones.dbm import STRICT, Zone
-from rvmon.timed.zones.deadlock import is_time_bounded
-from rvmon.timed.zones.discrete import State
+from rvmon.timed.zones.discrete import State, atoms_of
 from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import EVERYWHERE, Constraint, constraint_maker
+from rvmon.timed.zones.zone_unions import (
+    EVERYWHERE,
+    Alternative,
+    Constraint,
+    constraint_maker,
+    together,
+)
 
 _UNBOUNDED = (1 << 63) - 1
 
@@ -89,7 +91,7 @@ def seek(
     paths = _Paths(network, plan, sought)
 
     def counts(path: bytes, loop: int, head: bytes) -> int:
-        steps = [step.timed for step in paths.steps(path)[loop:]]
+        steps = [step.timed for step in paths.walk(path)[1][loop:]]
         return time_passes(steps, _zone(array("q", head)), paths.dim)
 
     state, ending, loop, improper, visited, stored, _, _, path, parts = search(
@@ -128,27 +130,24 @@ class _Paths:
         self._network = network
         self._plan = plan
         self._space = Space(network)
+        start = self._space.initial()
+        assert start is not None  # noqa: S101 - the network can start
+        self._start = start
         self.dim = 1 + len(network.clocks) + sought.has_timer
         late = sought.kind in (Seek.LATE, Seek.LATE_AFTER)
         self._timers = [self.dim - 1] if late else []
 
-    def steps(self, path: bytes) -> list[PathStep]:
-        """The steps of a path.
-
-        Raises:
-            ModelError: the last one leaves a variable's range.
-        """
-        return self._walk(path)[1]
-
     def run(self, path: bytes, parts: bytes, end: _End, loop: int) -> Run:
         """The run along a path, to the first of some parts that it can reach."""
-        start, steps, last = self._walk_from_start(path)
+        last, steps = self.walk(path)
         for part in self._parts(parts):
             marked = [*steps, mark_step(last, part)]
             if timing_of([step.timed for step in marked]) is not None:
                 steps = marked
                 break
-        return make_run(self._network, start, steps, _ending(end, last), None if loop < 0 else loop)
+        return make_run(
+            self._network, self._start, steps, _ending(end, last), None if loop < 0 else loop
+        )
 
     def fail(self, path: bytes, sought: Sought) -> None:
         """Say what is wrong where a search could not go on.
@@ -156,7 +155,7 @@ class _Paths:
         Raises:
             ModelError: always, unless the native search is wrong.
         """
-        state, _ = self._walk(path)
+        state, _ = self.walk(path)
         for move in self._space.moves(state):
             self._space.moves(move.target)
             self._ask(move.target, sought)
@@ -169,17 +168,14 @@ class _Paths:
             if formula is not None:
                 constraint_maker(formula)(state.vector.locations, state.values)
 
-    def _walk_from_start(self, path: bytes) -> tuple[State, list[PathStep], State]:
-        last, steps = self._walk(path)
-        start = self._space.initial()
-        assert start is not None  # noqa: S101 - the network can start
-        return start, steps, last
+    def walk(self, path: bytes) -> tuple[State, list[PathStep]]:
+        """The last state of a path and its steps.
 
-    def _walk(self, path: bytes) -> tuple[State, list[PathStep]]:
+        Raises:
+            ModelError: the last one leaves a variable's range.
+        """
         numbers = array("i", path)
-        state = self._space.initial()
-        assert state is not None  # noqa: S101 - the network can start
-        piece, steps, at = numbers[0], [], 1
+        state, piece, steps, at = self._start, numbers[0], list[PathStep](), 1
         while at < len(numbers):
             kind, behind, number, count = numbers[at : at + 4]
             at += 4 + count
@@ -250,7 +246,7 @@ def _rounded(constraint: Constraint, *, uppers: bool) -> Constraint:
 def _ending(end: _End, last: State) -> Ending:
     match end:
         case _End.DEAD:
-            return Ending.TIME_LOCK if is_time_bounded(last) else Ending.DEADLOCK
+            return Ending.TIME_LOCK if last.is_time_bounded else Ending.DEADLOCK
         case _End.IDLE:
             return Ending.IDLE
         case _End.STUCK:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
-from rvmon.timed.model.expressions import ClockCompare, Expression
+from rvmon.timed.model.expressions import Expression, PathFormula
+from rvmon.timed.model.guards import parts_of
 from rvmon.timed.search.linear import Ways
-from rvmon.timed.zones.zone_unions import has_bounds
+from rvmon.timed.search.outcome import Policy
 
 
 class Seek(IntEnum):
@@ -22,22 +23,6 @@ class Seek(IntEnum):
     NESTED = 6
     START = 7
     RUN = 8
-
-
-class Choose(IntEnum):
-    """By what a plan chooses among runs to a goal."""
-
-    SHORTEST = 0
-    FASTEST = 1
-    LIKELY = 2
-
-
-@dataclass(frozen=True, slots=True)
-class Alternative:
-    """A condition on the discrete state and bounds of clocks, which hold together."""
-
-    condition: Expression
-    compares: tuple[ClockCompare, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,17 +47,18 @@ class Sought:
     nested: Expression | None = None
     ways: Ways | None = None
     progress: bool = False
-    choose: Choose = Choose.SHORTEST
+    choose: Policy = Policy.SHORTEST
     bound: int | None = None
 
     @property
     def has_timer(self) -> bool:
         """Whether one more clock belongs to the query."""
+        nested = () if self.nested is None else parts_of(self.nested)
         return (
             self.bound is not None
             or self.progress
-            or self.choose is Choose.FASTEST
-            or (self.nested is not None and has_bounds(self.nested))
+            or self.choose is Policy.FASTEST
+            or any(isinstance(part, PathFormula) and part.bound is not None for part in nested)
         )
 
     @property

@@ -14,18 +14,15 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from rvmon.timed.model.expressions import TRUE
 from rvmon.timed.model.network import Network
+from rvmon.timed.runs.paths import make_run, move_path
 from rvmon.timed.runs.run import Run
-from rvmon.timed.search.explore import explore
+from rvmon.timed.search.explore import Node, explore
 from rvmon.timed.search.meter import Meter
-from rvmon.timed.search.problem import UNLIMITED, Budget, Node, Statistics, Watch
-from rvmon.timed.search.witness import make_run, move_path
+from rvmon.timed.search.outcome import UNLIMITED, Budget, Statistics, Watch
 from rvmon.timed.zones.dbm import Zone
-from rvmon.timed.zones.deadlock import check_start
 from rvmon.timed.zones.discrete import Move, State
-from rvmon.timed.zones.symbolic import Steps
-from rvmon.timed.zones.zone_unions import Constraint
+from rvmon.timed.zones.symbolic import Steps, check_start
 
 
 class Criterion(StrEnum):
@@ -91,7 +88,7 @@ class _Tour:
     """Goes everywhere; `watched` is the automaton whose last edge distinguishes sites."""
 
     def __init__(self, network: Network, watched: int | None) -> None:
-        self._steps = Steps(network, TRUE)
+        self._steps = Steps(network)
         self._watched = watched
         self.dim = self._steps.dim
 
@@ -106,9 +103,6 @@ class _Tour:
                 if edge.automaton == self._watched:
                     last = edge.automaton, edge.number
             yield move, _Site(state, last), fresh
-
-    def goal(self, _site: _Site, _zone: Zone) -> Constraint | None:
-        return None
 
 
 _Node = Node[_Site, Move]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rvmon.timed.language.elaborate import query_on
@@ -12,7 +13,7 @@ from rvmon.timed.model.expressions import (
     Expression,
     PathFormula,
 )
-from rvmon.timed.model.guards import is_linear, normal_form, with_deadlock
+from rvmon.timed.model.guards import has_paths, is_linear, is_plain, normal_form, with_deadlock
 from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
@@ -20,12 +21,10 @@ from rvmon.timed.runs.run import Ending, Run
 from rvmon.timed.search.linear import check_linear, ways_of
 from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.native import seek
-from rvmon.timed.search.nested import alternatives, lasting_part, together
-from rvmon.timed.search.outcome import Outcome, Policy
-from rvmon.timed.search.problem import UNLIMITED, Budget, Watch
-from rvmon.timed.search.sought import Choose, Seek, Sought
-from rvmon.timed.zones.deadlock import check_start
-from rvmon.timed.zones.zone_unions import has_paths, is_plain
+from rvmon.timed.search.outcome import UNLIMITED, Budget, Outcome, Policy, Watch
+from rvmon.timed.search.sought import Seek, Sought
+from rvmon.timed.zones.symbolic import check_start
+from rvmon.timed.zones.zone_unions import together
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +144,7 @@ def _search(question: _Question, query: Query) -> _Found:
                 case PathOp.POSSIBLY | PathOp.INVARIANTLY if not has_paths(sought):
                     return _Found(shows, _reach_deadlock(question, sought, bound))
                 case PathOp.EVENTUALLY | PathOp.POTENTIALLY_ALWAYS if is_plain(sought):
-                    return _Found(shows, _avoidance(question, sought, bound))
+                    return _Found(shows, _staying(question, None, sought, bound))
                 case _:
                     return _at_start(question, query.formula)
         case formula if has_paths(formula):
@@ -169,7 +168,29 @@ def _at_start(question: _Question, formula: Expression) -> _Found:
 
 # Reaching.
 
-_CHOICES = {Policy.FASTEST: Choose.FASTEST, Policy.LIKELIEST: Choose.LIKELY}
+
+def _alternatives(formula: Expression) -> list[list[Expression]]:
+    """A normalised formula as alternatives of parts that hold together; plain parts stay whole."""
+    match formula:
+        case BinaryOperation(BinaryOp.OR, left, right) if has_paths(formula):
+            return [*_alternatives(left), *_alternatives(right)]
+        case BinaryOperation(BinaryOp.AND, left, right) if has_paths(formula):
+            return [
+                [*some, *others] for some in _alternatives(left) for others in _alternatives(right)
+            ]
+        case _:
+            return [[formula]]
+
+
+def _lasting_part(parts: Sequence[Expression]) -> PathFormula | None:
+    """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
+    match [part for part in parts if has_paths(part)]:
+        case [PathFormula(PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
+            left == TRUE and is_plain(body)
+        ):
+            return lasting
+        case _:
+            return None
 
 
 def _reach(
@@ -185,7 +206,7 @@ def _reach(
     if run is None:
         return None, None
     if policy is not Policy.SHORTEST:
-        sought = Sought(Seek.GOAL, formula, bound=within, choose=_CHOICES[policy])
+        sought = Sought(Seek.GOAL, formula, bound=within, choose=policy)
         best = seek(network, sought, meter).run
         if best is not None:
             return best, policy
@@ -201,8 +222,8 @@ def _reach_deadlock(question: _Question, formula: Expression, within: int | None
 def _reach_nested(question: _Question, formula: Expression, shows: bool) -> _Found:
     """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
     run = None
-    for parts in alternatives(formula):
-        lasting = lasting_part(parts)
+    for parts in _alternatives(formula):
+        lasting = _lasting_part(parts)
         first = [part for part in parts if part is not lasting]
         if lasting is None or not all(map(is_plain, first)):
             sought = Sought(Seek.NESTED, nested=together(parts))
@@ -216,11 +237,6 @@ def _reach_nested(question: _Question, formula: Expression, shows: bool) -> _Fou
 
 
 # Staying away.
-
-
-def _avoidance(question: _Question, formula: Expression, bound: int | None) -> Run | None:
-    """A run that stays inside a normalised formula for ever, or until the bound is over."""
-    return _staying(question, None, formula, bound)
 
 
 def _unanswered(

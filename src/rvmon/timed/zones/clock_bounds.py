@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, prod
+from math import inf
 
 from rvmon.timed.model.expressions import (
     BinaryOperation,
@@ -36,19 +36,12 @@ class ClockBounds:
     lower: tuple[float, ...]
     upper: tuple[float, ...]
 
-    def joined(self, others: Sequence[ClockBounds]) -> ClockBounds:
-        """The largest of these and all others, clock by clock."""
-        if not others:
-            return self
-        return ClockBounds(
-            tuple(map(max, self.lower, *(other.lower for other in others))),
-            tuple(map(max, self.upper, *(other.upper for other in others))),
-        )
 
-
-def no_bounds(clocks: int) -> ClockBounds:
-    """What holds where no clock is compared with anything."""
-    return ClockBounds((-inf,) * clocks, (-inf,) * clocks)
+def joined(several: Sequence[ClockBounds]) -> ClockBounds:
+    """The largest of some, at least one, clock by clock."""
+    lower, upper = zip(*((one.lower, one.upper) for one in several), strict=True)
+    largest = (tuple(map(max, *side)) if len(side) > 1 else side[0] for side in (lower, upper))
+    return ClockBounds(*largest)
 
 
 def location_bounds(
@@ -120,7 +113,7 @@ def value_range(expression: Expression, network: Network) -> tuple[int, int]:
             first, table = slot.first, network.variables
             if first < 0:
                 first, table = first + len(network.locals), network.locals
-            variables = table[first : first + prod(map(len, slot.extents))]
+            variables = table[first : first + slot.size]
             return min(v.low for v in variables), max(v.high for v in variables)
         case Lookup(values, _):
             return min(values), max(values)

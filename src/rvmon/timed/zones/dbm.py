@@ -43,6 +43,14 @@ def zero(dim: int) -> Zone:
     return [0.0] * (dim * dim)
 
 
+def universe(dim: int) -> Zone:
+    """All valuations."""
+    zone = [inf] * (dim * dim)
+    for clock in range(dim):
+        zone[clock * dim] = zone[clock * dim + clock] = 0.0
+    return zone
+
+
 def constrain(zone: Zone, dim: int, x: int, y: int, bound: float) -> bool:
     """Cut a zone by `clock y − clock x <= bound`, in place.
 

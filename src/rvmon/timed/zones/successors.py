@@ -16,10 +16,20 @@ from rvmon.errors import ModelError
 from rvmon.timed.model.evaluate import Evaluator, Frame
 from rvmon.timed.model.network import Network
 from rvmon.timed.model.operators import LocationKind
-from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds, no_bounds
-from rvmon.timed.zones.compile import AtomMaker, CompiledEdge, atoms_of, compile_edge, data_of
+from rvmon.timed.zones.clock_bounds import ClockBounds, joined, location_bounds
 from rvmon.timed.zones.dbm import Atom, negated
-from rvmon.timed.zones.discrete import Broadcast, Candidate, Move, State, Vector
+from rvmon.timed.zones.discrete import (
+    AtomMaker,
+    Broadcast,
+    Candidate,
+    CompiledEdge,
+    Move,
+    State,
+    Vector,
+    atoms_of,
+    compile_edge,
+    data_of,
+)
 
 
 class Space:
@@ -27,7 +37,6 @@ class Space:
 
     Args:
         network: whose states they are.
-        extra: what a query compares clocks with, at any location.
         observers: number of clocks of queries, counted behind those of the network.
         uppers: upper bounds of those, as `zones.cover_test` takes them.
         lowers: their lower bounds, likewise.
@@ -36,14 +45,12 @@ class Space:
     def __init__(
         self,
         network: Network,
-        extra: ClockBounds | None = None,
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
         lowers: Sequence[tuple[int, float]] = (),
     ) -> None:
         self.network = network
         self.dim = 1 + len(network.clocks) + observers
-        self._extra = extra or no_bounds(len(network.clocks))
         self._uppers, self._lowers = tuple(uppers), tuple(lowers)
         self._vectors: dict[tuple[int, ...], Vector] = {}
         self._states: dict[tuple[tuple[int, ...], tuple[int, ...]], State] = {}
@@ -129,7 +136,7 @@ class Space:
         committed = frozenset(i for i, kind in enumerate(kinds) if kind is LocationKind.COMMITTED)
         leaving = [self._edges[i][place] for i, place in enumerate(locations)]
         invariants = [self._invariants[i][place] for i, place in enumerate(locations)]
-        bounds = self._extra.joined([self._bounds[i][place] for i, place in enumerate(locations)])
+        bounds = joined([self._bounds[i][place] for i, place in enumerate(locations)])
         candidates = list(self._candidates(locations, leaving))
         broadcasts = list(self._broadcasts(leaving))
         urgent = [c for c in candidates if self._is_urgent(c.edges[0])] + [
@@ -146,7 +153,6 @@ class Space:
             tuple(urgent),
             tuple(data for data, _ in invariants if data is not None),
             tuple(atoms for _, atoms in invariants),
-            bounds,
             (
                 (0, 0.0),
                 *((c + 1, -u) for c, u in enumerate(bounds.upper) if u > -inf),

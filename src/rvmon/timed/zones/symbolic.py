@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rvmon.timed.model.expressions import Expression
+from rvmon.diagnostics import Label
 from rvmon.timed.model.network import Network
-from rvmon.timed.zones.dbm import Zone, constrain, cut, delay_within, normalise, reset, zero
+from rvmon.timed.model.rules import model_error
+from rvmon.timed.zones.dbm import Zone, constrain, delay_within, normalise, reset, zero
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import Constraint, formula_bounds, has_strict_bounds
 
 
 class Steps:
@@ -17,7 +17,6 @@ class Steps:
 
     Args:
         network: where they run.
-        formula: normalised; what it compares clocks with counts everywhere.
         observers: number of further clocks.
         uppers: upper bounds of those, as `zones.cover_test` takes them.
         lowers: their lower bounds, likewise.
@@ -26,16 +25,12 @@ class Steps:
     def __init__(
         self,
         network: Network,
-        formula: Expression,
         observers: int = 0,
         uppers: Sequence[tuple[int, float]] = (),
         lowers: Sequence[tuple[int, float]] = (),
     ) -> None:
-        bounds = formula_bounds(formula, network)
-        self.space = Space(network, bounds, observers, uppers, lowers)
+        self.space = Space(network, observers, uppers, lowers)
         self.dim = self.space.dim
-        # Without strict bounds no zone ever needs to be tidied.
-        self._strict = has_strict_bounds(network, formula)
 
     def start(self) -> Iterator[tuple[State, Zone]]:
         """The initial state with all delays; nothing if its invariant is broken from the start."""
@@ -47,11 +42,25 @@ class Steps:
 
     def successors(self, state: State, zone: Zone) -> Iterator[tuple[Move, State, Zone]]:
         """All moves that some valuation of the zone can take, and what is behind them."""
-        dim, strict = self.dim, self._strict
         for move in self.space.moves(state):
-            fresh = fire(move, zone, dim)
-            if fresh is not None and settle_in(move.target, fresh, dim):
-                yield move, move.target, normalise(fresh) if strict else fresh
+            fresh = fire(move, zone, self.dim)
+            if fresh is not None and settle_in(move.target, fresh, self.dim):
+                yield move, move.target, normalise(fresh)
+
+
+def check_start(network: Network) -> None:
+    """Refuse a network that has no initial state.
+
+    Raises:
+        ModelError: an invariant forbids it.
+    """
+    if not any(Steps(network).start()):
+        places = [a.locations[a.initial] for a in network.automata]
+        spans = [place.span for place in places if place.span is not None]
+        span, others = (spans[0] if spans else None), [Label(other) for other in spans[1:]]
+        message = "an invariant of the initial locations is false at time 0"
+        fix = "weaken it, or start elsewhere"
+        raise model_error("TA014", message, span, fix, others=others)
 
 
 def fire(move: Move, zone: Zone, dim: int) -> Zone | None:
@@ -81,8 +90,3 @@ def settle_in(state: State, zone: Zone, dim: int) -> bool:
         # Bounds are from above only: who breaks them before the delay does so after it.
         return delay_within(zone, dim, state.invariant)
     return all(constrain(zone, dim, 0, clock, bound) for clock, bound in state.invariant)
-
-
-def meets(zone: Zone, dim: int, constraint: Constraint) -> bool:
-    """Whether some valuation of a zone lies in a piece."""
-    return not constraint or cut(zone[:], dim, constraint)

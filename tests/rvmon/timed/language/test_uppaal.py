@@ -8,7 +8,7 @@ import pytest
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.runs.simulate import estimate
+from rvmon.timed.runs.statistics import sample
 from rvmon.timed.search.verify import verify
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"
@@ -244,7 +244,7 @@ def test_a_branch_point_is_a_choice_with_weights():
     assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
     assert verify(network, "E<> T.p1 and v == 4 and x == 2").holds
     assert not verify(network, "E<> (T.p0 and v != 3) or T.p2 or (not T.a and x < 2)").holds
-    share = estimate(network, query_on(network, "E<>[<=100] T.p1"), runs=2000, seed=1).share
+    share = sample(network, query_on(network, "Pr[<=100; 2000](<> T.p1)")).value
     assert 0.7 < share < 0.8
 
 

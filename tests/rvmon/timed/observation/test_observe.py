@@ -11,7 +11,7 @@ from rvmon.errors import ModelError
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.observation.observe import observe
 from rvmon.timed.runs.run import Ending
-from rvmon.timed.search.problem import Budget
+from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
 from rvmon.trace.time import TICKS_PER_SECOND
 

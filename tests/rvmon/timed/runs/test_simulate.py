@@ -8,7 +8,7 @@ from rvmon.confidence import interval
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
-from rvmon.timed.runs.simulate import estimate
+from rvmon.timed.runs.statistics import sample
 
 COIN = """
 automaton A {
@@ -20,24 +20,25 @@ automaton A {
 """
 
 
-def share(text, query, **options):
-    """The estimate for a query on a model given as text."""
+def share(text, asked, runs=500, seed=7):
+    """The estimate of a probability on a model given as text."""
     network = loads_network(text)
-    return estimate(network, query_on(network, query), **({"runs": 500, "seed": 7} | options))
+    query = query_on(network, asked.replace("Pr[", "Pr[<=").replace("]", f"; {runs}]", 1))
+    return sample(network, query, seed=seed)
 
 
 def test_weights_are_shares():
     """Of two edges of one automaton each is taken as often as its weight says."""
-    result = share(COIN, "E<>[<=1000] A.b", runs=2000)
+    result = share(COIN, "Pr[1000](<> A.b)", runs=2000)
     assert result.low < 0.75 < result.high
     assert result.high - result.low < 0.05
 
 
 def test_a_share_and_its_opposite_add_up():
     """Who never meets p is who meets it not, run by run."""
-    meets = share(COIN, "E<>[<=1000] A.b")
-    never = share(COIN, "A[][<=1000] not A.b")
-    assert meets.successes + never.successes == meets.runs
+    meets = share(COIN, "Pr[1000](<> A.b)")
+    never = share(COIN, "Pr[1000]([] not A.b)")
+    assert meets.value + never.value == pytest.approx(1)
 
 
 @pytest.mark.slow
@@ -47,22 +48,22 @@ def test_delays_are_uniform_in_their_window():
     clock x
     automaton A { location a invariant x <= 10 location b start a edge a -> b when x >= 2 }
     """
-    result = share(text, "E<>[<=6] A.b", runs=2000)
+    result = share(text, "Pr[6](<> A.b)", runs=2000)
     assert result.low < 0.5 < result.high
-    assert share(text, "E<>[<=10] A.b").share == 1
-    assert share(text, "E<>[<=1] A.b").share == 0
+    assert share(text, "Pr[10](<> A.b)").value == 1
+    assert share(text, "Pr[1](<> A.b)").value == 0
 
 
 def test_clocks_in_the_formula_are_met_while_time_passes():
     """A formula that holds only in the middle of a wait is met."""
     text = "clock x automaton A { location a invariant x <= 9 start a edge a -> a do x = 0 }"
-    assert share(text, "E<>[<=50] x == 3 and A.a").share > 0.5
+    assert share(text, "Pr[50](<> x == 3 and A.a)").value > 0.5
 
 
 def test_the_same_seed_gives_the_same_figure():
     """Simulation is repeatable."""
-    assert share(COIN, "E<>[<=9] A.b") == share(COIN, "E<>[<=9] A.b")
-    assert share(COIN, "E<>[<=9] A.b") != share(COIN, "E<>[<=9] A.b", seed=8)
+    assert share(COIN, "Pr[9](<> A.b)") == share(COIN, "Pr[9](<> A.b)")
+    assert share(COIN, "Pr[9](<> A.b)") != share(COIN, "Pr[9](<> A.b)", seed=8)
 
 
 @pytest.mark.parametrize(("successes", "runs"), [(0, 20), (1, 20), (10, 20), (20, 20)])
@@ -81,12 +82,11 @@ def test_bounds_are_clopper_and_pearsons(successes, runs):
 @pytest.mark.parametrize(
     ("text", "query", "message"),
     [
-        (COIN, "A.a --> A.b", "cannot be evaluated on one run"),
-        (COIN, "E<> A.b", "needs an end"),
-        (COIN, "E<>[<=5] deadlock", "does not know deadlocks"),
+        (COIN, "Pr[5](<> EF A.b)", "cannot be evaluated on one run"),
+        (COIN, "Pr[5](<> deadlock)", "cannot be evaluated on one run"),
         (
             "clock x automaton A { location a invariant x <= 0 start a edge a -> a }",
-            "E<>[<=5] x > 3",
+            "Pr[5](<> x > 3)",
             "moves in 0 units of time",
         ),
     ],

@@ -7,8 +7,7 @@ import pytest
 
 from rvmon.timed.runs.timing import TimedStep, timing_of
 from rvmon.timed.search.loops import surely_passes, time_passes
-from rvmon.timed.zones.dbm import bound_of
-from rvmon.timed.zones.federation import universe
+from rvmon.timed.zones.dbm import bound_of, universe
 
 DIM = 3
 
