@@ -8,7 +8,8 @@ from enum import Enum
 from itertools import combinations, islice, product
 from typing import TypeVar, assert_never
 
-from rvmon.analysis.solve import Variable, parts_of, truths_tried, turning_values
+from rvmon.analysis.solve import Variable, truths_tried, turning_values
+from rvmon.formula.numeric import operands
 from rvmon.formula.state import Leaf
 from rvmon.plan.graph import captured_names, names_of
 from rvmon.spec.checked.formula import (
@@ -100,7 +101,7 @@ def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
         if isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN:
             yield leaf.name
         elif isinstance(leaf, Compare):
-            parts = parts_of(leaf.left, leaf.right)
+            parts = (*operands(leaf.left), *operands(leaf.right))
             yield from (part.name for part in parts if isinstance(part, UpdateValue))
 
 

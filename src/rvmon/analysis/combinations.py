@@ -29,29 +29,18 @@ Truths = tuple[bool, ...]
 Source = str | State
 
 
-@dataclass(frozen=True, slots=True)
-class Combinations:
-    """The truths that some state formulas can have together.
-
-    Attributes:
-        vectors: each with a truth per formula; all that inputs can bring about are among them.
-    """
-
-    vectors: frozenset[Truths]
-
-
-def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> Combinations | None:
-    """The truths that state formulas can have together.
+def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Truths] | None:
+    """The truths that state formulas can have together, one per formula.
 
     What remembers, and what compares in other ways than a name with a constant, is taken to be
     true or false at will, so that a combination that is not found is impossible indeed.
 
     Returns:
-        The combinations; `None` if there are too many to look at.
+        All that inputs can bring about, and perhaps more; `None` if there is too much to look at.
     """
     letters = Letters(spec)
     found = letters.joint([letters.table(states, lambda truths: truths)])
-    return None if found is None else Combinations(frozenset(truths for (truths,) in found))
+    return None if found is None else frozenset(truths for (truths,) in found)
 
 
 @dataclass(frozen=True, slots=True)

@@ -235,5 +235,4 @@ def _roundness(offset: int) -> tuple[int, int]:
 
 
 def _cuts(subject: Subject) -> set[int]:
-    locations = () if subject.automaton is None else subject.automaton.locations
-    return {cut for location in locations for clock in location.cuts for cut in clock}
+    return set() if subject.automaton is None else subject.automaton.cuts

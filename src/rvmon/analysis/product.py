@@ -262,7 +262,7 @@ class _Search:
 
 def _cuts(automaton: Automaton) -> set[int]:
     """Ages at which windows of an automaton open and end, and those of windows in windows."""
-    cuts = {cut for location in automaton.locations for clock in location.cuts for cut in clock}
+    cuts = automaton.cuts
     row = automaton.bases[automaton.initial] * automaton.classes
     first = set(automaton.edges[row : row + automaton.classes])
     later = (sources for edge, sources in enumerate(automaton.sources) if edge not in first)

@@ -6,6 +6,7 @@ from bisect import bisect_right
 from dataclasses import dataclass
 
 from rvmon.automaton.automaton import Automaton
+from rvmon.automaton.clock_regions import region_bounds
 from rvmon.automaton.location import NOW
 from rvmon.formula.state import State
 from rvmon.spec.checked.formula import BoundAtom, Constant
@@ -90,7 +91,6 @@ def after_edge(automaton: Automaton, location: int, regions: Regions, edge: int)
     theirs = automaton.locations[automaton.targets[edge]].cuts
     found = []
     for source, cuts in zip(automaton.sources[edge], theirs, strict=True):
-        passed = 0 if source == NOW else regions[source]
-        age = ours[source][passed - 1] if passed else 0
+        age = 0 if source == NOW else region_bounds(ours[source], regions[source])[0]
         found.append(bisect_right(cuts, age))
     return tuple(found)

@@ -9,6 +9,7 @@ from typing import assert_never
 
 from rvmon.formula.core import Sense
 from rvmon.formula.factory import Factory
+from rvmon.formula.numeric import operands
 from rvmon.formula.state import FALSE, TRUE, UNKNOWN, Leaf
 from rvmon.monitor.core.watching import Positions, known_truths
 from rvmon.spec.checked.formula import (
@@ -28,16 +29,6 @@ Variable = SignalValue | FieldValue
 
 LARGEST = 1e15
 """Roots beyond this are taken for artefacts of rounding."""
-
-
-def parts_of(*numerics: Numeric) -> Iterator[Numeric]:
-    """The expressions and all that they are made of."""
-    waiting = list(numerics)
-    while waiting:
-        node = waiting.pop()
-        yield node
-        if isinstance(node, Arithmetic):
-            waiting += node.args
 
 
 def turning_values(
@@ -97,7 +88,8 @@ def _reads(leaf: Compare, variable: Variable) -> bool:
             and isinstance(variable, SignalValue)
             and part.name == variable.name
         )
-        for part in parts_of(leaf.left, leaf.right)
+        for side in (leaf.left, leaf.right)
+        for part in operands(side)
     )
 
 

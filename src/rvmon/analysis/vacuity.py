@@ -10,9 +10,10 @@ from itertools import product
 from rvmon.analysis.combinations import combinations_of
 from rvmon.analysis.requirement import Regions
 from rvmon.automaton.automaton import Automaton, row_of
+from rvmon.automaton.clock_regions import region_bounds, regions_between
 from rvmon.automaton.location import FAILED, NOW, PASSED
 from rvmon.formula.state import FALSE, TRUE, State
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
+from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
 
 _STARTED = -1
 """In the place of a region: of a clock that was started at this position."""
@@ -51,23 +52,22 @@ def possible(
     """
     if automaton is None:
         found = None if trigger is None else combinations_of(spec, [trigger])
-        return Possible(trigger=None if found is None else (True,) in found.vectors)
+        return Possible(trigger=None if found is None else (True,) in found)
     propositions = automaton.alphabet.propositions
     states = [*propositions, *([] if trigger is None else [trigger])]
     found = combinations_of(spec, states)
     if found is None:
         return Possible()
-    first = {v for v in found.vectors if trigger is None or v[-1]}
+    first = {v for v in found if trigger is None or v[-1]}
     if not first:
         return Possible(trigger=False)
     # What is explored has every run that there is, and perhaps more. So "cannot fail" is a proof,
     # and becomes a finding; "can fail" is none: no run need show it, and nothing is said of it.
     width = len(propositions)
-    gap = {TimeModel.HELD: 1, TimeModel.CLOCKED: spec.period, TimeModel.SAMPLED: None}[spec.time]
-    reach = _Reach(automaton, gap)
+    reach = _Reach(automaton, spec.gap)
     reach.run(
         {automaton_letter(automaton, v[:width]) for v in first},
-        {automaton_letter(automaton, v[:width]) for v in found.vectors},
+        {automaton_letter(automaton, v[:width]) for v in found},
     )
     undecided = bool(reach.rows)
     fail = reach.failed or (undecided and policy in (EndPolicy.STRONG, EndPolicy.FAIL))
@@ -136,8 +136,8 @@ class _Reach:
         if clock == _STARTED:
             region = bisect_right(cuts, self.gap)
             return range(region, region + 1)
-        low, high = _ages(clock, cuts)
-        return _regions(cuts, low + self.gap, None if high is None else high + self.gap)
+        low, high = region_bounds(cuts, clock)
+        return regions_between(cuts, low + self.gap, high + self.gap)
 
     def _step(
         self, location: int, regions: Regions, letters: Iterable[int]
@@ -172,16 +172,4 @@ class _Reach:
         """What may be known of a clock behind an edge, whose cuts are others."""
         if source == NOW:
             return (_STARTED,)
-        return _regions(cuts, *_ages(regions[source], ours[source]))
-
-
-def _ages(region: int, cuts: tuple[int, ...]) -> tuple[int, int | None]:
-    """The least and the greatest age in a region."""
-    low = cuts[region - 1] if region else 0
-    return low, cuts[region] - 1 if region < len(cuts) else None
-
-
-def _regions(cuts: tuple[int, ...], low: int, high: int | None) -> range:
-    """The regions of the ages from one to another."""
-    last = len(cuts) if high is None else bisect_right(cuts, high)
-    return range(bisect_right(cuts, low), last + 1)
+        return regions_between(cuts, *region_bounds(ours[source], regions[source]))

@@ -56,6 +56,11 @@ class Automaton:
         """The largest number of clocks in one location."""
         return max(len(location.cuts) for location in self.locations)
 
+    @property
+    def cuts(self) -> set[int]:
+        """The ages at which a clock enters another region, in some location."""
+        return {cut for location in self.locations for clock in location.cuts for cut in clock}
+
 
 EndClause = tuple[tuple[int, int, bool], ...]
 """Clock (−1: none), least age, and whether the age is that at the end or as far as time came."""

@@ -44,6 +44,11 @@ def region_bounds(cuts: Sequence[int], region: int) -> tuple[int, int]:
     return low, cuts[region] - 1 if region < len(cuts) else NEVER
 
 
+def regions_between(cuts: Sequence[int], low: int, high: int) -> range:
+    """The regions of the ages from one to another."""
+    return range(bisect_right(cuts, low), bisect_right(cuts, high) + 1)
+
+
 def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
     """The ages of which each is in its interval; `None` if there are none.
 

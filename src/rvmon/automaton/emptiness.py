@@ -25,6 +25,7 @@ from rvmon.automaton.clock_regions import (
     exactly,
     joined,
     region_bounds,
+    regions_between,
     widened,
     within,
 )
@@ -179,8 +180,7 @@ class _Search:
         later = after(ages, self.longest)
         spans = []
         for clock, own in enumerate(cuts):
-            low, high = bounds(later, clock)
-            spans.append(range(bisect_right(own, low), bisect_right(own, high) + 1))
+            spans.append(regions_between(own, *bounds(later, clock)))
         for regions in product(*spans):
             self.tried += 1
             if self.tried > self.most:

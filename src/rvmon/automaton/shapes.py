@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any, TypeAlias, assert_never, cast
+from typing import Any, TypeAlias, cast
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.automaton.construct import Budget, DoesNotCloseError, construct
@@ -26,10 +26,10 @@ from rvmon.formula.core import (
     Literal,
     Next,
     Or,
-    Previous,
     Release,
-    Since,
     Until,
+    looks_back,
+    parts_of,
 )
 from rvmon.formula.residual import Residual
 
@@ -74,7 +74,7 @@ class Shapes:
         self, owed: Next, alphabet: Alphabet, budget: Budget
     ) -> tuple[Automaton | None, Sequence[Core]]:
         nodes = _nodes(owed)
-        if any(isinstance(node, Since | Previous) for node in nodes):
+        if looks_back(owed):
             return None, nodes
         bounds = sorted({bound for node in nodes for bound in _bounds(node)})
         stand_ins = _stand_ins(bounds)
@@ -139,22 +139,10 @@ def _nodes(owed: Core) -> list[Core]:
 
 
 def _parts(node: Core) -> Iterator[Core]:
-    match node:
-        case Constant() | Literal():
-            pass
-        case And(args=args) | Or(args=args):
-            yield from args
-        case Next(operand=operand):
-            yield operand
-        case Until() | Release():
-            yield node.left
-            yield node.right
-            if node.opened is not None:
-                yield node.opened
-        case Since() | Previous():  # below which the future stands, of which no automaton speaks
-            pass
-        case _:
-            assert_never(node)
+    """The operands of a node, and what is left of its window once that is open."""
+    yield from parts_of(node)
+    if isinstance(node, Until | Release) and node.opened is not None:
+        yield node.opened
 
 
 def _bounds(node: Core) -> Iterator[int]:

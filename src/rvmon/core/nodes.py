@@ -10,8 +10,7 @@ from rvmon.core.atoms import Atoms
 from rvmon.core.measures import is_followed
 from rvmon.core.programs import Names
 from rvmon.dataflow.network_plan import plan_of
-from rvmon.formula.alphabet import literals
-from rvmon.formula.core import Literal
+from rvmon.formula.core import Literal, literals
 from rvmon.formula.numeric import signals_of
 from rvmon.formula.state import (
     FALSE,

@@ -183,8 +183,7 @@ class _Reader:
         self.letters = _two_valued(automaton)
         trigger = compiled.obligation.trigger
         states = [*self.propositions, *([] if trigger is None else [trigger])]
-        found = combinations_of(spec, states)
-        vectors = None if found is None else found.vectors
+        vectors = combinations_of(spec, states)
         width = len(self.propositions)
         self.later = self._feasible(vectors, width)
         self.first = self._feasible(

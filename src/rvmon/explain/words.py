@@ -6,7 +6,7 @@ from typing import assert_never
 
 from rvmon.automaton.automaton import Automaton
 from rvmon.core.judges import machine_of
-from rvmon.formula.horizon import horizon
+from rvmon.formula.core import horizon
 from rvmon.formula.state import StateOp
 from rvmon.monitor.compiled.code_plan import planned_rule
 from rvmon.monitor.compiled.requirement import CompiledRequirement

@@ -2,24 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
-from typing import assert_never
 
-from rvmon.formula.core import (
-    And,
-    Constant,
-    Core,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Sense,
-    Since,
-    Until,
-)
+from rvmon.formula.core import Core, Sense, literals
 from rvmon.formula.state import State
 
 
@@ -119,31 +105,3 @@ def _digits(senses: set[Sense]) -> tuple[tuple[TruthValue, ...], dict[TruthValue
             truths.append(truth)
         digit[truth] = seen[look]
     return tuple(truths), digit
-
-
-def literals(formula: Core) -> Iterator[Literal]:
-    """The literals of a formula, each once."""
-    seen: set[Core] = set()
-    stack = [formula]
-    while stack:
-        node = stack.pop()
-        if node in seen:
-            continue
-        seen.add(node)
-        match node:
-            case Constant():
-                pass
-            case Literal():
-                yield node
-            case And(args=args) | Or(args=args):
-                stack.extend(args)
-            case Next(operand=operand) | Previous(operand=operand):
-                stack.append(operand)
-            case (
-                Until(left=left, right=right)
-                | Release(left=left, right=right)
-                | Since(left=left, right=right)
-            ):
-                stack += [left, right]
-            case _:
-                assert_never(node)

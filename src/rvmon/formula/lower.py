@@ -5,7 +5,19 @@ from __future__ import annotations
 from functools import partial
 from typing import assert_never
 
-from rvmon.formula.core import And, Core, Literal, Next, Or, Previous, Release, Sense, Since, Until
+from rvmon.formula.core import (
+    And,
+    Core,
+    Literal,
+    Next,
+    Or,
+    Previous,
+    Release,
+    Sense,
+    Since,
+    Until,
+    looks_back,
+)
 from rvmon.formula.core import Constant as CoreConstant
 from rvmon.formula.core_form import Lowering, flattened
 from rvmon.formula.factory import Factory
@@ -61,7 +73,7 @@ def lower(
         implied = lowering.join_signed(parts, False, [factory.negation(running)])
         owed = lowering.episode(running, lowering.owed(implied), requirement.consequent)
         ahead = begin(opened=True).core(requirement.consequent, True)
-        again = None if _looks_back(ahead) else _at_once(ahead, factory)
+        again = None if looks_back(ahead) else _at_once(ahead, factory)
         unborn = _unborn(requirement.consequent, factory) if favour else None
         doubt = None
         if requirement.captures:
@@ -110,22 +122,6 @@ def _unborn(consequent: Formula, factory: Factory) -> State | None:
             for name, moved in signals_of(atom).items():
                 found[name] = found.get(name, False) or moved
     return factory.leaf(Unborn(tuple(sorted(found.items())))) if found else None
-
-
-def _looks_back(core: Core) -> bool:
-    match core:
-        case Since() | Previous():
-            return True
-        case And(args=args) | Or(args=args):
-            return any(map(_looks_back, args))
-        case Until(left=left, right=right) | Release(left=left, right=right):
-            return _looks_back(left) or _looks_back(right)
-        case Next(operand=operand):
-            return _looks_back(operand)
-        case Literal() | CoreConstant():
-            return False
-        case _:
-            assert_never(core)
 
 
 def _at_once(core: Core, factory: Factory) -> State:

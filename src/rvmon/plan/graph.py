@@ -142,8 +142,8 @@ def _settled(state: State, operands: Sequence[int | None]) -> int | None:
             return None
 
 
-def leaf_count(roots: Iterable[State]) -> int:
-    """How many leaves of state formulas are read off the input."""
+def _all_of(roots: Iterable[State]) -> set[State]:
+    """State formulas and all they are made of."""
     seen: set[State] = set()
     stack = list(roots)
     while stack:
@@ -151,19 +151,17 @@ def leaf_count(roots: Iterable[State]) -> int:
         if state not in seen:
             seen.add(state)
             stack.extend(state.args)
-    return sum(isinstance(state.leaf, Shown) for state in seen)
+    return seen
+
+
+def leaf_count(roots: Iterable[State]) -> int:
+    """How many leaves of state formulas are read off the input."""
+    return sum(isinstance(state.leaf, Shown) for state in _all_of(roots))
 
 
 def graph_of(roots: Iterable[State]) -> Graph:
     """The graph of state formulas and all they are made of."""
-    seen: set[State] = set()
-    stack = list(roots)
-    while stack:
-        state = stack.pop()
-        if state not in seen:
-            seen.add(state)
-            stack.extend(state.args)
-    nodes = tuple(sorted(seen, key=lambda state: state.id))
+    nodes = tuple(sorted(_all_of(roots), key=lambda state: state.id))
     index = {state: place for place, state in enumerate(nodes)}
     operands = tuple(tuple(index[arg] for arg in state.args) for state in nodes)
     parents: list[list[int]] = [[] for _ in nodes]

@@ -8,8 +8,8 @@ from itertools import chain
 from typing import NamedTuple
 
 from rvmon.automaton.automaton import Automaton
-from rvmon.formula.alphabet import Alphabet, literals
-from rvmon.formula.core import Core
+from rvmon.formula.alphabet import Alphabet
+from rvmon.formula.core import Core, literals
 from rvmon.formula.numeric import inputs_of, operands
 from rvmon.formula.state import State, Unborn
 from rvmon.plan.graph import Graph, graph_of
@@ -187,11 +187,9 @@ class Plan:
 
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     """Share the state formulas of requirements and see what they ask of the input."""
-    graph = graph_of(state for rule in rules for state in rule.states)
-    names = (tuple(spec.signals), tuple(spec.events))
+    states = (state for rule in rules for state in rule.states)
     captured = [one.value for rule in rules for one in rule.requirement.captures]
-    uses = uses_of([graph], captured)
-    return Plan(spec, tuple(rules), graph, spec.gap, *names, uses, (), tuple(rules))
+    return replace(_shared(spec, states, captured), rules=tuple(rules), asked=tuple(rules))
 
 
 def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
@@ -212,10 +210,7 @@ def plan_of_truths(
         captured: the values that they read as captured.
     """
     read = dict.fromkeys(one.proposition for core in formulas for one in literals(core))
-    graph = graph_of(read)
-    names = (tuple(spec.signals), tuple(spec.events))
-    uses = uses_of([graph], ())
-    return Plan(spec, (), graph, spec.gap, *names, uses, truths=tuple(formulas), constants=captured)
+    return replace(_shared(spec, read), truths=tuple(formulas), constants=captured)
 
 
 def plan_of_watches(
@@ -228,21 +223,23 @@ def plan_of_watches(
         watches: the formulas.
         groups: what is counted of them.
     """
-    graph = graph_of(watch.state for watch in watches)
+    plan = _shared(spec, (watch.state for watch in watches))
+    return replace(plan, watches=tuple(watches), groups=tuple(groups))
+
+
+def _shared(spec: CheckedSpec, states: Iterable[State], captured: Iterable[Numeric] = ()) -> Plan:
+    """The plan of state formulas that nobody asks for yet."""
+    graph = graph_of(states)
     names = (tuple(spec.signals), tuple(spec.events))
-    uses = uses_of([graph], ())
-    return Plan(
-        spec, (), graph, spec.gap, *names, uses, watches=tuple(watches), groups=tuple(groups)
-    )
+    return Plan(spec, (), graph, spec.gap, *names, _uses_of(graph, captured))
 
 
-def uses_of(graphs: Iterable[Graph], captured: Iterable[Numeric]) -> dict[str, Uses]:
+def _uses_of(graph: Graph, captured: Iterable[Numeric]) -> dict[str, Uses]:
     """What is asked of signals and events."""
-    leaves: dict[str, list[State]] = {}
-    for graph in graphs:
-        for name, places in graph.by_name.items():
-            leaves.setdefault(name, []).extend(graph.nodes[place] for place in places)
-    found = {name: _uses(own, name) for name, own in leaves.items()}
+    found = {
+        name: _uses([graph.nodes[place] for place in places], name)
+        for name, places in graph.by_name.items()
+    }
     for expression in captured:
         for name in inputs_of(expression):
             found.setdefault(name, Uses())

@@ -19,9 +19,8 @@ from tests.tools.build import (
 )
 
 import rvmon
-from rvmon.formula.core import Literal, Release, Sense, Since, Until
+from rvmon.formula.core import Literal, Release, Sense, Since, Until, horizon
 from rvmon.formula.factory import Factory
-from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import lower
 from rvmon.formula.obligation import UnmonitorableError
 

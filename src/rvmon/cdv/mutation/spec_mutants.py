@@ -14,7 +14,7 @@ from rvmon.cdv.mutation.mutant import third_of
 from rvmon.cdv.mutation.record import Recorded
 from rvmon.cdv.mutation.spec_operators import changes
 from rvmon.cdv.mutation.tried import Score
-from rvmon.formula.horizon import horizon
+from rvmon.formula.core import horizon
 from rvmon.monitor.compiled.specification import CompiledSpec
 from rvmon.session import Spec
 from rvmon.spec.checked.formula import BoundAtom

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from rvmon.automaton.location import FAILED, Token
-from rvmon.formula.core import Core
-from rvmon.formula.horizon import horizon
+from rvmon.formula.core import Core, horizon
 from rvmon.formula.state import TRUE, UNKNOWN
 from rvmon.monitor.compiled.requirement import CompiledRequirement
 from rvmon.spec.checked.specification import EndPolicy

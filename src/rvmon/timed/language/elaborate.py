@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from math import prod
 
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.diagnostics.nearest import did_you_mean
@@ -226,7 +225,7 @@ def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findi
     for edge in (edge for automaton in automata for edge in automaton.edges):
         if edge.sync is not None:
             slot = edge.sync.slot
-            used = range(slot.first, slot.first + prod(map(len, slot.extents)))
+            used = range(slot.first, slot.first + slot.size)
             (senders if edge.sync.sends else receivers).update(used)
     for index, (channel, span) in enumerate(zip(parts.channels, parts.channel_spans, strict=True)):
         match index in senders, index in receivers:

@@ -8,6 +8,7 @@ from typing import assert_never
 from rvmon.diagnostics import Span
 from rvmon.timed.model.arithmetic import (
     OPERATIONS,
+    apply_unary,
     check_index,
     check_shift,
     check_time,
@@ -37,7 +38,7 @@ from rvmon.timed.model.expressions import (
     VariableValue,
     While,
 )
-from rvmon.timed.model.operators import BinaryOp, UnaryOp
+from rvmon.timed.model.operators import BinaryOp
 from rvmon.timed.model.rules import model_error
 
 Locations = Sequence[int]
@@ -70,10 +71,15 @@ def evaluator(expression: Expression) -> Evaluator:
             return caller(expression)
         case InLocation(automaton, location):
             return lambda locations, _values: int(locations[automaton] == location)
-        case UnaryOperation(op, operand):
-            return _unary_evaluator(op, evaluator(operand))
-        case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, _, _):
-            return _chain_evaluator(op, chained(op, expression))
+        case UnaryOperation(unary, operand):
+            inner = evaluator(operand)
+            return lambda locations, values: apply_unary(unary, inner(locations, values))
+        case BinaryOperation(BinaryOp.AND, _, _):
+            every = [evaluator(part) for part in chained(BinaryOp.AND, expression)]
+            return lambda locations, values: int(all(part(locations, values) for part in every))
+        case BinaryOperation(BinaryOp.OR, _, _):
+            some = [evaluator(part) for part in chained(BinaryOp.OR, expression)]
+            return lambda locations, values: int(any(part(locations, values) for part in some))
         case BinaryOperation(op, left, right, span):
             return _binary_evaluator(op, evaluator(left), evaluator(right), span)
         case Choice(condition, then, otherwise):
@@ -87,18 +93,6 @@ def evaluator(expression: Expression) -> Evaluator:
             assert_never(expression)
 
 
-def _unary_evaluator(op: UnaryOp, operand: Evaluator) -> Evaluator:
-    match op:
-        case UnaryOp.NOT:
-            return lambda locations, values: int(not operand(locations, values))
-        case UnaryOp.NEGATE:
-            return lambda locations, values: -operand(locations, values)
-        case UnaryOp.INVERT:
-            return lambda locations, values: ~operand(locations, values)
-        case _:
-            assert_never(op)
-
-
 def chained(op: BinaryOp, expression: Expression) -> list[Expression]:
     """What a connective joins, however it is nested."""
     match expression:
@@ -106,32 +100,6 @@ def chained(op: BinaryOp, expression: Expression) -> list[Expression]:
             return [*chained(op, left), *chained(op, right)]
         case _:
             return [expression]
-
-
-def _chain_evaluator(op: BinaryOp, expressions: Sequence[Expression]) -> Evaluator:
-    """One function for a whole chain of `and` or `or`: queries have long ones."""
-    places = [(e.automaton, e.location) for e in expressions if isinstance(e, InLocation)]
-    if op is BinaryOp.AND and len(places) == len(expressions) == 2:
-        (a, at_a), (b, at_b) = places
-        return lambda ls, _vs: int(ls[a] == at_a and ls[b] == at_b)
-    parts = [evaluator(expression) for expression in expressions]
-    if op is BinaryOp.AND:
-
-        def every(ls: Locations, vs: Values) -> int:
-            for part in parts:
-                if not part(ls, vs):
-                    return 0
-            return 1
-
-        return every
-
-    def some(ls: Locations, vs: Values) -> int:
-        for part in parts:
-            if part(ls, vs):
-                return 1
-        return 0
-
-    return some
 
 
 def _binary_evaluator(

@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Iterator
 from itertools import pairwise
 
-from rvmon.formula.core import And, Core, Next, Or, Release, Until
+from rvmon.formula.core import Core, Next, Release, Until, nodes_of
 from rvmon.timed.observation.observer import Observed, ObservedLink, ObservedSite, Phase
 from rvmon.timed.search.explore import Node
 from rvmon.timed.search.meter import Meter
@@ -29,29 +29,15 @@ def open_means(owed: Core) -> bool | None:
 
     Without deadline may be promises (`eventually`), or prohibitions (`always`), but not both.
     """
-    match list(_kinds(owed)):
-        case []:
-            return True
-        case [kind]:
-            return kind
-        case _:
-            return None
-
-
-def _kinds(owed: Core) -> frozenset[bool | None]:
-    match owed:
-        case And(args=args) | Or(args=args):
-            return frozenset().union(*map(_kinds, args))
-        case Until(left=left, right=right, high=high):
-            own = frozenset({False} if high is None else ())
-            return own | _kinds(left) | _kinds(right)
-        case Release(left=left, right=right, high=high):
-            own = frozenset({True} if high is None else ())
-            return own | _kinds(left) | _kinds(right)
-        case Next():
-            return frozenset({None})
-        case _:  # of the present and past
-            return frozenset()
+    nodes = list(nodes_of(owed))
+    unbounded = {
+        isinstance(node, Release)
+        for node in nodes
+        if isinstance(node, Until | Release) and node.high is None
+    }
+    if len(unbounded) > 1 or any(isinstance(node, Next) for node in nodes):
+        return None
+    return unbounded.pop() if unbounded else True
 
 
 class Lasting:

@@ -10,8 +10,8 @@ from rvmon.automaton.construct import Budget as TableBudget
 from rvmon.automaton.construct import DoesNotCloseError, construct
 from rvmon.automaton.location import NOW
 from rvmon.formula.alphabet import alphabet_of
+from rvmon.formula.core import horizon
 from rvmon.formula.factory import Factory
-from rvmon.formula.horizon import horizon
 from rvmon.formula.lower import lower
 from rvmon.formula.obligation import Obligation
 from rvmon.formula.state import StateOp
@@ -137,16 +137,16 @@ def _problem(
     if trigger is None:
         raise NotExpressibleError("it is evaluated at the end of a trace")
     if not (trigger.op is StateOp.LEAF and isinstance(trigger.leaf, BoundAtom)):
-        labelling.require(trigger)
+        labelling.reader(trigger)
     for proposition in alphabet.propositions:
-        labelling.require(proposition)
+        labelling.reader(proposition)
     try:
         automaton = construct(factory.next(obligation.owed), alphabet, TableBudget())
     except DoesNotCloseError as error:
         raise NotExpressibleError(f"it has no finite monitor: {error}") from None
     unit = network.unit or 1
-    cuts = [cut for place in automaton.locations for cuts in place.cuts for cut in cuts]
-    if any(cut % unit > 1 for cut in cuts) and unit % TICKS_PER_UNIT["ms"] == 0:
+    # A strict bound lies a tick behind its number; any other cut asks for a finer unit.
+    if any(cut % unit > 1 for cut in automaton.cuts) and unit % TICKS_PER_UNIT["ms"] == 0:
         network = finer(network, unit // TICKS_PER_UNIT["ms"])
     product = Observed(network, obligation, requirement.pulse, automaton, labelling, ticks)
     return network, product, obligation

@@ -214,15 +214,14 @@ class Observed:
             return False
         if isinstance(trigger.leaf, BoundAtom):
             return trigger.leaf.bound is Bound.START
-        return self._labelling.truth(trigger, state, ())
+        return self._labelling.reader(trigger)(state, ())
 
     def _starts(self, before: State, after: State, labels: tuple[str, ...]) -> bool:
         trigger = self._trigger
         if trigger is None or isinstance(trigger.leaf, BoundAtom):
             return False
-        if not self._labelling.truth(trigger, after, labels):
-            return False
-        return self._pulse or not self._labelling.truth(trigger, before, ())
+        holds = self._labelling.reader(trigger)
+        return holds(after, labels) and (self._pulse or not holds(before, ()))
 
     # Time.
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import assert_never
+from collections.abc import Callable, Mapping
 
 from rvmon.formula.alphabet import Alphabet
 from rvmon.formula.state import FALSE, TRUE, Lapsed, Lost, StateOp, Unborn
@@ -19,6 +18,9 @@ from rvmon.spec.checked.formula import (
 )
 from rvmon.timed.model.evaluate import Evaluator
 from rvmon.timed.zones.discrete import State
+
+Reader = Callable[[State, tuple[str, ...]], bool]
+"""Whether a proposition holds in a state, at an action with some names (none: between actions)."""
 
 
 class NotExpressibleError(Exception):
@@ -41,93 +43,68 @@ class Labelling:
     def __init__(self, signals: Mapping[str, Evaluator], labels: frozenset[str]) -> None:
         self._signals = signals
         self._labels = labels
+        self._readers: dict[Proposition, Reader] = {}
 
-    def require(self, proposition: Proposition) -> None:
-        """Refuse a proposition that the network cannot express.
+    def reader(self, proposition: Proposition) -> Reader:
+        """What reads a proposition off the network.
 
         Raises:
             NotExpressibleError: it names an unknown signal or event, or looks into the past.
         """
-        for argument in proposition.args:
-            self.require(argument)
+        found = self._readers.get(proposition)
+        if found is None:
+            found = self._readers[proposition] = self._new(proposition)
+        return found
+
+    def _new(self, proposition: Proposition) -> Reader:
+        args = [self.reader(argument) for argument in proposition.args]
         match proposition.op, proposition.leaf:
-            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT, _:
-                raise NotExpressibleError("it speaks of the past")
+            case StateOp.NOT, _:
+                return lambda state, labels: not args[0](state, labels)
+            case StateOp.AND, _:
+                return lambda state, labels: all(arg(state, labels) for arg in args)
+            case StateOp.OR, _:
+                return lambda state, labels: any(arg(state, labels) for arg in args)
+            case StateOp.SURE, _:  # nothing is unknown
+                return args[0]
+            case StateOp.LEAF, Constant(value=value):
+                return lambda _state, _labels: value
+            case StateOp.LEAF, Unborn() | Lost() | Lapsed():  # nor is anything unborn
+                return lambda _state, _labels: False
             case StateOp.LEAF, SignalAtom(name=name):
-                self._require_signal(name)
+                signal = self._signal(name)
+                return lambda state, _labels: bool(signal(state))
             case StateOp.LEAF, EventAtom(name=name):
                 if name not in self._labels:
                     raise NotExpressibleError(f"the network has no action `{name}`")
-            case StateOp.LEAF, Compare(left=left, right=right):
-                for number in (left, right):
-                    match number:
-                        case SignalValue(name):
-                            self._require_signal(name)
-                        case Literal(int() | float()):
-                            pass
-                        case _:
-                            raise NotExpressibleError("it calculates with numbers")
-            case (StateOp.LEAF, Constant() | Unborn() | Lost() | Lapsed()) | (
-                StateOp.SURE,
-                _,
-            ):
-                pass
+                return lambda _state, labels: name in labels
+            case StateOp.LEAF, Compare(op=op, left=left, right=right):
+                one, other = self._number(left), self._number(right)
+                return lambda state, _labels: bool(op.holds(one(state), other(state)))
             case StateOp.LEAF, _:
                 raise NotExpressibleError("it speaks of updates or of the trace's ends")
+            case _:
+                raise NotExpressibleError("it speaks of the past")
 
-    def _require_signal(self, name: str) -> None:
+    def _number(self, number: Numeric) -> Callable[[State], float]:
+        match number:
+            case SignalValue(name):
+                return self._signal(name)
+            case Literal(int() | float() as value):
+                return lambda _state: value
+            case _:
+                raise NotExpressibleError("it calculates with numbers")
+
+    def _signal(self, name: str) -> Callable[[State], int]:
         if name not in self._signals:
             raise NotExpressibleError(f"the network has no signal `{name}`")
-
-    def truth(self, proposition: Proposition, state: State, labels: tuple[str, ...]) -> bool:
-        """Whether a proposition holds in a state, at an action with some names (none: between)."""
-        match proposition.op:
-            case StateOp.NOT:
-                return not self.truth(proposition.args[0], state, labels)
-            case StateOp.AND:
-                return all(self.truth(part, state, labels) for part in proposition.args)
-            case StateOp.OR:
-                return any(self.truth(part, state, labels) for part in proposition.args)
-            case StateOp.LEAF:
-                return self._leaf(proposition, state, labels)
-            case StateOp.SURE:  # nothing is unknown
-                return self.truth(proposition.args[0], state, labels)
-            case StateOp.PREVIOUS | StateOp.SINCE | StateOp.AMOUNT | StateOp.DOUBT:
-                raise AssertionError("refused before")
-            case _:
-                assert_never(proposition.op)
-
-    def _leaf(self, proposition: Proposition, state: State, labels: tuple[str, ...]) -> bool:
-        match proposition.leaf:
-            case Constant(value=value):
-                return value
-            case Unborn() | Lost() | Lapsed():  # nor is anything unborn
-                return False
-            case SignalAtom(name=name):
-                return bool(self._read(name, state))
-            case EventAtom(name=name):
-                return name in labels
-            case Compare(op=op, left=left, right=right):
-                return bool(op.holds(self._number(left, state), self._number(right, state)))
-            case _:
-                raise AssertionError("refused before")
-
-    def _number(self, number: Numeric, state: State) -> float:
-        match number:
-            case Literal(int() | float() as value):
-                return value
-            case SignalValue(name):
-                return self._read(name, state)
-            case _:
-                raise AssertionError("refused before")
-
-    def _read(self, name: str, state: State) -> int:
-        return self._signals[name](state.vector.locations, state.values)
+        read = self._signals[name]
+        return lambda state: read(state.vector.locations, state.values)
 
     def letter(self, alphabet: Alphabet, state: State, labels: tuple[str, ...]) -> int:
         """The letter of a state, or of an action that leads to it."""
         return sum(
-            entries[TRUE if self.truth(proposition, state, labels) else FALSE]
+            entries[TRUE if self.reader(proposition)(state, labels) else FALSE]
             for proposition, entries in zip(
                 alphabet.propositions, alphabet.pessimistic, strict=True
             )

@@ -149,7 +149,7 @@ class Programs:
                 code += [SET, self._place(first)]
             case Assignment(slot, value):
                 depth = max(self._offset(slot), 1 + self._emit(value))
-                code += [STORE, self._place(slot.first), _size(slot)]
+                code += [STORE, self._place(slot.first), slot.size]
             case Reset(clock, value):
                 depth = self._emit(value)
                 code += [CLOCK, clock + 1]
@@ -228,7 +228,7 @@ class Programs:
                 return 1
             case VariableValue(slot):
                 depth = self._offset(slot)
-                code += [ELEMENT, self._place(slot.first), _size(slot)]
+                code += [ELEMENT, self._place(slot.first), slot.size]
                 return depth
             case Lookup(values, slot):
                 depth = self._offset(slot)
@@ -275,10 +275,3 @@ class Programs:
     def _hole(self, jump: int) -> int:
         self.code += [jump, 0]
         return len(self.code) - 1
-
-
-def _size(slot: Slot) -> int:
-    size = 1
-    for extent in slot.extents:
-        size *= len(extent)
-    return size
