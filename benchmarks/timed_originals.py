@@ -19,6 +19,10 @@ from pathlib import Path
 
 from rvmon.errors import ModelError
 from rvmon.timed.language.load import load_network
+from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query
+from rvmon.timed.runs.statistics import sample
+from rvmon.timed.search.extremes import extremes
+from rvmon.timed.search.meter import Meter
 from rvmon.timed.search.outcome import Budget
 from rvmon.timed.search.verify import verify
 
@@ -30,6 +34,23 @@ def known() -> dict[str, str]:
     """The path of each model of the manifest, by its hash."""
     lines = MANIFEST.read_text("utf-8").splitlines()
     return {found[1]: found[2] for line in lines if (found := _MODEL.fullmatch(line))}
+
+
+def _end(network: Network, query: Query, budget: Budget) -> str:
+    """What comes of a query."""
+    try:
+        match query.formula:
+            case Chance() | Mean():
+                sample(network, query, watch=Meter(budget, None).goes_on)
+                return "simulated"
+            case Extremes():
+                exact = all(one.exact for one in extremes(network, query, budget=budget))
+                return "decided" if exact else "undecided"
+            case _:
+                outcome = verify(network, query, budget=budget)
+                return "undecided" if outcome.holds is None else "decided"
+    except ModelError:
+        return "refused"
 
 
 def main() -> None:
@@ -58,12 +79,7 @@ def main() -> None:
         read += 1
         queries["left out"] += sum(warning.code == "TA020" for warning in network.warnings)
         for query in network.queries:
-            try:
-                outcome = verify(network, query, budget=Budget(seconds=arguments.seconds))
-            except ModelError:
-                queries["refused"] += 1
-            else:
-                queries["undecided" if outcome.holds is None else "decided"] += 1
+            queries[_end(network, query, Budget(seconds=arguments.seconds))] += 1
     print(f"{len(models)} models in the manifest, {len(seen)} found, {read} read")
     for (code, reason), count in reasons.most_common(20):
         print(f"  {count:5}  {code} {reason}")

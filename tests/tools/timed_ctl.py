@@ -21,7 +21,7 @@ from rvmon.timed.model.expressions import (
     UnaryOperation,
 )
 from rvmon.timed.model.guards import is_plain, parts_of
-from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
+from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from tests.tools.timed_regions import Region, RegionGraph, satisfies
 
@@ -35,7 +35,7 @@ def holds_at_start(network: Network, query: Query, limit: int = 2_000) -> bool:
         TooManyRegionsError: there are more regions than the limit.
     """
     formula = query.formula
-    assert not isinstance(formula, Chance | Mean)
+    assert not isinstance(formula, Chance | Mean | Extremes)
     if isinstance(formula, LeadsToFormula):
         answered = PathFormula(PathOp.EVENTUALLY, formula.right, formula.bound)
         implied = BinaryOperation(BinaryOp.IMPLY, formula.left, answered)

@@ -8,7 +8,7 @@ from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
 from rvmon.timed.model.expressions import Expression, PathFormula
 from rvmon.timed.model.guards import normal_form
-from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network
+from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network
 from rvmon.timed.search.linear import ways_of
 from rvmon.timed.search.lowered import Plan
 from rvmon.timed.search.outcome import Policy
@@ -47,5 +47,5 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
 
 def _formula(network: Network, text: str) -> Expression:
     formula = query_on(network, text).formula
-    assert not isinstance(formula, LeadsToFormula | Chance | Mean)
+    assert not isinstance(formula, LeadsToFormula | Chance | Mean | Extremes)
     return formula

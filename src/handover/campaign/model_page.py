@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -106,7 +107,9 @@ def claims() -> list[str]:
 
 def _verifier() -> Callable[[str], ET.Element]:
     from handover.model import handover_network
-    from rvmon.timed.language.elaborate import query_on
+    from rvmon.timed.model.expressions import PathFormula
+    from rvmon.timed.model.network import Chance
+    from rvmon.timed.model.operators import PathOp
     from rvmon.timed.runs.statistics import sample
     from rvmon.timed.search.verify import verify
 
@@ -117,9 +120,11 @@ def _verifier() -> Callable[[str], ET.Element]:
         requirement = name.removesuffix(SUFFIX)
         some, every = (verify(network, queries[query]).holds for query in (requirement, name))
         claim, query = queries[name], queries[requirement]
-        goal = query.text.removeprefix("E<>")
-        asked = query_on(network, f"Pr[<={SIMULATED_UNITS}; {SIMULATED}](<> {goal})")
-        share = sample(network, asked, seed=1)
+        goal = query.formula
+        assert isinstance(goal, PathFormula)  # noqa: S101 - `E<>` with or without a bound
+        horizon = SIMULATED_UNITS if goal.bound is None else goal.bound
+        chance = Chance(PathOp.FINALLY, goal.body, horizon, SIMULATED, sign=None, level=0.0)
+        share = sample(network, replace(query, formula=chance), seed=1)
         return e(
             "tr",
             None,

@@ -7,7 +7,7 @@ import json
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.options import add_budget, add_format, budget_of
 from rvmon.cli.output import rendered, say, say_json, warn
@@ -15,10 +15,11 @@ from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-    from rvmon.timed.model.network import Network
+    from rvmon.timed.model.network import Network, Query
     from rvmon.timed.observation.observe import Observation
     from rvmon.timed.runs.run import Run
     from rvmon.timed.runs.statistics import Sampled
+    from rvmon.timed.search.extremes import Extreme
     from rvmon.timed.search.outcome import Budget, Outcome, Watch
 
 
@@ -95,34 +96,45 @@ def _refuse_unused(arguments: argparse.Namespace) -> None:
 
 
 def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
+    from rvmon.timed.describe import extreme_data, outcome_data, sampled_data
     from rvmon.timed.language.elaborate import chosen_queries
-    from rvmon.timed.model.network import Chance, Mean
+    from rvmon.timed.model.network import Chance, Extremes, Mean
     from rvmon.timed.runs.statistics import sample
+    from rvmon.timed.search.extremes import extremes
     from rvmon.timed.search.meter import Meter
     from rvmon.timed.search.outcome import Policy
     from rvmon.timed.search.verify import verify
 
-    queries = chosen_queries(network, arguments.query)
-    outcomes, sampled = [], []
+    data: dict[str, list[dict[str, Any]]] = {"queries": [], "simulated": [], "extremes": []}
+    in_words = arguments.format == "text"
+    failed = False
     with _shown() as watch:
-        for query in queries:
-            if isinstance(query.formula, Chance | Mean):
-                meter = Meter(budget, watch)
-                one = sample(network, query, seed=arguments.seed, watch=meter.goes_on)
-                sampled.append(one)
-                if arguments.format == "text":
-                    _print_sampled(one)
-                continue
-            outcome = verify(
-                network, query, budget=budget, watch=watch, policy=Policy(arguments.trace)
-            )
-            outcomes.append(outcome)
-            if arguments.format == "text":
-                _print_outcome(network, outcome)
-    if arguments.format == "json":
-        _print_json(network, outcomes, sampled)
-    failed = any(one.margin and not one.holds for one in sampled)
-    return int(failed or any(not outcome.holds for outcome in outcomes))
+        for query in chosen_queries(network, arguments.query):
+            match query.formula:
+                case Chance() | Mean():
+                    going = Meter(budget, watch).goes_on
+                    one = sample(network, query, seed=arguments.seed, watch=going)
+                    failed |= bool(one.margin) and not one.holds
+                    data["simulated"].append(sampled_data(one))
+                    if in_words:
+                        _print_sampled(one)
+                case Extremes():
+                    found = list(extremes(network, query, budget=budget, watch=watch))
+                    failed |= not all(one.exact for one in found)
+                    data["extremes"] += [extreme_data(network, one) for one in found]
+                    if in_words:
+                        _print_extremes(network, found)
+                case _:
+                    policy = Policy(arguments.trace)
+                    outcome = verify(network, query, budget=budget, watch=watch, policy=policy)
+                    failed |= not outcome.holds
+                    data["queries"].append(outcome_data(network, outcome))
+                    if in_words:
+                        _print_outcome(network, outcome)
+    if not in_words:
+        always = {"queries": data.pop("queries")}
+        say_json(json.dumps(always | {key: some for key, some in data.items() if some}, indent=2))
+    return int(failed)
 
 
 def _constant(text: str) -> tuple[str, int]:
@@ -138,50 +150,58 @@ def _show_warnings(network: Network) -> None:
         warn(rendered(network.warnings))
 
 
-def _print_outcome(network: Network, outcome: Outcome) -> None:
+def _print_query(query: Query, word: str) -> None:
+    name = f"{query.id}: " if query.id else ""
+    say(f"{name}{word}: {' '.join(query.text.split())}")
+    if query.remark:
+        say(f'    "{query.remark}"')
+
+
+def _print_run(network: Network, run: Run | None, kind: str) -> None:
     from rvmon.timed.describe import run_lines
 
+    if run is not None:
+        say(f"    {kind}:")
+        for line in run_lines(network, run):
+            say(f"      {line}")
+
+
+def _print_outcome(network: Network, outcome: Outcome) -> None:
     word = {True: "holds", False: "does not hold", None: "not decided"}[outcome.holds]
-    name = f"{outcome.query.id}: " if outcome.query.id else ""
+    _print_query(outcome.query, word)
     statistics = outcome.statistics
-    say(f"{name}{word}: {' '.join(outcome.query.text.split())}")
-    if outcome.query.remark:
-        say(f'    "{outcome.query.remark}"')
     say(f"    {statistics.visited:,} states, {statistics.seconds:.2f} s", end="")
     say(f"; {outcome.remark}" if outcome.remark else "")
-    if outcome.run is not None:
-        kind = "witness" if outcome.holds else "counterexample"
-        policy = f", {outcome.policy}" if outcome.policy is not None else ""
-        say(f"    {kind}{policy}:")
-        for line in run_lines(network, outcome.run):
-            say(f"      {line}")
+    kind = "witness" if outcome.holds else "counterexample"
+    policy = f", {outcome.policy}" if outcome.policy is not None else ""
+    _print_run(network, outcome.run, kind + policy)
+    say(flush=True)
+
+
+def _print_extremes(network: Network, found: Sequence[Extreme]) -> None:
+    from rvmon.timed.describe import extreme_text
+
+    _print_query(found[0].query, "answered" if all(one.exact for one in found) else "not decided")
+    for one in found:
+        statistics = one.statistics
+        say(f"    {extreme_text(one)}")
+        say(f"    {statistics.visited:,} states, {statistics.seconds:.2f} s")
+        _print_run(network, one.run, "there" if one.attained else "near it")
     say(flush=True)
 
 
 def _print_sampled(one: Sampled) -> None:
     from rvmon.timed.runs.statistics import ERROR
 
-    name = f"{one.query.id}: " if one.query.id else ""
-    words = {True: "holds, by a test: ", False: "does not hold, by a test: ", None: "simulated: "}
-    word = "not decided: " if one.margin and one.holds is None else words[one.holds]
-    say(f"{name}{word}{' '.join(one.query.text.split())}")
-    if one.query.remark:
-        say(f'    "{one.query.remark}"')
+    words = {True: "holds, by a test", False: "does not hold, by a test", None: "simulated"}
+    word = "not decided" if one.margin and one.holds is None else words[one.holds]
+    _print_query(one.query, word)
     say(f"    {one.value:.4f} of {one.runs:,} simulated runs; ", end="")
     if one.low is not None:
         say(f"with {100 * (1 - ERROR):g} % confidence from {one.low:.4f} to {one.high:.4f}")
     else:
         say(f"wrong in {100 * ERROR:g} % of cases, but within {one.margin:g} of the level")
     say(flush=True)
-
-
-def _print_json(network: Network, outcomes: Sequence[Outcome], sampled: Sequence[Sampled]) -> None:
-    from rvmon.timed.describe import outcome_data, sampled_data
-
-    data = {"queries": [outcome_data(network, o) for o in outcomes]}
-    if sampled:
-        data["simulated"] = [sampled_data(one) for one in sampled]
-    say_json(json.dumps(data, indent=2))
 
 
 def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:

@@ -19,6 +19,7 @@ from rvmon.timed.model.guards import has_paths
 from rvmon.timed.model.network import (
     Automaton,
     Edge,
+    Extremes,
     Guard,
     LeadsToFormula,
     Network,
@@ -164,6 +165,13 @@ def _formula(names: Names, formula: QueryFormula) -> str:
             left == TRUE and op in _OUTERMOST and not has_paths(body)
         ):
             return names.expression(formula)
+        case Extremes(ends, where, terms):
+            word = "bounds" if len(ends) > 1 else "sup" if ends[0] else "inf"
+            listed = ", ".join(
+                names.expression(one.value) if one.clock is None else names.clock(one.clock)
+                for one in terms
+            )
+            return f"{word}{{{names.expression(where)}}}: {listed}"
         case _:
             return ""
 

@@ -12,6 +12,7 @@ from rvmon.timed.model.network import Network
 from rvmon.timed.observation.observe import Observation
 from rvmon.timed.runs.run import Action, Ending, Position, Run, RunStep, Window
 from rvmon.timed.runs.statistics import ERROR, Sampled
+from rvmon.timed.search.extremes import Extreme
 from rvmon.timed.search.outcome import Outcome
 from rvmon.timed.search.suite import Suite, item_text
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -161,6 +162,38 @@ def sampled_data(one: Sampled) -> dict[str, Any]:
     if one.margin is not None:
         return {**data, "holds": one.holds, "error": ERROR, "margin": one.margin}
     return {**data, "low": one.low, "high": one.high, "confidence": 1 - ERROR}
+
+
+def extreme_text(extreme: Extreme) -> str:
+    """An end of the values of a term, for people."""
+    term, value, largest = extreme.term, extreme.value, extreme.largest
+    if value is None:
+        return f"{term}: {extreme.remark}"
+    if not extreme.exact:
+        side = "above" if largest else "below"
+        why = extreme.remark or "no bound up to there"
+        return f"{term} comes to {value:,}, perhaps {side} it ({why})"
+    if not extreme.attained:
+        side = "below" if largest else "above"
+        return f"{term} stays {side} {value:,}, but comes as near to it as one likes"
+    return f"{term} is at {'most' if largest else 'least'} {value:,}"
+
+
+def extreme_data(network: Network, extreme: Extreme) -> dict[str, Any]:
+    """An end of the values of a term as plain data."""
+    return {
+        "id": extreme.query.id,
+        "query": extreme.query.text,
+        "term": extreme.term,
+        "end": "sup" if extreme.largest else "inf",
+        "value": extreme.value,
+        "attained": extreme.attained,
+        "exact": extreme.exact,
+        "remark": extreme.remark,
+        "trace": run_data(network, extreme.run),
+        "states": extreme.statistics.visited,
+        "seconds": round(extreme.statistics.seconds, 6),
+    }
 
 
 def outcome_data(network: Network, outcome: Outcome) -> dict[str, Any]:

@@ -18,17 +18,19 @@ from rvmon.timed.language.linear import assuming
 from rvmon.timed.language.lower_bounds import without_lower_bounds
 from rvmon.timed.language.parse import parse_query
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.model.expressions import Expression
-from rvmon.timed.model.guards import is_discrete, refuse_changes
+from rvmon.timed.model.expressions import FALSE, TRUE, Expression
+from rvmon.timed.model.guards import is_discrete, is_plain, refuse_changes
 from rvmon.timed.model.network import (
     Automaton,
     Chance,
+    Extremes,
     LeadsToFormula,
     Mean,
     Network,
     Query,
     QueryFormula,
     Signal,
+    Term,
 )
 from rvmon.timed.model.rules import finding, left_out, model_error
 from rvmon.timed.model.scope import AutomatonKey, AutomatonSymbol, Names, Scope
@@ -183,13 +185,32 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: Scope) -> Quer
             horizon = resolver.limit(within, top) or 0
             return Chance(op, holds, horizon, _runs(runs, resolver, top), sign, level)
         case syntax.Mean(largest, value, within, runs):
-            number, horizon = resolver.expression(value, top), resolver.limit(within, top) or 0
-            if not is_discrete(number):
-                fix = "use locations and variables only"
-                raise model_error("TA020", "the value of a clock or of runs", written.span, fix)
+            horizon = resolver.limit(within, top) or 0
+            number = _number(value, resolver, top)
             return Mean(largest, number, horizon, _runs(runs, resolver, top))
+        case syntax.Extremes(ends, where, terms):
+            condition = TRUE if where is None else _condition(where, resolver, top)
+            if not is_plain(condition):
+                fix = "write a condition on the state: sup{p}: e"
+                raise model_error("TA020", "a condition on runs", written.span, fix)
+            return Extremes(ends, condition, tuple(_term(term, resolver, top) for term in terms))
         case _:
             return _decided(written, resolver, top)
+
+
+def _number(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expression:
+    number = _condition(written, resolver, top)
+    if not is_discrete(number):
+        fix = "use locations and variables only"
+        raise model_error("TA020", "the value of a clock or of runs", written.span, fix)
+    return number
+
+
+def _term(written: syntax.Expression, resolver: Resolver, top: Scope) -> Term:
+    clock, text = resolver.clock(written, top), written.span.text
+    if clock is not None:
+        return Term(text, FALSE, clock)
+    return Term(text, _number(written, resolver, top))
 
 
 def _runs(written: syntax.Expression | None, resolver: Resolver, top: Scope) -> int | None:

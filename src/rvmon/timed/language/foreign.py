@@ -13,7 +13,6 @@ _STATEMENTS: Reason = (
 )
 _JUMPS: Reason = ("break, continue and switch are not supported", "write if and while")
 _GAMES: Reason = ("games and strategies are not supported", "ask for a run with E<>")
-_EXTREMES: Reason = ("extreme values are not computed", "ask whether A[] x <= bound holds")
 _STATISTICS: Reason = (
     "this form of a statistical query is not supported",
     "write Pr[<=T](<> p), with >= or <= a number for a test, or E[<=T; n](max: e)",
@@ -63,7 +62,6 @@ _UPDATING: dict[str, Reason] = {
 }
 _ASKING: dict[str, Reason] = {
     **dict.fromkeys(("Pr", "simulate"), _STATISTICS),
-    **dict.fromkeys(("sup", "inf", "bounds"), _EXTREMES),
     **dict.fromkeys(("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"), _GAMES),
     **dict.fromkeys(("U", "W", "AU", "EU"), _UNTIL),
 }

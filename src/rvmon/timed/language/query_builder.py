@@ -7,12 +7,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from lark import v_args
+from lark import Tree, v_args
 from lark.tree import Meta
 
 from rvmon.diagnostics import Span
 from rvmon.timed.language import syntax
-from rvmon.timed.language.statement_builder import StatementBuilder
+from rvmon.timed.language.statement_builder import StatementBuilder, is_rule
 from rvmon.timed.model.operators import BinaryOp, PathOp, UnaryOp
 from rvmon.timed.model.rules import model_error
 
@@ -81,6 +81,15 @@ class QueryBuilder(StatementBuilder):
             fix = "write E[<=T; n](max: e) or (min: e)"
             raise model_error("TA001", "this is no expected value", span, fix)
         return syntax.Mean(which == "max", value, within, runs, span)
+
+    def where(self, meta: Meta, items: Sequence[Any]) -> Tree[Any]:
+        return Tree("where", list(items))
+
+    def extremes(self, meta: Meta, items: Sequence[Any]) -> syntax.Extremes:
+        word, *terms = items
+        ends = {"sup": (True,), "inf": (False,), "bounds": (False, True)}[word]
+        where = terms.pop(0).children[0] if is_rule(terms[0], "where") else None
+        return syntax.Extremes(ends, where, tuple(terms), self._span(meta))
 
     def assuming(self, meta: Meta, items: Sequence[Any]) -> syntax.Assuming:
         return syntax.Assuming(items[0], items[1], self._span(meta))

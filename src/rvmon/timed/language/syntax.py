@@ -150,6 +150,16 @@ class Mean:
     span: Span
 
 
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """`sup{where}: e, …`, `inf` or `bounds`; `ends` says which: the largest value, the least."""
+
+    ends: tuple[bool, ...]
+    where: Expression | None
+    terms: tuple[Expression, ...]
+    span: Span
+
+
 Expression = (
     Number
     | Name
@@ -165,6 +175,7 @@ Expression = (
     | Assuming
     | Chance
     | Mean
+    | Extremes
 )
 
 

@@ -128,7 +128,30 @@ class Mean:
     runs: int | None
 
 
-QueryFormula = Expression | LeadsToFormula | Chance | Mean
+@dataclass(frozen=True, slots=True)
+class Term:
+    """Something that has a value in each state: a clock, or an expression if `clock` is `None`."""
+
+    text: str
+    value: Expression
+    clock: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """The largest, or least, values of some terms over all reachable states.
+
+    Attributes:
+        ends: `True` for the largest values, `False` for the least.
+        where: only states in which this holds count.
+    """
+
+    ends: tuple[bool, ...]
+    where: Expression
+    terms: tuple[Term, ...]
+
+
+QueryFormula = Expression | LeadsToFormula | Chance | Mean | Extremes
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from rvmon.timed.model.expressions import (
     PathFormula,
 )
 from rvmon.timed.model.guards import has_paths, is_linear, is_plain, normal_form, with_deadlock
-from rvmon.timed.model.network import Chance, LeadsToFormula, Mean, Network, Query
+from rvmon.timed.model.network import Chance, Extremes, LeadsToFormula, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.runs.run import Ending, Run
@@ -115,6 +115,9 @@ def _search(question: _Question, query: Query) -> _Found:
         case Chance() | Mean():
             fix = "simulate it: `rvmon verify` does, as does `sample`"
             raise model_error("TA020", "statistics are no decision", query.span, fix)
+        case Extremes():
+            fix = "`rvmon verify` answers it, as does `extremes`"
+            raise model_error("TA020", "a value is no decision", query.span, fix)
         case formula if is_linear(formula):
             return _on_runs(question, query, formula)
     match query.formula:

@@ -55,7 +55,6 @@ def test_what_is_not_supported_is_called_by_its_name(parts, message):
     [
         ("Pr[<=10](<> T.A) >= Pr[<=9](<> T.A)", "statistical query"),
         ("simulate [<=10] { T.A }", "statistical query"),
-        ("sup: T.A", "extreme values"),
         ("control: A<> T.A", "games"),
         ("E<> T.A under s", "games"),
         ("A<> T.A U T.A", "takes brackets"),
