@@ -144,8 +144,7 @@ class Past:
             case BinaryOp.SINCE:
                 window = formula.interval or EVER
                 value = self._since(formula.left, self._candidate(formula.right), i, window)
-                is_unborn = self._truths.state(formula, i) is Truth.UNBORN
-                return _besides(value, is_unborn, unborn)
+                return self._unless_unborn(value, formula.right, i, window, unborn)
             case _:
                 raise AssertionError("it speaks of the future")
 
@@ -179,12 +178,21 @@ class Past:
         inside = [k for k in range(i + 1) if is_within(now - self._letters[k].instant, window)]
         begun = TOP if now - start >= (window.high or 0) else BOTTOM
         value = least([begun, *(self.range(operand, k, Truth.FALSE) for k in inside)])
-        states = {self._truths.state(operand, k) for k in inside}
-        if states & {Truth.TRUE, Truth.FALSE}:
-            return value
-        if Truth.UNKNOWN in states:
+        return self._unless_unborn(value, operand, i, window, unborn)
+
+    def _unless_unborn(
+        self, value: Range, sought: Formula, i: int, window: Interval, unborn: Truth
+    ) -> Range:
+        """What is sought in a window may be born nowhere there: then the whole is not."""
+        now = self._letters[i].instant
+        states = {
+            self._truths.state(sought, k)
+            for k in range(i + 1)
+            if is_within(now - self._letters[k].instant, window)
+        }
+        if Truth.UNKNOWN in states and not states & {Truth.TRUE, Truth.FALSE}:
             return most([value, ANY])
-        return _besides(value, True, unborn)
+        return _besides(value, states == {Truth.UNBORN}, unborn)
 
 
 def _besides(value: Range, is_unborn: bool, unborn: Truth) -> Range:
