@@ -116,7 +116,7 @@ def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
         except RvmonError:
             continue
         planned = planned_core(compiled_spec)
-        case = random_trace(rng, compiled_spec.checked, TraceProfile(outages=made % 2))
+        case = random_trace(rng, compiled_spec.checked, TraceProfile(outages=100 * (made % 2)))
         twins = Twins(planned, frozenset())
         for action in [*actions_of(case)][: rng.randint(1, 12)]:
             twins.tell(action)

@@ -44,7 +44,7 @@ requirement R4
 def case(number: int, time: TimeModel, *, outages: bool) -> Case:
     """A random case of some requirements, with keys and captured values; names may be lost."""
     profile = Profile(requirements=1 + number % 4, time=time)
-    return case_of(f"away/{time}/{number}", profile, TraceProfile(outages=outages))
+    return case_of(f"away/{time}/{number}", profile, TraceProfile(outages=100 * outages))
 
 
 @pytest.mark.law
@@ -57,6 +57,18 @@ def test_a_run_taken_up_again_goes_on_alike(time, outages):
     assert sum(put_away(compile_(one.spec), one) for one in cases) > 700
 
 
+def test_a_run_whose_first_position_may_not_be_there_is_taken_up_again():
+    """What was lost before the first sample comes back at a tick that lies behind that position."""
+    text = "requirement R\n  upon start\n  then updated(x) or q\n"
+    plan = planned(text, "sampled every 4 ns")
+    twins = Twins(plan, frozenset())
+    for action in (Lost(("x",), -2), Found(("x",), -2), Sample(1, {}), Sample(3, {"q": True})):
+        twins.tell(action)
+        twins.take_up()
+    twins.tell(9)
+    twins.finish(12)
+
+
 @pytest.mark.law
 def test_chains_of_windows_taken_up_again_go_on_alike():
     """So do those that are followed by where values change."""
@@ -64,7 +76,7 @@ def test_chains_of_windows_taken_up_again_go_on_alike():
     for number in range(60):
         rng = random.Random(f"chain/{number}")
         spec = random_chain(rng, untils=number % 3 == 0)
-        one = random_trace(rng, spec, TraceProfile(outages=number % 2))
+        one = random_trace(rng, spec, TraceProfile(outages=100 * (number % 2)))
         taken += put_away(compile_spec(spec), one)
     assert taken > 400
 

@@ -50,7 +50,7 @@ def drawn(seed):
     rng = random.Random(seed)
     while True:
         spec = random_spec(rng, Profile(requirements=2, depth=2))
-        case = random_trace(rng, spec, TraceProfile(outages=True))
+        case = random_trace(rng, spec, TraceProfile(outages=100))
         if case.outages:
             return case
 

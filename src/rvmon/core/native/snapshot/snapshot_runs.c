@@ -176,11 +176,12 @@ static void carry_nodes(carrier *c, run *r)
 }
 
 /* Whether time has a meaning for a run: no sum of instants leaves 64 bits, and nothing that is known to
- * come lies behind its position. */
+ * come lies behind its position. At one that may not be there nothing comes back: the next one sees to it. */
 static bool is_in_time(const run *r)
 {
     const int64_t gap = GAP(r);
-    const bool later = ((r->at.awaited > r->at.position) && (r->at.ends_at > r->at.position));
+    const bool later = (r->at.awaited > r->at.position)
+                       && ((r->at.ends_at > r->at.position) || (r->at.presence != ARE_THERE));
     int32_t i;
     if (r->at.dense ? (gap > 0) || !r->at.started : (r->at.presence == MAY_BE_THERE) && (gap == 0)) {
         return false;
