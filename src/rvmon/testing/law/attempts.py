@@ -295,8 +295,9 @@ def obligation(start: Start, readings: Readings) -> Truth:
     owed = [_owed(start, readings, k) for k in start.owes if k < truths.known]
     if requirement.mode is Mode.UPON and start.sure is not None:
         return owed[0]
-    rest = Truth.TRUE if ended else truths.release_rest(opened=True)
-    value = conjunction([*owed, rest])
+    is_blurred = start.blurred is not None and start.blurred < truths.known
+    going_on = Truth.UNKNOWN if is_blurred else truths.release_rest(opened=True)
+    value = conjunction([*owed, Truth.TRUE if ended else going_on])
     if value is Truth.FALSE and start.sure is None:
         return Truth.UNKNOWN
     if value is Truth.TRUE and counts_in_favour(requirement):
