@@ -99,9 +99,7 @@ class Factory:
         return self._state(StateOp.SINCE, (left, right), low=low, high=high)
 
     def amount(self, measured: Measured, arg: State, window: int, least: int) -> State:
-        """So much of `arg` in the last `window` ticks; of what is never true there is nothing."""
-        if arg is self.state_false:
-            return arg
+        """So much of `arg` in the last `window` ticks; of constants too, for what was lost."""
         return self._state(StateOp.AMOUNT, (arg,), high=window, measured=measured, least=least)
 
     def sure(self, arg: State) -> State:

@@ -1,13 +1,16 @@
 """Counts, durations, extremes and functions in the core: of practice, and beside the oracle."""
 
 import pytest
-from tests.tools.differential import campaign_of
+from tests.tools.differential import campaign_of, disagreements
 from tests.tools.forms import Compiler, Maker
 
 import rvmon
 from rvmon.spec.checked.specification import TimeModel
+from rvmon.testing.case import Case
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
+from rvmon.testing.law.outage import Outage
+from rvmon.trace.sample import Sample
 
 
 def ticks(form):
@@ -128,6 +131,20 @@ def test_amounts_are_those_of_the_oracle(time):
     found = campaign_of(makers, seeds, profile, traces, each=4, online_every=4)
     assert not found.disagreements, found.disagreements[0]
     assert [(one.pairs, one.refused) for one in found.tallies.values()] == [(240, 0)] * 2
+
+
+@pytest.mark.parametrize("amount", ["duration(false, 2 ns) >= 1 ns", "count(false, 2 ns) >= 1"])
+def test_what_is_never_true_is_unknown_where_a_sample_may_have_been(amount):
+    """In an outage of sampled time every formula is unknown, constants too."""
+    spec = rvmon.loads(f"time sampled\nevent e\nrequirement R\n  upon e then {amount}\n").checked
+    lost = Outage(frozenset(), 1, 1)
+    case = Case(spec, (Sample(2, {"e": True}),), None, outages=(lost,))
+    assert disagreements(case, Maker("c")) == []
+    monitor = rvmon.Spec(spec).monitor()
+    monitor.lose_ns([], 1)
+    monitor.found_ns([], 1)
+    monitor.step_ns(2, {"e": True})
+    assert monitor.finish().verdicts["R"] == "I"
 
 
 def test_an_amount_is_due_between_samples():

@@ -30,6 +30,11 @@ CASES = {
         "whenever (q or g.k == i)\n  then previous false\n  for each i in g.k\n  let v = x",
         [(0, {"q": True}), (1, {"q": None}), (3, {"g": {"k": 1}})],
     ),
+    "the end fails what has not ended": (
+        "held",
+        "whenever (once e) or g\n  then true\n  for each i in g.k\n  let v = x\n  at end strong",
+        [(0, {"g": {"k": None}}), (1, {"g": {"k": 6}, "e": True})],
+    ),
     "a key that is not known": (
         "held",
         "whenever true\n  then true\n  for each i in g.k\n  let v = g.k",
