@@ -20,8 +20,7 @@ from pathlib import Path
 
 from rvmon.cli import main as rvmon
 from rvmon.coverage.database import Database, merge
-from rvmon.coverage.hits import Hit, Hits
-from rvmon.coverage.model import Item, Subject, group_of, model_of
+from rvmon.coverage.model import Hit, Hits, Item, Subject, group_of, model_of
 from rvmon.coverage.record import TestRecord
 
 GROUPS = 10

@@ -12,8 +12,7 @@ import time
 
 from handover.checker.conformance import check_run
 from handover.driver import run_test
-from handover.generator.abstract_test import AbstractTest
-from handover.generator.files import directed
+from handover.generator.abstract_test import AbstractTest, directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.model import handover_network

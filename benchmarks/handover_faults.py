@@ -18,9 +18,9 @@ from pathlib import Path
 from handover.campaign.campaign import handover_campaign
 from handover.robot import handover
 from handover.robot.handover import HandoverRobot
+from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.play import play_mutants
-from rvmon.cdv.mutation.suite import record_suite
 from rvmon.cdv.plan import plan
 
 GIVE_UP = 'self.node.publish("timed_out")\n        return "done"'

@@ -15,7 +15,7 @@ from collections import Counter
 from handover.checker import spec_path
 from handover.driver import run_test
 from handover.generator.model_based import model_based
-from rvmon.cdv.checker import Checker
+from rvmon.cdv.system import Checker
 from rvmon.cdv.template import PolicyName
 from rvmon.session import load
 

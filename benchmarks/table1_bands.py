@@ -22,11 +22,9 @@ from rich.console import Console
 from rich.table import Table
 
 from handover.campaign.campaign import handover_campaign
-from handover.campaign.paper import FITTED, paper_table
-from handover.campaign.spread import SPREAD_FILE, Spread, write_spread
-from rvmon.cdv.execute import execute
-from rvmon.cdv.outcome import Played
-from rvmon.cdv.plan import plan
+from handover.campaign.table1 import FITTED, SPREAD_FILE, Spread, paper_table, write_spread
+from rvmon.cdv.plan import Played, plan
+from rvmon.cdv.play import execute
 from rvmon.verdict.verdict import Verdict
 
 STRATEGIES = ("pseudorandom", "constrained", "model-based")

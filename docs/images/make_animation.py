@@ -15,10 +15,10 @@ from pathlib import Path
 
 import rvmon
 from handover.campaign.scene import scene_of
-from handover.checker.specs import spec_path
+from handover.checker import spec_path
 from handover.driver import run_test
-from handover.driver.run import SampleValues
-from handover.generator.files import directed
+from handover.driver.play import SampleValues
+from handover.generator.abstract_test import directed
 from rvmon.report.markup import e
 from rvmon.report.run_html import UNITS, scene_svg
 from rvmon.report.style import MARKS, verdict_colours

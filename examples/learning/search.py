@@ -9,7 +9,7 @@ import gymnasium
 import rvmon
 from handover.environment import ACTIONS, STEP_S, published
 from rvmon.adapters.gym import Judged
-from rvmon.cdv.files import to_json
+from rvmon.cdv.test import to_json
 
 SPEC = rvmon.load(Path(__file__).parent / "grip.rv")
 NUMBERS = {name: number for number, name in enumerate(ACTIONS)}

@@ -173,7 +173,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 def _demo(arguments: argparse.Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
-    from rvmon.cdv.write_pages import REPORT
+    from rvmon.cdv.pages import REPORT
 
     campaign = handover_campaign(("legacy", "correct"), conforming=arguments.conform)
     words = ["demo", "--conform", arguments.conform]

@@ -17,7 +17,7 @@ from rvmon.verdict.attempt import Attempt
 from rvmon.verdict.report import Report
 
 if TYPE_CHECKING:
-    from rvmon.coverage.hits import Hits
+    from rvmon.coverage.model import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
     from rvmon.monitor import CompiledSpec, Monitor

@@ -69,7 +69,7 @@ def test_an_agent_that_learns(play, tmp_path):
     rewards = [float(line.split("reward ")[1].split(",")[0]) for line in lines]
     assert rewards == sorted(rewards)
     assert lines[-1].endswith("R5 F")
-    run = run_test(cdv.files.load(tmp_path / "found.json", AbstractTest))
+    run = run_test(cdv.test.load(tmp_path / "found.json", AbstractTest))
     spec = load(EXAMPLES / "learning" / "grip.rv")
     declared = {*spec.schema.signals, *spec.schema.events}
     samples = [

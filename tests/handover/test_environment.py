@@ -48,7 +48,7 @@ def test_an_episode_is_a_test_that_can_be_played_again():
 
 def test_it_is_judged_as_its_test_is():
     """Verdicts and instants, by the samples within each step."""
-    from handover.checker.specs import spec_path
+    from handover.checker import spec_path
     from handover.environment import STEP_S, published
     from rvmon.adapters.gym import Judged
 

@@ -6,8 +6,17 @@ import random
 from collections.abc import Iterable
 
 from rvmon.coverage.database import Database
-from rvmon.coverage.hits import Hit, Hits
-from rvmon.coverage.model import Group, Item, Model, Subject, combination, group_of, model_of
+from rvmon.coverage.model import (
+    Group,
+    Hit,
+    Hits,
+    Item,
+    Model,
+    Subject,
+    combination,
+    group_of,
+    model_of,
+)
 from rvmon.coverage.record import Ending, TestRecord
 from rvmon.spec.checked.goals import BinKind
 from rvmon.verdict.verdict import Verdict

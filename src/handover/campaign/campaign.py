@@ -9,14 +9,12 @@ from pathlib import Path
 
 import handover
 from handover.campaign.closing import closing
-from handover.campaign.documents import table_document
 from handover.campaign.flow_chart import flow_chart
 from handover.campaign.gates import expected_failures, gates
 from handover.campaign.model_page import model_sections
-from handover.campaign.paper import paper_table
 from handover.campaign.strategies import STRATEGIES
 from handover.campaign.system import Handover, without_loss
-from handover.campaign.tables import robot_tables
+from handover.campaign.table1 import paper_table, robot_tables, table_document
 from handover.checker import SPECS, situations_path, spec_path
 from handover.collector.code import robot_code
 from handover.collector.transitions import TRANSITIONS
@@ -24,7 +22,7 @@ from handover.generator.abstract_test import AbstractTest
 from handover.generator.model_based import save_templates
 from handover.robot.handover import STATES
 from rvmon.cdv import Campaign, Control, Robot
-from rvmon.cdv.campaign_files import TEMPLATES
+from rvmon.cdv.output import TEMPLATES
 from rvmon.cdv.presentation import Presentation
 from rvmon.cdv.summary import CampaignSummary
 from rvmon.errors import not_installed

@@ -9,8 +9,8 @@ from msgspec import structs
 from handover.generator.model_based import ACTIONS, PROJECTED, instantiate
 from handover.generator.out_of_turn import out_of_turn
 from handover.model import handover_network
+from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable
 from rvmon.cdv.close.witnesses import EDGES
-from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
 from rvmon.coverage.requirements import AT, JUST_BEFORE
 
 if TYPE_CHECKING:

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 from handover.campaign.closing import UNREACHABLE, closing
 from handover.campaign.system import Handover
-from handover.campaign.tables import witness_test
+from handover.campaign.table1 import witness_test
 from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest
 from rvmon.cdv import Observer, Test
 from rvmon.cdv.close.witnesses import EDGES, Witness, Witnesses
-from rvmon.cdv.measured import hits_of_states
+from rvmon.cdv.code_coverage import hits_of_states
 from rvmon.cdv.presentation import RobotTest
 from rvmon.confidence import interval_text
 from rvmon.execute import parallel

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 
-from handover.generator.abstract_test import AbstractTest
+from handover.generator.abstract_test import AbstractTest, directed
 from handover.generator.disturbed import disturbed
-from handover.generator.files import directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from rvmon.cdv import Strategy

@@ -6,7 +6,7 @@ from msgspec import structs
 
 from handover.campaign.scene import scene_of
 from handover.driver import run_test
-from handover.driver.draws import draw
+from handover.driver.play import draw
 from handover.generator.abstract_test import AbstractTest
 from rvmon.cdv import Observer, Run
 

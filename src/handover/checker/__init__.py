@@ -1,5 +1,38 @@
-"""The checker: the requirements of the robots, and the model that their runs are held against."""
+"""The checker: the requirements of the robots, and where they stand."""
 
-from handover.checker.specs import SPECS, situations_path, spec_path
+from __future__ import annotations
+
+from pathlib import Path
 
 __all__ = ["SPECS", "situations_path", "spec_path"]
+
+
+SPECS = {"correct": "specs/handover_correct.rv", "legacy": "specs/handover_legacy.rv"}
+"""What judges each robot: the paper's words and the truth of the world, or the triggers that the
+paper's testbench had."""
+
+
+def spec_path(robot: str) -> Path:
+    """The file of a robot's requirements, in an installed package or in the source tree.
+
+    >>> spec_path("correct").name
+    'handover_correct.rv'
+    """
+    return _placed(SPECS[robot])
+
+
+def situations_path() -> Path:
+    """The file that says which situations a campaign should show.
+
+    >>> situations_path().name
+    'handover_situations.rv'
+    """
+    return _placed("specs/handover_situations.rv")
+
+
+def _placed(name: str) -> Path:
+    package = Path(__file__).parents[1]
+    packaged = package / name
+    path = packaged if packaged.exists() else package.parents[1] / name
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path  # as people would write it

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from handover.driver.run import Run
+    from handover.driver.play import Run
     from rvmon.timed.conformance.outcome import Conformance, Recorded
     from rvmon.timed.model.network import Network
 

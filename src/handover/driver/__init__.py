@@ -1,6 +1,5 @@
 """The driver: plays an abstract test against a robot in the simulated world."""
 
-from handover.driver.play import run_test
-from handover.driver.run import Run
+from handover.driver.play import Run, run_test
 
 __all__ = ["Run", "run_test"]

@@ -2,22 +2,112 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+import random
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from handover.driver.draws import draw, stream
-from handover.driver.run import Run
+from handover.world import parameters as p
+from handover.world.motion import Joints
 from rvmon.cdv import TestError
 from rvmon.trace.time import TICKS_PER_SECOND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from handover.driver.run import AroundRobotStep, Observer
     from handover.generator.abstract_test import AbstractTest, Action
+    from handover.world.poses import Poses
     from handover.world.process import Process
     from handover.world.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """The seeded conditions of one run; the posture ranges are drawn as they are needed.
+
+    Attributes:
+        human_start_s: when the human's script starts.
+        connected: whether the human's signals reach the robot at all.
+        timeout_time_s: the parameter of the legacy robot.
+        poll_growth_s: how much each subscription slows a poll down.
+        start_pose: joint angles after the reset, rad.
+    """
+
+    human_start_s: float
+    connected: bool
+    timeout_time_s: int
+    poll_growth_s: float
+    start_pose: Joints
+
+
+def draw(seed: int, *, startup_loss: bool) -> Conditions:
+    """Draw the conditions of a run.
+
+    Switching the loss off changes nothing else: its number is drawn all the same.
+    """
+    rng = stream(seed, "conditions")
+    a, b, c = p.ZERO_POSE
+    reach = p.START_POSE_RANGE
+    return Conditions(
+        human_start_s=rng.uniform(*p.HUMAN_START_S),
+        connected=rng.random() >= p.STARTUP_LOSS or not startup_loss,
+        timeout_time_s=rng.randint(*p.TIMEOUT_TIME_S),
+        poll_growth_s=rng.uniform(*p.POLL_GROWTH_S),
+        start_pose=(
+            a + rng.uniform(-reach, reach),
+            b + rng.uniform(-reach, reach),
+            c + rng.uniform(-reach, reach),
+        ),
+    )
+
+
+def stream(seed: int, name: str) -> random.Random:
+    """An independent random stream of a seed, the same in every process."""
+    return random.Random(f"{name}/{seed}")  # noqa: S311  # repeatable, not secret
+
+
+SampleValue = bool | float | None
+SampleValues = Mapping[str, SampleValue]
+
+Observer = Callable[[int, SampleValues], None]
+"""Called with each whole sample `(t_ns, values)` as soon as simulated time has passed it."""
+
+AroundRobotStep = Callable[[], AbstractContextManager[object]]
+"""Makes the context in which one step of the robot's code runs (for statement coverage)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One simulated test, judged by nobody yet.
+
+    Attributes:
+        test: what was played.
+        robot: `"correct"` or `"legacy"`.
+        mutation: the change made to the robot, if any.
+        samples: `(t_ns, values)`, strictly increasing, only what changed or occurred; events are
+            `True`, a signal that is unknown is `None`; distances in m, speeds in m/s.
+        states: `(t_ns, state)` at each entry of a robot state, also from itself (a poll).
+        end_ns: the horizon.
+        stepped_s: simulated seconds for which the physics was stepped.
+        error: the exception of the robot's code as one text, if it crashed.
+        poses: the scene over time, if asked for.
+    """
+
+    test: AbstractTest
+    robot: str
+    mutation: str | None
+    samples: tuple[tuple[int, SampleValues], ...]
+    states: tuple[tuple[int, str], ...]
+    end_ns: int
+    stepped_s: float
+    error: str | None
+    poses: Poses | None
+
+    @property
+    def simulated_s(self) -> float:
+        """Simulated seconds, stepped or jumped."""
+        return self.end_ns / 1e9
 
 
 def run_test(test: AbstractTest, **options: Any) -> Run:

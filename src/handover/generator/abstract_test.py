@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib import resources
 from typing import Annotated, ClassVar, Literal, Self
 
 import msgspec
@@ -10,6 +11,7 @@ from msgspec import structs
 
 from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import Test
+from rvmon.cdv.test import from_json
 
 HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
 RobotSignal = Literal["informHumanOfHandoverStart", "setv"]
@@ -121,3 +123,13 @@ class AbstractTest(Test, frozen=True, kw_only=True):
                         wait = SetParam("time", units)
                         shorter = (*self.actions[:at], wait, *self.actions[at + 1 :])
                         yield structs.replace(self, actions=shorter)
+
+
+def directed() -> tuple[AbstractTest, ...]:
+    """The directed tests that come with the testbench, in order of name."""
+    folder = resources.files("handover.generator") / "directed"
+    files = sorted(
+        (entry for entry in folder.iterdir() if entry.name.endswith(".json")),
+        key=lambda entry: entry.name,
+    )
+    return tuple(from_json(entry.read_bytes(), AbstractTest, source=entry.name) for entry in files)

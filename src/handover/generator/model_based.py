@@ -16,9 +16,7 @@ from handover.generator.abstract_test import (
     SetParam,
     Strategy,
 )
-from rvmon.cdv.template import PolicyName, Template, save_template
-from rvmon.cdv.template_times import choose_times
-from rvmon.cdv.witness_templates import Edge, templates_of
+from rvmon.cdv.template import Edge, PolicyName, Template, choose_times, save_template, templates_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

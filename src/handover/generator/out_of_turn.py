@@ -18,7 +18,7 @@ from handover.generator.abstract_test import (
 )
 from handover.generator.disturbed import DELAY_S, GREASY, LOSS, NOISE_M, PLAN_FAILURE
 from handover.world.faults import SceneFaults, SensorFaults
-from rvmon.cdv.closing import Choose
+from rvmon.cdv.campaign import Choose
 
 _TURNS = ("before activating", "after activating", "before being ready", "after being ready")
 _POSTURES: tuple[Literal["hgazeOk", "hlocationOk", "hpressureOk"], ...] = (

@@ -1,5 +1,23 @@
 """The handover as a network of six timed automata, and what is asked of it."""
 
-from handover.model.network import handover_network
+from __future__ import annotations
+
+from importlib import resources
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rvmon.timed.model.network import Network
+
 
 __all__ = ["handover_network"]
+
+
+MODEL_FILE = "handover.ta"
+
+
+def handover_network() -> Network:
+    """Read the network of robot, workflow, gaze, location, pressure and sensors."""
+    from rvmon.timed.language.load import loads_network
+
+    text = resources.files("handover.model").joinpath(MODEL_FILE).read_text(encoding="utf-8")
+    return loads_network(text, name=MODEL_FILE)

@@ -8,10 +8,8 @@ from collections.abc import Callable, Generator
 from itertools import pairwise
 
 from handover.world import parameters as p
-from handover.world.kinematics import Joints, grip_point, joints_for
-from handover.world.motion import min_jerk
+from handover.world.motion import Joints, Trajectory, grip_point, joints_for, min_jerk
 from handover.world.scene import Scene
-from handover.world.trajectory import Trajectory
 
 
 class Arm:

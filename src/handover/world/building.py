@@ -8,7 +8,7 @@ import pymunk
 
 from handover.world import parameters as p
 from handover.world.faults import SceneFaults
-from handover.world.kinematics import Joints
+from handover.world.motion import Joints
 from handover.world.scene import Scene
 
 AS_PLANNED = SceneFaults()

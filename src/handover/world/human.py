@@ -4,12 +4,110 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+
+import pymunk
 
 from handover.world import parameters as p
-from handover.world.grasp import Grasp
-from handover.world.limb import Limb
 from handover.world.measures import contact_forces, gripper_force, seen_piece
+from handover.world.motion import PEAK_OVER_MEAN, Quintic, evaluate, quintic, slope
 from handover.world.scene import Scene
+
+
+@dataclass(slots=True)
+class _Reach:
+    """A motion under way or still to begin, along one quintic path for each coordinate."""
+
+    goal: tuple[float, ...]
+    duration: float
+    paths: tuple[Quintic, ...]
+    elapsed: float = 0.0
+
+
+class Limb:
+    """A kinematic body that is moved on minimum-jerk paths; it may be redirected in flight.
+
+    Args:
+        body: what moves.
+        turns: whether a goal has an angle (rad) after x and z (metres).
+    """
+
+    def __init__(self, body: pymunk.Body, *, turns: bool) -> None:
+        self._body = body
+        self._reach: _Reach | None = None
+        self._turns = turns
+
+    def start(self, goal: tuple[float, ...]) -> float:
+        """Begin to move to a goal from where the limb is; returns the seconds that it takes."""
+        here = self._place()
+        speed = self._speed()
+        duration = max(
+            p.SHORTEST_REACH_S, PEAK_OVER_MEAN * math.dist(here[:2], goal[:2]) / p.REACH_SPEED
+        )
+        paths = tuple(quintic(a, v, b, duration) for a, v, b in zip(here, speed, goal, strict=True))
+        self._reach = _Reach(goal, duration, paths)
+        return duration
+
+    def is_moving(self) -> bool:
+        """Whether a motion is under way."""
+        return self._reach is not None
+
+    def control(self) -> None:
+        """Set the velocity so that the next control step ends on the path."""
+        reach = self._reach
+        if reach is None:
+            return
+        if reach.elapsed >= reach.duration:
+            self._reach = None
+            self._body.velocity = (0.0, 0.0)
+            self._body.angular_velocity = 0.0
+            return
+        reach.elapsed += p.CONTROL_S
+        over = reach.elapsed >= reach.duration
+        wanted = reach.goal if over else tuple(evaluate(c, reach.elapsed) for c in reach.paths)
+        rates = [(b - a) / p.CONTROL_S for a, b in zip(self._place(), wanted, strict=True)]
+        self._body.velocity = (rates[0], rates[1])
+        if self._turns:
+            self._body.angular_velocity = rates[2]
+
+    def _place(self) -> tuple[float, ...]:
+        x, z = self._body.position
+        return (x, z, self._body.angle) if self._turns else (x, z)
+
+    def _speed(self) -> tuple[float, ...]:
+        if self._reach is None:
+            return (0.0, 0.0, 0.0) if self._turns else (0.0, 0.0)
+        return tuple(slope(c, self._reach.elapsed) for c in self._reach.paths)
+
+
+class Grasp:
+    """Holds from its making until `let_go`; the piece keeps its place in the hand."""
+
+    def __init__(self, scene: Scene) -> None:
+        hand, piece = scene.hand, scene.piece
+        self._scene = scene
+        self._pivot = pymunk.PivotJoint(hand, piece, hand.position)
+        self._gear = pymunk.GearJoint(hand, piece, piece.angle - hand.angle, 1.0)
+        self._pivot.max_force = p.GRASP_FORCE
+        self._gear.max_force = p.GRASP_FORCE * p.HAND_RADIUS
+        self._pivot.collide_bodies = False
+        self._held_at = piece.world_to_local(hand.position)
+        scene.space.add(self._pivot, self._gear)
+        scene.hand_pull.max_force = p.HOLD_FORCE
+
+    def force(self) -> float:
+        """N that hand and piece exchanged in the last step."""
+        return self._pivot.impulse / (p.STEP_NS / p.NS)
+
+    def has_slipped(self) -> bool:
+        """Whether the hand was torn away from where it took hold."""
+        held = self._scene.piece.local_to_world(self._held_at)
+        return (held - self._scene.hand.position).length > p.GRASP_SLIP
+
+    def let_go(self) -> None:
+        """End the hold."""
+        self._scene.space.remove(self._pivot, self._gear)
+        self._scene.hand_pull.max_force = p.HAND_FORCE
 
 
 class Human:

@@ -8,9 +8,8 @@ from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
-from handover.world.bus import Node
+from handover.world.bus import Node, Schedule
 from handover.world.parameters import NS
-from handover.world.schedule import Schedule
 
 Program = Generator[float, None, None]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import deque
+from dataclasses import dataclass
 
 from handover.world import parameters as p
 from handover.world.faults import SensorFaults
@@ -15,8 +16,16 @@ from handover.world.measures import (
     hand_offset,
     location_is_ok,
 )
-from handover.world.reading import Reading
 from handover.world.scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What the three sensors say; `None`: this one has nothing to say yet."""
+
+    gaze: bool | None
+    pressure: bool | None
+    location: bool | None
 
 
 class Sensors:

@@ -9,17 +9,14 @@ from collections.abc import Callable
 from handover.world import parameters as p
 from handover.world.arm import Arm, Gripper
 from handover.world.building import AS_PLANNED, build
-from handover.world.bus import Bus, Value
+from handover.world.bus import Bus, Schedule, Value
 from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.film import Film
 from handover.world.human import Human
 from handover.world.measures import seen_piece
 from handover.world.poses import Poses
-from handover.world.reading import Reading
-from handover.world.recorder import Recorder, SampleValue
-from handover.world.schedule import Schedule
-from handover.world.sensing import Sensors
-from handover.world.truth import Truth
+from handover.world.recorder import Recorder, SampleValue, Truth
+from handover.world.sensing import Reading, Sensors
 
 PERFECT = SensorFaults()
 

@@ -6,12 +6,20 @@ made of it, in order: `plan` (tests), `execute` (on all cores: `play` judges and
 `summarise` (figures), tables, pages, and `gate`: is all as expected? `close` makes its own tests.
 """
 
-from rvmon.cdv.abstract_test import Test
-from rvmon.cdv.campaign import Campaign, Control, ExpectedFailure, Gate, Robot, Strategy
-from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
+from rvmon.cdv.campaign import (
+    Campaign,
+    Closing,
+    ClosingModel,
+    Control,
+    ExpectedFailure,
+    Gate,
+    Robot,
+    Strategy,
+    Unreachable,
+)
 from rvmon.cdv.code import Block, Code, blocks_of
-from rvmon.cdv.files import TestError
 from rvmon.cdv.system import Observer, Run, System
+from rvmon.cdv.test import Test, TestError
 
 __all__ = [
     "Block",

@@ -7,13 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.code_files import cobertura, lcov
-from rvmon.cdv.expected import accepted_failures
-from rvmon.cdv.measured import measured_groups
-from rvmon.cdv.unreachable import unreachable_items
+from rvmon.cdv.campaign import unreachable_items
+from rvmon.cdv.code_coverage import cobertura, lcov, measured_groups
+from rvmon.cdv.plan import accepted_failures
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.hits import merged, share
-from rvmon.coverage.model import Group, Item, Model, model_of, without
+from rvmon.coverage.model import Group, Item, Model, merged, model_of, share, without
 from rvmon.coverage.record import TestRecord
 from rvmon.errors import RvmonError
 from rvmon.report.coverage_page import coverage_page
@@ -24,7 +22,7 @@ from rvmon.writing import write_whole
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign, Robot
-    from rvmon.cdv.outcome import Played, Results
+    from rvmon.cdv.plan import Played, Results
     from rvmon.coverage.monitor import SpecCoverage
 
 

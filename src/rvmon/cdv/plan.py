@@ -1,16 +1,18 @@
-"""What a campaign plays: tests by strategy, each against the robots that it is written for."""
+"""What a campaign plays, and what it keeps of each test that was played."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from rvmon.cdv.abstract_test import Test
-from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.files import TestError, from_json, load, to_json
+from rvmon.cdv.campaign import Campaign, ExpectedFailure
+from rvmon.cdv.test import Test, TestError, from_json, load, to_json
+from rvmon.coverage.model import Group, Hits
+from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.verdict.verdict import Verdict
 
 _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
 
@@ -135,3 +137,103 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
             )
         from_json(to_json(test), campaign.test, source=f"test `{test.name}` of `{strategy}`")
     return made
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came out of one test.
+
+    Attributes:
+        verdicts: by requirement; empty if nothing was judged. Of a test that hung or was lost
+            nothing is known: it is inconclusive.
+        reasons: by requirement that failed, when and why it did first.
+        illegal: what was hit of coverage models and must not be, in words.
+        hits: of states, transitions, code, and of coverage models.
+        ending: `completed`; `crashed` if code raised an exception, in which case it is judged as
+            far as it went; `hung` if it was ended; `lost` if its process was.
+        error: why it did not complete.
+        end_ns: up to which it was judged.
+        figures: what the system reports of the run, to be added up.
+        seconds: wall time that it took.
+    """
+
+    verdicts: Mapping[str, Verdict]
+    reasons: Mapping[str, str]
+    illegal: tuple[str, ...]
+    hits: Hits
+    ending: Ending
+    error: str | None
+    end_ns: int
+    figures: Mapping[str, float]
+    seconds: float = field(compare=False)
+
+    @property
+    def simulated_s(self) -> float:
+        """Simulated seconds."""
+        return self.end_ns / 1e9
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """One test that was played.
+
+    Attributes:
+        job: what was played.
+        outcome: of it.
+        control: the outcome of its control, if it has one.
+    """
+
+    job: Job
+    outcome: Outcome
+    control: Outcome | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """What came out of a campaign.
+
+    Attributes:
+        plan: what was to be played.
+        played: in the order of the plan, whichever process was first.
+        seconds: wall time.
+        cut_short: why not all tests were played; empty if they were.
+        groups: what was measured beside what the campaign measures.
+        unreachable: why items of the coverage model cannot be hit, by group and item, beside those
+            of which the campaign says so.
+    """
+
+    plan: Plan
+    played: tuple[Played, ...]
+    seconds: float
+    cut_short: str = ""
+    groups: Sequence[Group] = ()
+    unreachable: Mapping[tuple[str, str], str] = field(default_factory=dict)
+
+
+def accepted_failures(one: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
+    """The requirements that may fail in a test, each with the reason.
+
+    Args:
+        one: the test.
+        expected: what its campaign expects to fail.
+    """
+    accepted = {
+        name: "this test is made to fail it"
+        for name, verdict in one.job.test.expected.items()
+        if verdict == Verdict.FAIL.value
+    }
+    for why in expected:
+        if is_about(why, one):
+            accepted.setdefault(why.requirement, why.reason)
+    return accepted
+
+
+def is_about(why: ExpectedFailure, one: Played) -> bool:
+    """Whether a failure is expected in a test: on the robot as it is."""
+    test = one.job.test
+    return (
+        test.mutation is None
+        and why.strategy in ("", test.strategy)
+        and why.test in ("", test.name)
+        and why.robot in ("", one.job.robot)
+    )

@@ -9,10 +9,9 @@ from xml.etree.ElementTree import Element
 
 from markupsafe import Markup
 
-from rvmon.cdv.abstract_test import Test
-from rvmon.cdv.documents import table_document
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, StrategySummary
-from rvmon.cdv.tables import RobotTables, robot_tables
+from rvmon.cdv.tables import RobotTables, robot_tables, table_document
+from rvmon.cdv.test import Test
 from rvmon.report.pages import component
 from rvmon.report.percent import percent_text
 from rvmon.report.table import VerdictTable

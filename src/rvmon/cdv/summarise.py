@@ -6,9 +6,13 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from rvmon.cdv.measured import measured_groups, source_and_target
-from rvmon.cdv.meter import branches_name, statements_name
-from rvmon.cdv.outcome import Outcome, Played, Results
+from rvmon.cdv.code_coverage import (
+    branches_name,
+    measured_groups,
+    source_and_target,
+    statements_name,
+)
+from rvmon.cdv.plan import Outcome, Played, Results
 from rvmon.cdv.run_share import decide
 from rvmon.cdv.summary import (
     BlockCoverage,

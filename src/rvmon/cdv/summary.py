@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rvmon.cdv.run_share import Decision
-from rvmon.coverage.hits import Hits
+from rvmon.coverage.model import Hits
 from rvmon.report.percent import percent
 from rvmon.report.table import Counts
 from rvmon.verdict.verdict import Verdict
@@ -131,7 +131,7 @@ def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) ->
 def missed(reaches: Mapping[str, Sequence[str]], hits: Hits) -> list[str]:
     """What a test is made to reach and did not, each in a sentence; nothing if none was measured.
 
-    >>> from rvmon.coverage.hits import Hit
+    >>> from rvmon.coverage.model import Hit
     >>> missed({"gaze": ["no"]}, {"gaze": {"yes": Hit(1)}})
     ['gaze: no is not reached']
     """

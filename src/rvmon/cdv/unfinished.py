@@ -20,8 +20,7 @@ import msgspec
 import rvmon
 from rvmon.cache import contents
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.outcome import Outcome, Played
-from rvmon.cdv.plan import Job, Plan
+from rvmon.cdv.plan import Job, Outcome, Plan, Played
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.execute.shard import Shard, shards_beside

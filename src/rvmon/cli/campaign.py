@@ -14,8 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.gate import CampaignJudgement
-from rvmon.cdv.junit import junit_xml
+from rvmon.cdv.gate import CampaignJudgement, junit_xml
 from rvmon.cli import evidence, guarded
 from rvmon.cli.campaign_options import (
     add_campaign_options,
@@ -253,7 +252,7 @@ def close_holes(
         arguments: those of `add_closing_options`, and `strategy`.
         words: the command that does it again, and its options but those.
     """
-    from rvmon.cdv.execute import INTERRUPTED as BY_HAND
+    from rvmon.cdv.play import INTERRUPTED as BY_HAND
     from rvmon.cli.campaign_close import conduct_closing
 
     campaign = _as_asked(campaign, arguments)

@@ -12,17 +12,15 @@ from io import StringIO
 import msgspec
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.campaign_files import TESTS, TEXT_COLUMNS, dated_files, left_over
 from rvmon.cdv.close import Budget, Closed, close
 from rvmon.cdv.close.close import MARGIN
-from rvmon.cdv.close.document import closed_document
 from rvmon.cdv.close.faults import with_mutants
+from rvmon.cdv.close.outcome import closed_document
 from rvmon.cdv.close.text import print_closed
-from rvmon.cdv.documents import to_json
 from rvmon.cdv.gate import CampaignJudgement
-from rvmon.cdv.outcome import Results
-from rvmon.cdv.plan import Plan
-from rvmon.cdv.program import typed
+from rvmon.cdv.output import TESTS, TEXT_COLUMNS, dated_files, left_over, typed
+from rvmon.cdv.plan import Plan, Results
+from rvmon.cdv.tables import to_json
 from rvmon.cli.campaign_run import specs_of, written
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.report.folder import made

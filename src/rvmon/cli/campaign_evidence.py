@@ -9,12 +9,11 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.documents import to_json as document_json
-from rvmon.cdv.execute import outcomes
-from rvmon.cdv.files import from_json, to_json
-from rvmon.cdv.outcome import Outcome, Results
-from rvmon.cdv.plan import Job
+from rvmon.cdv.plan import Job, Outcome, Results
+from rvmon.cdv.play import outcomes
 from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.tables import to_json as document_json
+from rvmon.cdv.test import from_json, to_json
 from rvmon.cdv.unfinished import sources_of
 from rvmon.coverage.record import Ending
 from rvmon.errors import RvmonError

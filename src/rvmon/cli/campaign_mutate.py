@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.documents import to_json
-from rvmon.cdv.files import load
 from rvmon.cdv.plan import plan
+from rvmon.cdv.tables import to_json
+from rvmon.cdv.test import Test, load
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.report.folder import made
@@ -39,8 +38,7 @@ def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments:
         strategies: each makes a suite, unless a folder is one.
         arguments: those of `add_mutate_options`.
     """
-    from rvmon.cdv.mutation.page import mutation_page
-    from rvmon.cdv.mutation.text import list_text, report_text
+    from rvmon.cdv.mutation.output import list_text, mutation_page, report_text
 
     found = _mutants(campaign, robot, arguments)
     if arguments.list:
@@ -73,10 +71,10 @@ class _Mutants:
 
 def _mutants(campaign: Campaign, robot: str, arguments: Namespace) -> _Mutants:
     """The mutants that are asked for."""
-    from rvmon.cdv.mutation.equivalent import equivalents
-    from rvmon.cdv.mutation.find import code_mutants
+    from rvmon.cdv.mutation.baseline import mutated_code, mutated_spec
+    from rvmon.cdv.mutation.python_mutants import code_mutants
     from rvmon.cdv.mutation.spec_mutants import spec_mutants
-    from rvmon.cdv.mutation.suite import mutated_code, mutated_spec
+    from rvmon.cdv.mutation.tried import equivalents
 
     code: list[Mutant] = []
     spec: list[SpecMutant] = []
@@ -103,12 +101,11 @@ def _reported(
     arguments: Namespace,
 ) -> MutationReport:
     """What each suite sees of the mutants."""
+    from rvmon.cdv.mutation.baseline import mutated_spec, record_suite
     from rvmon.cdv.mutation.play import play_mutants
-    from rvmon.cdv.mutation.question import readers
     from rvmon.cdv.mutation.report import MutationReport, SuiteTried
     from rvmon.cdv.mutation.spec_mutants import try_spec_mutants
-    from rvmon.cdv.mutation.suite import mutated_spec, record_suite
-    from rvmon.cdv.mutation.tried import failing_runs
+    from rvmon.cdv.mutation.tried import failing_runs, readers
 
     jobs = arguments.jobs or os.cpu_count() or 1
     begun = time.perf_counter()

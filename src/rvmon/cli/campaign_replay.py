@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.examples import comparable_jobs
-from rvmon.cdv.files import load as load_test
+from rvmon.cdv.campaign_page import comparable_jobs
 from rvmon.cdv.gate import judge_test
-from rvmon.cdv.outcome import Played
-from rvmon.cdv.plan import Job
-from rvmon.cdv.program import typed
-from rvmon.cdv.run_pages import Replay, play_again, replay_page
+from rvmon.cdv.output import typed
+from rvmon.cdv.pages import Replay, play_again, replay_page
+from rvmon.cdv.plan import Job, Played
+from rvmon.cdv.test import Test
+from rvmon.cdv.test import load as load_test
 from rvmon.cli.output import say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts

@@ -9,23 +9,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.campaign_files import dated_files, left_over, write_tables, write_tests
+from rvmon.cdv.campaign_page import choose_examples
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.documents import to_json
-from rvmon.cdv.examples import choose_examples
-from rvmon.cdv.execute import INTERRUPTED, execute
-from rvmon.cdv.files import TestError
 from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign
-from rvmon.cdv.outcome import Results
-from rvmon.cdv.plan import Plan, plan, plan_of_folder
-from rvmon.cdv.program import typed
+from rvmon.cdv.output import dated_files, left_over, print_summary, typed, write_tables, write_tests
+from rvmon.cdv.pages import write_pages
+from rvmon.cdv.plan import Plan, Results, plan, plan_of_folder
+from rvmon.cdv.play import INTERRUPTED, execute
 from rvmon.cdv.run_share import Decision
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.summary import CampaignSummary
-from rvmon.cdv.tables import RobotTables
-from rvmon.cdv.text import print_summary
+from rvmon.cdv.tables import RobotTables, to_json
+from rvmon.cdv.test import TestError
 from rvmon.cdv.unfinished import unfinished
-from rvmon.cdv.write_pages import write_pages
 from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError

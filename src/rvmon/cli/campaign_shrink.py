@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.execute import play_apart
-from rvmon.cdv.files import load as load_test
-from rvmon.cdv.files import to_json
-from rvmon.cdv.outcome import Outcome
-from rvmon.cdv.plan import Job
-from rvmon.cdv.play import player
-from rvmon.cdv.regression import regression_test, removed, save_regression
-from rvmon.cdv.shrink import Shrunk, shrink
+from rvmon.cdv.plan import Job, Outcome
+from rvmon.cdv.play import play_apart, player
+from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
+from rvmon.cdv.test import Test, to_json
+from rvmon.cdv.test import load as load_test
 from rvmon.cli.campaign_replay import robot_of
 from rvmon.cli.output import busy, say_json, warn
 from rvmon.coverage.record import Ending

@@ -100,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.format == "json":
         import msgspec
 
-        from rvmon.report.coverage_json import coverage_data
+        from rvmon.report.coverage_text import coverage_data
 
         say_json(msgspec.json.encode(coverage_data(summary)).decode())
     else:

@@ -16,7 +16,7 @@ import msgspec
 import rvmon
 from rvmon.cache import contents
 from rvmon.cli.judging import Judged, Options
-from rvmon.coverage.hits import Hit
+from rvmon.coverage.model import Hit
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.readers.messages.forms import form_of_folder

@@ -8,8 +8,7 @@ from itertools import product
 from struct import iter_unpack
 
 from rvmon.core.plan import pack
-from rvmon.coverage.hits import Hit, Hits
-from rvmon.coverage.model import Group, Item, Subject, combination
+from rvmon.coverage.model import Group, Hit, Hits, Item, Subject, combination
 from rvmon.formula.factory import Factory
 from rvmon.formula.four import Reader
 from rvmon.formula.state import FALSE

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rvmon import native
-from rvmon.coverage.hits import Hit
+from rvmon.coverage.model import Hit
 from rvmon.monitor.core.monitor import Monitor
 from rvmon.monitor.core.planned import DECISIONS, VERDICTS
 from rvmon.monitor.core.recorded import RECORD

@@ -9,8 +9,7 @@ from typing import Any
 from rvmon import native
 from rvmon.coverage.bins import Bins
 from rvmon.coverage.core_run import CoverageRun
-from rvmon.coverage.hits import Hits
-from rvmon.coverage.model import Model, model_of
+from rvmon.coverage.model import Hits, Model, model_of
 from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.errors import UnknownNameError
 from rvmon.monitor.compiled.specification import CompiledSpec

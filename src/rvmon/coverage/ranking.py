@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rvmon.coverage.answers import Step
-from rvmon.coverage.questions import goals_of, growth, totals
+from rvmon.coverage.questions import Step, goals_of, growth, totals
 from rvmon.coverage.record import Coverage
 
 MOST_NODES = 20_000

@@ -8,8 +8,7 @@ from functools import cached_property
 
 from rvmon import native
 from rvmon.coverage.core_run import Judged, Passages, attempts_of, passages_of
-from rvmon.coverage.hits import Hit
-from rvmon.coverage.model import Group, Item, Subject, group_of
+from rvmon.coverage.model import Group, Hit, Item, Subject, group_of
 from rvmon.coverage.variants import Variant, variants_of
 from rvmon.explain.graph import Graph, graph_of
 from rvmon.monitor.compiled.code_plan import plan_alone

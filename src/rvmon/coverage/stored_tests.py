@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from rvmon.coverage.hits import Hits
+from rvmon.coverage.model import Hits
 from rvmon.coverage.record import UNKNOWN, Ending, Entry, Row, TestRecord
 from rvmon.coverage.schema import damaged
 from rvmon.errors import CoverageError

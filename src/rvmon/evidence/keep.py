@@ -20,8 +20,7 @@ import msgspec
 
 import rvmon
 from rvmon.cache import file_stamps
-from rvmon.coverage.hits import Hits, count_of, merged, share
-from rvmon.coverage.model import Model
+from rvmon.coverage.model import Hits, Model, count_of, merged, share
 from rvmon.errors import RvmonError
 from rvmon.evidence.matrix import Row, matrix_csv, matrix_page, rows_by_item, trace_matrix
 from rvmon.reproducer import (

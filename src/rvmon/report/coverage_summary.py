@@ -9,12 +9,13 @@ from math import prod
 
 import numpy as np
 
-from rvmon.coverage.answers import Comparison, Goals, Step, Totals
-from rvmon.coverage.hits import Hit, Hits, Score
-from rvmon.coverage.holes import Hole, hole_of
-from rvmon.coverage.model import Group, Item
-from rvmon.coverage.nearest import nearest_tests
+from rvmon.coverage.holes import Hole, hole_of, nearest_tests
+from rvmon.coverage.model import Group, Hit, Hits, Item, Score
 from rvmon.coverage.questions import (
+    Comparison,
+    Goals,
+    Step,
+    Totals,
     by_strategy,
     campaigns,
     compare,

@@ -1,13 +1,15 @@
-"""Coverage as text for a terminal."""
+"""Coverage as text for a terminal, and as data for other programs."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rvmon.coverage.answers import Comparison
 from rvmon.coverage.model import Group, combination
+from rvmon.coverage.questions import Comparison
+from rvmon.coverage.record import UNKNOWN
 from rvmon.report.coverage_summary import Summary, cell_text, is_grid, name_of, not_fine
 from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
+
 
 SHOWN = 10
 """Of a list, where not all of it was asked for."""
@@ -276,3 +279,94 @@ def _first_of(every: Sequence[str], most: int = 3) -> str:
 
 def _letter(verdict: Verdict | None) -> str:
     return "–" if verdict is None else verdict.value
+
+
+def coverage_data(summary: Summary) -> dict[str, Any]:
+    """All that is known, as objects that JSON has."""
+    coverage, records = summary.coverage, [entry.record for entry in summary.coverage.entries]
+    return {
+        "share": summary.share,
+        "groups": [_group_data(summary, name) for name in coverage.model.groups],
+        "holes": _item_names(summary, summary.holes),
+        "illegal": _item_names(summary, summary.illegal),
+        "tests": [
+            {
+                "name": record.name,
+                "campaign": record.campaign,
+                "strategy": record.strategy,
+                "recording": record.recording,
+                "seed": record.seed,
+                "system": record.system,
+                "verdicts": record.verdicts,
+                "expected": record.expected,
+                "ending": record.ending,
+                "error": record.error,
+                "seconds": record.seconds,
+                "when": record.when,
+                "added": _item_names(summary, step.added),
+                "share": step.share,
+                "only_by_it": _item_names(summary, only),
+            }
+            for record, step, only in zip(records, summary.steps, summary.unique, strict=True)
+        ],
+        "shortest_known_order": [
+            {
+                "test": step.entry,
+                "name": records[step.entry].name,
+                "added": _item_names(summary, step.added),
+                "share": step.share,
+            }
+            for step in summary.ranking
+        ],
+        "compared": _compared(summary),
+    }
+
+
+def _group_data(summary: Summary, name: str) -> dict[str, Any]:
+    group, score = summary.coverage.model.groups[name], summary.scores[name]
+    return {
+        "name": name,
+        "title": group.title,
+        "subject": group.subject,
+        "weight": group.weight,
+        "items": score.items,
+        "covered": score.covered,
+        "axes": group.axes,
+        "bins": [
+            {
+                "name": item.name,
+                "text": item.text,
+                "kind": item.kind,
+                "goal": item.goal,
+                "hits": int(summary.totals.counts[place]),
+                "tests": int(summary.totals.tests[place]),
+                "first": _first_data(summary, place),
+                "reasons": summary.coverage.reasons.get((name, item.name), ()),
+                "hole": summary.hole_texts.get(place),
+                "unreachable": summary.coverage.unreachable.get((name, item.name), ()),
+            }
+            for place, item in summary.places(group)
+        ],
+    }
+
+
+def _first_data(summary: Summary, place: int) -> dict[str, Any] | None:
+    """The test that hit an item first, by its place among the tests, and the instant in ns."""
+    entry = int(summary.totals.first[place])
+    if entry < 0:
+        return None
+    instant = int(summary.totals.instants[place])
+    return {
+        "test": entry,
+        "name": summary.record(entry).name,
+        "at": None if instant == UNKNOWN else instant,
+    }
+
+
+def _item_names(summary: Summary, places: Iterable[int]) -> list[tuple[str, str]]:
+    return [summary.coverage.items[place] for place in places]
+
+
+def _compared(summary: Summary) -> dict[str, Any] | None:
+    found = summary.comparison
+    return None if found is None else {"with": summary.earlier_name, **asdict(found)}

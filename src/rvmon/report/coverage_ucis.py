@@ -9,8 +9,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
+from rvmon.coverage.holes import cross_parts
 from rvmon.coverage.model import Group, Item, Subject
-from rvmon.coverage.nearest import cross_parts
 from rvmon.coverage.record import TestRecord
 from rvmon.diagnostics.shown import shown
 from rvmon.report.coverage_summary import Summary, not_fine

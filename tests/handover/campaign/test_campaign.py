@@ -9,15 +9,14 @@ import pytest
 
 from handover.campaign import system
 from handover.campaign.campaign import handover_campaign
-from handover.campaign.documents import table_document
-from handover.campaign.paper import FITTED, paper_table
+from handover.campaign.table1 import FITTED, paper_table, table_document
 from handover.checker import spec_path
-from handover.generator.files import directed
-from rvmon.cdv.documents import coverage_document, to_json
-from rvmon.cdv.examples import choose_examples, comparable_jobs
-from rvmon.cdv.execute import execute
+from handover.generator.abstract_test import directed
+from rvmon.cdv.campaign_page import choose_examples, comparable_jobs
 from rvmon.cdv.plan import plan
+from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
+from rvmon.cdv.tables import coverage_document, to_json
 from rvmon.coverage.record import Ending
 from rvmon.session import load
 from rvmon.verdict.verdict import Verdict

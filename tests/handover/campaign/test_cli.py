@@ -16,14 +16,14 @@ import pytest
 from tests.tools.shared_folder import shared_folder
 
 from handover.campaign.campaign import handover_campaign
-from handover.campaign.spread import spread, spread_text
+from handover.campaign.table1 import spread, spread_text
 from handover.checker import spec_path
 from handover.cli import main
-from handover.generator.files import directed
+from handover.generator.abstract_test import directed
 from handover.robot import behaviour
-from rvmon.cdv.execute import execute
-from rvmon.cdv.files import save
 from rvmon.cdv.plan import plan
+from rvmon.cdv.play import execute
+from rvmon.cdv.test import save
 from rvmon.cli import campaign_run
 
 pytestmark = pytest.mark.campaign

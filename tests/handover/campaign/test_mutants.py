@@ -6,10 +6,10 @@ import pytest
 
 from handover.cli import main
 from handover.collector.code import robot_code
-from handover.generator.files import directed
+from handover.generator.abstract_test import directed
 from handover.robot.handover import STATES
-from rvmon.cdv.files import save
-from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.python_mutants import code_mutants
+from rvmon.cdv.test import save
 
 pytestmark = pytest.mark.campaign
 

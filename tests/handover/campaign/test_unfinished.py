@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from handover.cli import main
-from rvmon.cdv.execute import execute
+from rvmon.cdv.play import execute
 from rvmon.cdv.unfinished import NAME
 from rvmon.cli import campaign_run
 from rvmon.coverage.database import read

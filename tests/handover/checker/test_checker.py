@@ -5,8 +5,8 @@ import pytest
 import rvmon
 from handover.checker import SPECS, spec_path
 from handover.driver import run_test
-from handover.generator.files import directed
-from rvmon.cdv.checker import Checker
+from handover.generator.abstract_test import directed
+from rvmon.cdv.system import Checker
 
 REQUIREMENTS = ("R1", "R2", "R3", "R4", "R5")
 TESTS = {test.name: test for test in directed()}

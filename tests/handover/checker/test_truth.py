@@ -8,14 +8,14 @@ import rvmon
 from handover.checker import spec_path
 from handover.driver import run_test
 from handover.driver.play import begun
+from handover.generator.abstract_test import directed
 from handover.generator.disturbed import disturbed
-from handover.generator.files import directed
 from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot import mutants
 from handover.robot.handover import END, HANDOVER_POINT, HandoverRobot
 from handover.world.measures import contact_forces
-from rvmon.cdv.checker import Checker
+from rvmon.cdv.system import Checker
 
 pytestmark = pytest.mark.campaign
 

@@ -7,10 +7,10 @@ import pytest
 from handover.collector.code import robot_code
 from handover.collector.transitions import TRANSITIONS
 from handover.driver import run_test
-from handover.generator.files import directed
+from handover.generator.abstract_test import directed
 from handover.robot.handover import STATES
-from rvmon.cdv.meter import Meter, code_groups, statements_name
-from rvmon.coverage.hits import merged, score
+from rvmon.cdv.code_coverage import Meter, code_groups, statements_name
+from rvmon.coverage.model import merged, score
 
 TESTS = {test.name: test for test in directed()}
 GROUPS = {group.name: group for group in code_groups(robot_code())}

@@ -14,8 +14,7 @@ import pytest
 from msgspec import structs
 
 from handover.driver import Run, run_test
-from handover.driver.draws import draw
-from handover.driver.run import SampleValues
+from handover.driver.play import SampleValues, draw
 from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
 from handover.generator.disturbed import disturbed
 from handover.generator.pseudorandom import constrained, pseudorandom

@@ -10,9 +10,8 @@ import pytest
 from handover.driver.script import INFORMED, Script
 from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.world import parameters as p
-from handover.world.bus import Bus, Node
+from handover.world.bus import Bus, Node, Schedule
 from handover.world.process import Process
-from handover.world.schedule import Schedule
 from handover.world.world import HUMAN_SIGNALS
 
 

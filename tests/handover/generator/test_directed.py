@@ -8,8 +8,8 @@ import rvmon
 from handover.checker import spec_path
 from handover.driver import run_test
 from handover.generator import AbstractTest
-from handover.generator.files import directed
-from rvmon.cdv.checker import Checker
+from handover.generator.abstract_test import directed
+from rvmon.cdv.system import Checker
 
 
 def test_each_says_which_situation_it_is_to_reach() -> None:

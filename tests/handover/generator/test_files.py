@@ -11,13 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam, Withdraw
-from handover.generator.abstract_test import Switch
-from handover.generator.files import directed
+from handover.generator.abstract_test import Switch, directed
 from handover.generator.pseudorandom import constrained
 from handover.robot.mutants import MUTATIONS
 from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import TestError
-from rvmon.cdv.files import from_json, load, save, to_json
+from rvmon.cdv.test import from_json, load, save, to_json
 
 REQUIREMENTS = ("R1", "R2", "R3", "R4", "R5")
 CANNOT_OCCUR = {("R4", "F"), ("R4", "NT")}

@@ -7,8 +7,7 @@ from collections import Counter
 import pytest
 
 from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
-from handover.generator.disturbed import disturbed
-from handover.generator.person import PERSON
+from handover.generator.disturbed import PERSON, disturbed
 from handover.generator.pseudorandom import PREFIX, constrained, pseudorandom
 from handover.world.faults import SceneFaults, SensorFaults
 

@@ -19,9 +19,7 @@ from handover.generator.model_based import (
 )
 from handover.model import handover_network
 from rvmon.cdv import TestError
-from rvmon.cdv.template import Wait, load_template, save_template
-from rvmon.cdv.template_times import choose_times
-from rvmon.cdv.witness_templates import project
+from rvmon.cdv.template import Wait, choose_times, load_template, project, save_template
 from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.verify import verify
 

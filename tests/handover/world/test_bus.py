@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from handover.world.bus import Bus, Node, Value
+from handover.world.bus import Bus, Node, Schedule, Value
 from handover.world.parameters import LATCH_LINGER_S, NS
-from handover.world.schedule import Schedule
 
 
 def at(schedule: Schedule, seconds: float) -> None:

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from handover.world.kinematics import DOWN, grip_point, joints_for
-from handover.world.motion import evaluate, min_jerk, quintic, slope
+from handover.world.motion import DOWN, evaluate, grip_point, joints_for, min_jerk, quintic, slope
 
 numbers = st.floats(-2, 2)
 

@@ -14,7 +14,7 @@ from handover.world import parameters as p
 from handover.world.bus import Node
 from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.process import Process, Program
-from handover.world.reading import Reading
+from handover.world.sensing import Reading
 from handover.world.world import World
 
 Point = tuple[float, float]
@@ -301,7 +301,7 @@ def test_arm_follows_paths_below_the_speed_limit() -> None:
 
 
 def joints_at(x: float, z: float) -> tuple[float, float, float]:
-    from handover.world.kinematics import joints_for
+    from handover.world.motion import joints_for
 
     joints = joints_for(x, z)
     assert joints is not None

@@ -7,10 +7,9 @@ from contextlib import contextmanager
 
 import pytest
 
-from handover.world.bus import Bus, Node
+from handover.world.bus import Bus, Node, Schedule
 from handover.world.parameters import NS
 from handover.world.process import Process, Program
-from handover.world.schedule import Schedule
 
 
 def play(program: Program) -> tuple[Process, Schedule]:

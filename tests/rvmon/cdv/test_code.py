@@ -5,7 +5,7 @@ import importlib.util
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.meter import Meter, code_groups
+from rvmon.cdv.code_coverage import Meter, code_groups
 from rvmon.errors import RvmonError, UnknownNameError
 
 

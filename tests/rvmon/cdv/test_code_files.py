@@ -5,10 +5,8 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.code_files import cobertura, lcov
-from rvmon.cdv.meter import code_groups
-from rvmon.coverage.hits import Hit
-from rvmon.coverage.model import model_of, without
+from rvmon.cdv.code_coverage import cobertura, code_groups, lcov
+from rvmon.coverage.model import Hit, model_of, without
 
 HITS = {
     "statements of Toy.climb": {"4": Hit(3), "6": Hit(2)},

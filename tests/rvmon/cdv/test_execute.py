@@ -6,8 +6,8 @@ import msgspec
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.execute import execute
 from rvmon.cdv.plan import plan
+from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import verdict_table
 from rvmon.coverage.record import Ending

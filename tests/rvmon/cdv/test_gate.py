@@ -6,10 +6,9 @@ from dataclasses import replace
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.execute import execute
-from rvmon.cdv.gate import judge_campaign, refuse_unknown
-from rvmon.cdv.junit import junit_xml
+from rvmon.cdv.gate import judge_campaign, junit_xml, refuse_unknown
 from rvmon.cdv.plan import plan
+from rvmon.cdv.play import execute
 from rvmon.errors import UnknownNameError
 
 pytestmark = pytest.mark.process

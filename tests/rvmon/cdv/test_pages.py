@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.files import load
+from rvmon.cdv.test import load
 from rvmon.cli.campaign import main
 
 pytestmark = pytest.mark.process

@@ -9,11 +9,9 @@ import pytest
 from msgspec import structs
 
 from rvmon import cdv
-from rvmon.cdv.files import TestError, load, save, to_json
-from rvmon.cdv.outcome import Outcome
-from rvmon.cdv.plan import Job
-from rvmon.cdv.regression import regression_test, removed, save_regression
-from rvmon.cdv.shrink import Failure, failure_of, shrink
+from rvmon.cdv.plan import Job, Outcome
+from rvmon.cdv.shrink import Failure, failure_of, regression_test, removed, save_regression, shrink
+from rvmon.cdv.test import TestError, load, save, to_json
 from rvmon.cli.campaign import main
 from rvmon.coverage.record import Ending
 from rvmon.errors import UnknownNameError

@@ -8,8 +8,7 @@ from tests.tools.hostile import hostile_names
 
 from rvmon.coverage import schema
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.hits import Hit
-from rvmon.coverage.model import Group, Item, Subject, group_of, model_of
+from rvmon.coverage.model import Group, Hit, Item, Subject, group_of, model_of
 from rvmon.coverage.questions import goals_of
 from rvmon.coverage.record import Ending, TestRecord
 from rvmon.errors import CoverageError

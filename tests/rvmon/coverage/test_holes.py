@@ -3,9 +3,8 @@
 import pytest
 
 from rvmon import loads
-from rvmon.coverage.hits import merged
-from rvmon.coverage.holes import hole_of
-from rvmon.coverage.nearest import nearest_tests
+from rvmon.coverage.holes import hole_of, nearest_tests
+from rvmon.coverage.model import merged
 
 SPEC = """
 signal level : real

@@ -6,11 +6,11 @@ from itertools import permutations
 import pytest
 from tests.tools.covered import door_model, fill, hits_of, merged, random_database
 
-from rvmon.coverage import hits as by_run
-from rvmon.coverage.answers import VerdictChange
+from rvmon.coverage import model as by_run
 from rvmon.coverage.database import Database
-from rvmon.coverage.hits import Hit
+from rvmon.coverage.model import Hit
 from rvmon.coverage.questions import (
+    VerdictChange,
     by_strategy,
     campaigns,
     compare,

@@ -8,16 +8,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 
-from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign import Campaign, unreachable_items
 from rvmon.cdv.close.goals import Goals
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
 from rvmon.cdv.close.witnesses import Witnesses
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.execute import INTERRUPTED, outcomes
-from rvmon.cdv.outcome import Played
-from rvmon.cdv.plan import Job
-from rvmon.cdv.unreachable import unreachable_items
+from rvmon.cdv.plan import Job, Played
+from rvmon.cdv.play import INTERRUPTED, outcomes
 from rvmon.coverage.model import model_of
 from rvmon.coverage.ranking import Smallest, smallest
 from rvmon.coverage.record import Ending

@@ -8,11 +8,11 @@ from dataclasses import replace
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.close.outcome import Choice, Closed, Trade
 from rvmon.cdv.code import Code
-from rvmon.cdv.mutation.equivalent import equivalents
-from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.baseline import Suite, mutated_code, record_suite
 from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
 from rvmon.cdv.mutation.play import play_mutants
-from rvmon.cdv.mutation.suite import Suite, mutated_code, record_suite
+from rvmon.cdv.mutation.python_mutants import code_mutants
+from rvmon.cdv.mutation.tried import equivalents
 from rvmon.coverage.ranking import smallest
 
 Killers = Mapping[str, frozenset[str]]

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rvmon.coverage.hits import Hits, merged, share
-from rvmon.coverage.holes import Hole, hole_of
-from rvmon.coverage.model import Model, without
-from rvmon.coverage.nearest import Goal, nearest_tests
+from rvmon.coverage.holes import Goal, Hole, hole_of, nearest_tests
+from rvmon.coverage.model import Hits, Model, merged, share, without
 from rvmon.spec.checked.goals import BinKind
 
 

@@ -12,18 +12,14 @@ from typing import TypeVar
 
 from msgspec import structs
 
-from rvmon.cdv.abstract_test import Test
-from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign import STRATEGY, Campaign
 from rvmon.cdv.close.goals import Goals
-from rvmon.cdv.close.learned import Draw, Learned
-from rvmon.cdv.close.mutate import Mutator
+from rvmon.cdv.close.vary_test import Draw, Learned, Mutator
 from rvmon.cdv.close.witnesses import Proof, Witness, Witnesses
-from rvmon.cdv.closing import STRATEGY
-from rvmon.cdv.files import TestError, from_json, to_json
-from rvmon.cdv.outcome import Played
-from rvmon.cdv.plan import plan
+from rvmon.cdv.plan import Played, plan
+from rvmon.cdv.test import Test, TestError, from_json, to_json
+from rvmon.coverage.holes import Goal, nearness
 from rvmon.coverage.model import Subject
-from rvmon.coverage.nearest import Goal, nearness
 from rvmon.errors import RvmonError
 
 _Option = TypeVar("_Option", bound=Hashable)

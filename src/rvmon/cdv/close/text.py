@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.cdv.close.outcome import Added, Closed, Trade
-from rvmon.coverage.nearest import Goal
+from rvmon.coverage.holes import Goal
 from rvmon.report.coverage_summary import name_of
 from rvmon.report.percent import counted, percent_text, share_text
 from rvmon.report.terminal import wrapped

@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.closing import ClosingModel
-from rvmon.cdv.template import Template
-from rvmon.cdv.witness_templates import project
-from rvmon.coverage.hits import Hit, Hits
-from rvmon.coverage.model import STATES, Group, Item, Subject, group_of
-from rvmon.coverage.nearest import Goal
+from rvmon.cdv.campaign import ClosingModel
+from rvmon.cdv.template import Template, project
+from rvmon.coverage.holes import Goal
+from rvmon.coverage.model import STATES, Group, Hit, Hits, Item, Subject, group_of
 
 if TYPE_CHECKING:
-    from rvmon.cdv.abstract_test import Test
+    from rvmon.cdv.test import Test
     from rvmon.timed.model.network import Edge, Network
     from rvmon.timed.runs.run import Run
     from rvmon.timed.search.suite import Suite

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.mutation.mutant import HELD_OUT, THIRDS
-from rvmon.cdv.mutation.question import Missing, missing, question
 from rvmon.cdv.mutation.spec_mutants import SpecTried, spec_scored
-from rvmon.cdv.mutation.tried import Finding, Score, Tried, scored
+from rvmon.cdv.mutation.tried import Finding, Missing, Score, Tried, missing, question, scored
 
 ALL = "all"
 

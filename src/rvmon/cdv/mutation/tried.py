@@ -1,16 +1,23 @@
-"""What became of a mutant: data."""
+"""What became of a mutant: a survivor as a question, and those that are declared equivalent.
+
+Source: Voas 1992, PIE: A Dynamic Failure-Based Technique (a fault is seen if it is executed,
+infects the state, and the infection propagates).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from pathlib import Path
 
+from rvmon.cdv.mutation.baseline import Difference, Recorded
 from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
-
-if TYPE_CHECKING:
-    from rvmon.cdv.mutation.record import Difference, Recorded
+from rvmon.diagnostics.text_file import text_of_file
+from rvmon.errors import RvmonError
+from rvmon.spec.checked.reads import names_of_requirement
+from rvmon.spec.checked.specification import CheckedSpec
 
 
 class How(StrEnum):
@@ -122,3 +129,123 @@ def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
         sum(one.killed_by_requirement for one in counted),
         sum(not one.reaching for one in counted),
     )
+
+
+class Missing(StrEnum):
+    """What may be missing where a mutant survives."""
+
+    REQUIREMENT = "requirement"
+    OBSERVATION = "observation"
+    STIMULUS = "stimulus"
+
+
+TITLES = {
+    Missing.REQUIREMENT: "The run differs, and no requirement fails: is a requirement missing?",
+    Missing.OBSERVATION: (
+        "It runs, and nothing that is recorded differs: is an observation missing, or a stimulus, "
+        "or is it equivalent?"
+    ),
+    Missing.STIMULUS: "No test runs it: is a stimulus missing?",
+}
+
+
+def missing(survivor: Tried) -> Missing:
+    """What may be missing where a mutant survives."""
+    if not survivor.reaching:
+        return Missing.STIMULUS
+    return Missing.OBSERVATION if survivor.difference is None else Missing.REQUIREMENT
+
+
+def readers(spec: CheckedSpec) -> dict[str, list[str]]:
+    """The requirements that read a signal or event, by its name."""
+    found: dict[str, list[str]] = {}
+    for requirement in spec.requirements.values():
+        for name in sorted(set(names_of_requirement(requirement))):
+            found.setdefault(name, []).append(requirement.id)
+    return found
+
+
+def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
+    """What a survivor asks, in a sentence.
+
+    Args:
+        survivor: a mutant that is not killed.
+        reading: as `readers` gives it.
+
+    >>> from dataclasses import dataclass, field
+    from pathlib import Path
+    >>> from rvmon.cdv.mutation.mutant import Mutant
+    >>> mutant = Mutant(Path("a.py"), 3, "constant", "x = 3", "x = 4", "x = 4")
+    >>> question(Tried(mutant, 2, 2, (), Difference("t", 1_500_000_000, "beep", "", "True")), {})
+    'in `t` the run differs at 1.5 s in `beep` (none → True), which no requirement reads'
+    """
+    if survivor.difference is not None:
+        return _differs(survivor.difference, reading)
+    if survivor.reaching == 1:
+        return "one test runs it, and nothing that is recorded differs"
+    if survivor.reaching:
+        return f"{survivor.reaching} tests run it, and nothing that is recorded differs"
+    return "no test runs it"
+
+
+def _differs(found: Difference, reading: Mapping[str, Sequence[str]]) -> str:
+    instant = f"{found.t_ns / 1e9:.9g} s"
+    if not found.name:
+        return f"in `{found.test}` the run ends at {instant}, and no requirement fails"
+    values = f"{found.was or 'none'} → {found.now or 'none'}"
+    text = f"in `{found.test}` the run differs at {instant} in `{found.name}` ({values}), which "
+    own = reading.get(found.name, ())
+    text += f"{', '.join(own)} read{'s' * (len(own) == 1)}" if own else "no requirement reads"
+    if found.verdicts:
+        changes = ", ".join(f"{name} {was} → {now}" for name, was, now in found.verdicts)
+        text += f"; verdicts differ, but none is a failure: {changes}"
+    return text
+
+
+def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
+    """Read the file: TOML, a table for each argument, with the changes by the mutants' identities.
+
+    Args:
+        path: of the file.
+        mutants: that there are.
+
+    Returns:
+        The argument for each, by identity.
+
+    Raises:
+        RvmonError: it cannot be read, names no mutant, or one that is another change by now.
+    """
+    try:
+        found = tomllib.loads(text_of_file(path))
+    except OSError as error:
+        raise RvmonError(f"{path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise RvmonError(f"{path}: not TOML: {error}") from None
+    known = {one.identity: one.brief for one in mutants}
+    arguments: dict[str, str] = {}
+    for name, entry in found.items():
+        match entry:
+            case {"because": str() as because, "mutants": dict() as changes, **rest} if (
+                because.strip() and not rest
+            ):
+                _refuse_others(path, changes, known)
+                arguments |= dict.fromkeys(changes, because)
+            case _:
+                raise RvmonError(
+                    f"{path}: `{name}` is to have an argument, `because`, and `mutants`: their "
+                    "changes by their names, as --list shows them"
+                )
+    return arguments
+
+
+def _refuse_others(
+    path: str | Path, changes: Mapping[str, object], known: Mapping[str, str]
+) -> None:
+    for name, change in changes.items():
+        if name not in known:
+            raise RvmonError(f"{path}: no mutant `{name}`: --list lists them")
+        if change != known[name]:
+            raise RvmonError(
+                f"{path}: `{name}` is by now another change, {known[name]}: look whether it is "
+                "equivalent, and correct the entry"
+            )

@@ -8,10 +8,10 @@ import msgspec
 import pytest
 
 from rvmon import cdv
+from rvmon.cdv.campaign import Closing, ClosingModel, Unreachable
 from rvmon.cdv.close import Budget, close
 from rvmon.cdv.close.witnesses import EDGES
-from rvmon.cdv.closing import Closing, ClosingModel, Unreachable
-from rvmon.cdv.files import TestError
+from rvmon.cdv.test import TestError
 from rvmon.coverage.record import Ending
 from rvmon.errors import ModelError, UnknownNameError
 from rvmon.timed.language.load import loads_network

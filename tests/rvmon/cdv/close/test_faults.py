@@ -8,9 +8,9 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.close import Budget, close
-from rvmon.cdv.close.document import closed_document
 from rvmon.cdv.close.faults import with_mutants
-from rvmon.cdv.documents import to_json
+from rvmon.cdv.close.outcome import closed_document
+from rvmon.cdv.tables import to_json
 from rvmon.errors import RvmonError
 
 CODE = """def limited(wanted):

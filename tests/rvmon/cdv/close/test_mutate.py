@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from rvmon import cdv
-from rvmon.cdv.close.learned import Learned
-from rvmon.cdv.close.mutate import Mutator
+from rvmon.cdv.close.vary_test import Learned, Mutator
 
 
 class Colour(enum.Enum):

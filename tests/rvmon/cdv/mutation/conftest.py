@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.mutant import Mutant
 from rvmon.cdv.mutation.play import play_mutants
-from rvmon.cdv.mutation.suite import record_suite
+from rvmon.cdv.mutation.python_mutants import code_mutants
 
 CODE = '''\
 TOP = 3

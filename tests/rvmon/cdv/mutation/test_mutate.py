@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 from tests.tools.looked_at import faults
 
-from rvmon.cdv.files import save
-from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.python_mutants import code_mutants
+from rvmon.cdv.test import save
 from rvmon.cli.campaign import main
 
 pytestmark = [

@@ -7,13 +7,12 @@ from functools import partial
 import pytest
 from tests.rvmon.cdv.mutation.conftest import lift_of
 
-from rvmon.cdv.mutation.find import code_mutants
+from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.mutant import HELD_OUT
-from rvmon.cdv.mutation.plant import plant
-from rvmon.cdv.mutation.question import Missing, missing
+from rvmon.cdv.mutation.play import plant
+from rvmon.cdv.mutation.python_mutants import code_mutants
 from rvmon.cdv.mutation.spec_mutants import spec_mutants, try_spec_mutants
-from rvmon.cdv.mutation.suite import record_suite
-from rvmon.cdv.mutation.tried import How, failing_runs, scored
+from rvmon.cdv.mutation.tried import How, Missing, failing_runs, missing, scored
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
 from rvmon.session import load

@@ -5,14 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from rvmon.cdv.mutation.equivalent import equivalents
+from rvmon.cdv.mutation.baseline import Difference
 from rvmon.cdv.mutation.mutant import HELD_OUT, Mutant
-from rvmon.cdv.mutation.page import mutation_page
-from rvmon.cdv.mutation.question import readers
-from rvmon.cdv.mutation.record import Difference
+from rvmon.cdv.mutation.output import mutation_page, report_text
 from rvmon.cdv.mutation.report import MutationReport, SuiteTried
-from rvmon.cdv.mutation.text import report_text
-from rvmon.cdv.mutation.tried import Finding, How, Tried
+from rvmon.cdv.mutation.tried import Finding, How, Tried, equivalents, readers
 from rvmon.errors import RvmonError
 from rvmon.session import loads
 

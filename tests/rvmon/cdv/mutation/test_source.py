@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.mutation.find import code_mutants
 from rvmon.cdv.mutation.mutant import THIRDS, third_of
-from rvmon.cdv.mutation.operators import OPERATORS
-from rvmon.cdv.mutation.source import mutants
+from rvmon.cdv.mutation.python_mutants import code_mutants, mutants
+from rvmon.cdv.mutation.python_operators import OPERATORS
 from rvmon.errors import RvmonError
 
 CHANGES = [

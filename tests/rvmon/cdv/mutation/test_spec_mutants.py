@@ -3,9 +3,8 @@
 import pytest
 
 from rvmon import load, loads
-from rvmon.cdv.mutation.record import Recorded
-from rvmon.cdv.mutation.spec_mutants import spec_mutants, try_spec_mutants
-from rvmon.cdv.mutation.spec_operators import SPEC_OPERATORS
+from rvmon.cdv.mutation.baseline import Recorded
+from rvmon.cdv.mutation.spec_mutants import SPEC_OPERATORS, spec_mutants, try_spec_mutants
 from rvmon.cdv.system import Run
 from rvmon.spec.print.printer import format_formula
 

@@ -1,37 +1,144 @@
-"""Write a campaign's page and the pages of its examples."""
+"""Tests played again for their pages; a campaign's page with them."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from rvmon.cdv.abstract_test import Test
 from rvmon.cdv.campaign import Campaign, Robot
-from rvmon.cdv.campaign_files import RUNS, SMALLEST, TESTS
-from rvmon.cdv.campaign_page import campaign_page
+from rvmon.cdv.campaign_page import Examples, campaign_page, comparable_jobs
 from rvmon.cdv.coverage import write_coverage
-from rvmon.cdv.examples import Examples, comparable_jobs
 from rvmon.cdv.gate import judge_test
-from rvmon.cdv.outcome import Outcome, Played, Results
-from rvmon.cdv.plan import Job
-from rvmon.cdv.play import player
-from rvmon.cdv.program import typed
-from rvmon.cdv.regression import regression_test, removed, save_regression, small_name
-from rvmon.cdv.run_pages import Replay, play_again, replay_page
-from rvmon.cdv.shrink import Shrunk, failure_of, shrink
+from rvmon.cdv.output import RUNS, SMALLEST, TESTS, typed
+from rvmon.cdv.plan import Job, Outcome, Played, Results
+from rvmon.cdv.play import outcome_of, player, run_of, system_of
+from rvmon.cdv.shrink import (
+    Shrunk,
+    failure_of,
+    regression_test,
+    removed,
+    save_regression,
+    shrink,
+    small_name,
+)
 from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.system import Checker, Observer, Run, Values
 from rvmon.cdv.tables import RobotTables
+from rvmon.cdv.test import Test
 from rvmon.execute import parallel
 from rvmon.report.folder import made
 from rvmon.report.markup import Child, e
-from rvmon.report.panels import JudgedRun
-from rvmon.session import load
+from rvmon.report.panels import JudgedRun, RunPage
+from rvmon.report.run_html import run_page
+from rvmon.session import Spec, load
+from rvmon.trace.sample import Sample
+from rvmon.verdict.report import Report
 from rvmon.verdict.verdict import Verdict
 from rvmon.writing import write_whole
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """A test that was played again.
+
+    Attributes:
+        test: that was played.
+        run: what the system reported of it at its end.
+        samples: that it reported before.
+        report: the verdicts.
+    """
+
+    test: Test
+    run: Run
+    samples: tuple[Sample, ...]
+    report: Report
+
+    @property
+    def outcome(self) -> Outcome:
+        """What a campaign keeps of the run; what it hit was not measured."""
+        return outcome_of(self.run, self.report)
+
+    @property
+    def judged(self) -> JudgedRun:
+        """The run as its page wants it."""
+        return JudgedRun(self.test.name, self.report, self.samples)
+
+
+def play_again(test: Test, name: str, robot: Robot, spec: Spec) -> Replay:
+    """Play one test in this process with its scene recorded: the run that the campaign had.
+
+    Args:
+        test: what is played.
+        name: of the robot.
+        robot: against which.
+        spec: what judges it.
+    """
+    checker = Checker(spec)
+    samples: list[Sample] = []
+
+    def note(t_ns: int, values: Values) -> None:
+        samples.append(Sample(t_ns, dict(values)))
+
+    observer = Observer((checker.observe, note), wants_scene=True)
+    run = run_of(system_of(name, robot), test, observer)
+    report = replace(checker.finish(run.end_ns), trace=test.name)
+    return Replay(test, run, tuple(samples), report)
+
+
+def replay_page(
+    replay: Replay,
+    robot: str,
+    spec: Spec,
+    *,
+    command: str,
+    others: Sequence[JudgedRun] = (),
+    back: str = "",
+    smallest: Child = None,
+) -> str:
+    """The page of one test.
+
+    Args:
+        replay: the test.
+        robot: its name.
+        spec: that judged it.
+        command: replays it.
+        others: runs that a failed attempt can be held against.
+        back: address of the campaign's page.
+        smallest: the smallest test that fails alike, or how to find it.
+    """
+    facts: list[tuple[str, Child]] = [*_facts(replay, robot, spec)]
+    if smallest is not None:
+        facts.append(("smallest test that fails alike", smallest))
+    return run_page(
+        RunPage(
+            run=replay.judged,
+            spec=spec.checked,
+            command=command,
+            others=others,
+            facts=facts,
+            scene=replay.run.scene,
+            back=back,
+        )
+    )
+
+
+def _facts(replay: Replay, robot: str, spec: Spec) -> list[tuple[str, str]]:
+    test = replay.test
+    facts = [("test", test.name)]
+    if test.text:
+        facts.append(("purpose", test.text))
+    facts += [("robot", robot), ("specification", spec.checked.name)]
+    if test.mutation is not None:
+        facts.append(("planted fault", test.mutation))
+    facts += [("seed", str(test.seed)), *replay.run.facts]
+    if replay.run.error is not None:
+        facts.append(("robot crashed", replay.run.error))
+    return facts
+
 
 REPORT = "report.html"
 

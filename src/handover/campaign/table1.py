@@ -1,0 +1,243 @@
+"""The paper's Table 1, ours beside it, what the model says, and how far counts vary with the seed.
+
+Source: D. Araiza-Illan, D. Western, A. Pipe, K. Eder, "Coverage-Driven Verification: An approach
+to verify code for robots that directly interact with humans", Haifa Verification Conference 2015,
+section 5, Table 1 (there the requirements are numbered 1 to 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import msgspec
+
+from rvmon.cdv import tables
+from rvmon.cdv.summary import CampaignSummary
+from rvmon.cdv.tables import RobotTables
+from rvmon.report.table import RunGroup, VerdictTable
+from rvmon.verdict.verdict import Verdict
+from rvmon.writing import write_whole
+
+SOURCE = "Araiza-Illan et al., Coverage-Driven Verification, HVC 2015, Table 1"
+
+_CHECKED = {"R1": True, "R2": True, "R3": True, "R4": True, "R5": None}
+
+_PSEUDORANDOM = {
+    "R1": (0, 0, 100, 0),
+    "R2": (33, 0, 67, 0),
+    "R3": (33, 0, 67, 0),
+    "R4": (98, 0, 0, 2),
+    "R5": (46, 0, 54, 0),
+}
+_CONSTRAINED = {
+    "R1": (0, 0, 100, 0),
+    "R2": (87, 0, 13, 0),
+    "R3": (87, 0, 13, 0),
+    "R4": (98, 0, 0, 2),
+    "R5": (93, 0, 7, 0),
+}
+_MODEL_BASED = {
+    "R1": (3, 0, 1, 0),
+    "R2": (1, 0, 3, 0),
+    "R3": (4, 0, 0, 0),
+    "R4": (4, 0, 0, 0),
+    "R5": (4, 0, 0, 0),
+}
+
+FITTED_BY_LOSS = {("constrained", "R5")}
+"""Cells that the fitted start-up loss reproduces by construction."""
+
+FITTED_BY_SLOWNESS = {("pseudorandom", "R4"), ("constrained", "R4")}
+"""Cells from which the slowness of polls was taken."""
+
+FITTED = FITTED_BY_LOSS | FITTED_BY_SLOWNESS
+"""Cells that are no evidence."""
+
+
+def paper_table() -> VerdictTable:
+    """The paper's table."""
+    published = {
+        "pseudorandom": _PSEUDORANDOM,
+        "constrained": _CONSTRAINED,
+        "model-based": _MODEL_BASED,
+    }
+    groups = tuple(
+        RunGroup(
+            name,
+            sum(rows["R1"]),
+            {
+                requirement: dict(zip(Verdict, row, strict=True))
+                for requirement, row in rows.items()
+            },
+        )
+        for name, rows in published.items()
+    )
+    return VerdictTable(
+        title="As published",
+        requirements=dict.fromkeys(_CHECKED, ""),
+        groups=groups,
+        checked=_CHECKED,
+        notes=(f"Source: {SOURCE}",),
+    )
+
+
+SPREAD_FILE = "spread.json"
+"""Beside this module; `python -m benchmarks.table1_bands --seeds 10 --write` writes it."""
+
+
+class Spread(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Counts over campaigns of 100 tests for each random strategy.
+
+    Attributes:
+        first: seed of the first campaign.
+        last: seed of the last campaign.
+        ranges: the least and the greatest count by strategy, requirement and verdict.
+    """
+
+    first: int
+    last: int
+    ranges: Mapping[str, Mapping[str, Mapping[str, tuple[int, int]]]]
+
+
+def spread() -> Spread:
+    """What was computed.
+
+    >>> spread().ranges["model-based"]["R1"]["P"]
+    (2, 3)
+    """
+    return msgspec.json.decode(_path().read_bytes(), type=Spread)
+
+
+def write_spread(found: Spread) -> None:
+    """Keep what was computed."""
+    write_whole(_path(), msgspec.json.encode(found) + b"\n")
+
+
+def spread_text() -> str:
+    """The counts of passed tests that vary with the seed, in a sentence."""
+    found = spread()
+    parts = []
+    for strategy, rows in found.ranges.items():
+        cells = [(name, *row["P"]) for name, row in rows.items()]
+        varying = [f"{name} {low}–{high}" for name, low, high in cells if low != high]
+        if varying:
+            parts.append(f"{strategy} {', '.join(varying)}")
+    return (
+        f"Over the seeds {found.first} to {found.last}, with 100 tests of each random strategy, P "
+        f"varies: {'; '.join(parts)} (python -m benchmarks.table1_bands)."
+    )
+
+
+def _path() -> Path:
+    return Path(__file__).with_name(SPREAD_FILE)
+
+
+@cache
+def check_model(requirements: tuple[str, ...]) -> dict[str, bool | None]:
+    """Ask the model checker for a run that shows each requirement, as the paper did.
+
+    Args:
+        requirements: ids; one that the model has no query for cannot be expressed: `None`.
+    """
+    from handover.model import handover_network
+    from rvmon.timed.search.verify import verify
+
+    network = handover_network()
+    queries = {query.id: query for query in network.queries}
+    return {
+        name: verify(network, queries[name]).holds if name in queries else None
+        for name in requirements
+    }
+
+
+WITNESSES = (
+    "Model-based tests follow a run of the model for each query: the likeliest by the "
+    "model's weights (model-based), the one with the fewest steps (model-based-shortest), "
+    "the one that takes the least time (model-based-fastest)."
+)
+
+
+def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
+    """The tables of each robot; the legacy one is that which the published table speaks of."""
+    shown = {}
+    checked = checked_of(summary)
+    for name, one in tables.robot_tables(summary).items():
+        notes = one.own.notes
+        if "model-based" in summary.robots[name].strategies:
+            notes = (*notes, WITNESSES)
+        own = replace(one.own, checked=checked, notes=notes)
+        control = one.control if name == "legacy" else None
+        if control is not None:
+            title = f"{summary.robots[name].title}, without the fitted loss of signals at start-up"
+            control = replace(control, title=title)
+        shown[name] = RobotTables(
+            own=own,
+            beside={"paper": paper_table()} if name == "legacy" else {},
+            control=control,
+            control_label="no fit",
+            control_title="The same without the fitted loss of signals",
+            sources=(f"paper: {SOURCE}", spread_text()) if name == "legacy" else (),
+            remark=_fitted(own, control) if control is not None else "",
+            witnesses={name: witness_test(name) for name, holds in checked.items() if holds},
+        )
+    return shown
+
+
+def witness_test(requirement: str) -> str:
+    """The name of the test that follows the likeliest witness of a requirement."""
+    return f"model-based-{requirement}"
+
+
+def checked_of(summary: CampaignSummary) -> dict[str, bool | None]:
+    """What model checking says by requirement, where tests were taken from the model."""
+    robots = summary.robots.values()
+    if not any("model-based" in robot.strategies for robot in robots):
+        return {}
+    return check_model(tuple(dict.fromkeys(id_ for robot in robots for id_ in robot.requirements)))
+
+
+def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
+    """Which cells were fitted, and what they are without the fit."""
+    shown = []
+    for strategy, requirement in sorted(FITTED_BY_LOSS):
+        with_fit, without = (_cell(one, strategy, requirement) for one in (table, unfitted))
+        if with_fit and without:
+            letters = "/".join(Verdict)
+            counts = f"{letters} {with_fit} with it, {without} without"
+            shown.append(f"{strategy} {requirement}, by the loss of signals at start-up ({counts})")
+    if not shown:
+        return ""
+    return (
+        f"Fitted to the paper's counts, and so no evidence: {'; '.join(shown)}; "
+        "R4, by the slowness of polls."
+    )
+
+
+def _cell(table: VerdictTable, strategy: str, requirement: str) -> str:
+    for group in table.groups:
+        counts = group.counts.get(requirement)
+        if group.name == strategy and counts is not None:
+            return "/".join(str(counts[verdict]) for verdict in Verdict)
+    return ""
+
+
+def table_document(summary: CampaignSummary) -> dict[str, object]:
+    """The content of `table.json`; all of it but `seconds` follows from the seed."""
+    checked = checked_of(summary)
+    more: dict[str, object] = {"model_checking": checked} if checked else {}
+    table = paper_table()
+    more["paper"] = {
+        "source": SOURCE,
+        "model_checking": table.checked,
+        "strategies": {
+            group.name: {
+                "tests": group.runs,
+                "requirements": tables.rows_document(group.counts),
+            }
+            for group in table.groups
+        },
+    }
+    return tables.table_document(summary, control_key="without_startup_loss", more=more)

@@ -1,0 +1,348 @@
+"""What tests reach of states, transitions and code, with coverage.py; as files for other tools.
+
+Sources: geninfo(1) of LCOV 2, section FILES; coverage-04.dtd of Cobertura.
+"""
+
+from __future__ import annotations
+
+import os
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import permutations
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+import rvmon
+from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.code import Code
+from rvmon.cdv.system import Run
+from rvmon.coverage.model import (
+    PAIRS,
+    STATES,
+    TRANSITIONS,
+    Group,
+    Hit,
+    Hits,
+    Item,
+    Model,
+    Subject,
+    count_of,
+    group_of,
+)
+from rvmon.errors import RvmonError, not_installed
+
+if TYPE_CHECKING:
+    from coverage import Coverage
+
+
+class Meter:
+    """One measurement for many tests, one after the other, each with its own context.
+
+    It is a context, to be entered again and again, which measures while it is entered.
+
+    Args:
+        code: what is measured.
+
+    Raises:
+        RvmonError: coverage.py is not installed.
+    """
+
+    def __init__(self, code: Code) -> None:
+        self._code = code
+        self._coverage = _coverage(code)
+        self._tests = 0
+
+    def begin(self) -> None:
+        """From now on, what runs belongs to a new test."""
+        self._tests += 1
+        self._coverage.start()
+        self._coverage.switch_context(str(self._tests))
+        self._coverage.stop()
+
+    def __enter__(self) -> None:
+        self._coverage.start()
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        place: TracebackType | None,
+    ) -> None:
+        self._coverage.stop()
+
+    def hits(self) -> dict[str, dict[str, Hit]]:
+        """The statements, and branches, that this test ran: by group of the model and item."""
+        data = self._coverage.get_data()
+        data.set_query_context(str(self._tests))
+        ran: dict[str, set[str]] = {}
+        for path in _paths(self._code):
+            ran[path] = {str(line) for line in data.lines(path) or ()}
+            if self._code.branches:
+                ran[path].update(self._files[path].branches_of(data.arcs(path) or ()))
+        found = {}
+        for group, path in self._groups:
+            items = {name: Hit(1) for name in group.items if name in ran[path]}
+            if items:
+                found[group.name] = items
+        return found
+
+    @cached_property
+    def _files(self) -> Mapping[str, _File]:
+        return {path: _File(self._coverage, path) for path in _paths(self._code)}
+
+    @cached_property
+    def _groups(self) -> list[tuple[Group, str]]:
+        return _groups(self._code, self._files)
+
+
+def code_groups(code: Code) -> list[Group]:
+    """What there is to be covered: statements of each block, and branches where it has some.
+
+    Args:
+        code: the blocks.
+
+    Raises:
+        RvmonError: coverage.py is not installed, or a file is no Python.
+    """
+    meter = _coverage(code)
+    files = {path: _File(meter, path) for path in _paths(code)}
+    return [group for group, _ in _groups(code, files)]
+
+
+def statements_name(block: str) -> str:
+    """The name of the group of a block's statements."""
+    return f"statements of {block}"
+
+
+def branches_name(block: str) -> str:
+    """The name of the group of a block's branches."""
+    return f"branches of {block}"
+
+
+def _groups(code: Code, files: Mapping[str, _File]) -> list[tuple[Group, str]]:
+    """The groups with the path of each."""
+    groups = []
+    for block in code.blocks:
+        file = files[block.path]
+        items = [
+            Item(str(line), text=file.text(line)) for line in sorted(file.statements & block.lines)
+        ]
+        group = group_of(statements_name(block.name), Subject.STATEMENTS, items)
+        groups.append((group, block.path))
+        if code.branches:
+            items = [
+                Item(_arc(*arc), text=" → ".join(map(file.text, arc)))
+                for arc in sorted(file.branches)
+                if arc[0] in block.lines
+            ]
+            if items:
+                group = group_of(branches_name(block.name), Subject.BRANCHES, items)
+                groups.append((group, block.path))
+    return groups
+
+
+class _File:
+    """What coverage.py says of a file: its statements, and the ways on from those with several."""
+
+    def __init__(self, meter: Coverage, path: str) -> None:
+        from coverage.exceptions import CoverageException
+        from coverage.python import PythonFileReporter
+
+        self._reporter = PythonFileReporter(path, meter)
+        try:
+            self.statements = frozenset(self._reporter.lines())
+            self._branching = {
+                line for line, exits in self._reporter.exit_counts().items() if exits > 1
+            }
+            possible = self._reporter.arcs()
+            self._lines = self._reporter.source().splitlines()
+        except (CoverageException, OSError) as error:
+            raise RvmonError(f"{path}: its code cannot be measured: {error}") from None
+        self.branches = {arc for arc in possible if arc[0] in self._branching}
+
+    def text(self, line: int) -> str:
+        """A line as it is written; the way out of a function has no line."""
+        return self._lines[line - 1].strip() if line > 0 else "exit"
+
+    def branches_of(self, arcs: object) -> set[str]:
+        """The names of the branches among the ways that were gone."""
+        gone = self._reporter.translate_arcs(arcs)  # type: ignore[arg-type]
+        return {_arc(*arc) for arc in gone if arc in self.branches}
+
+
+def _arc(first: int, last: int) -> str:
+    return f"{first} → {last if last > 0 else 'exit'}"
+
+
+def _paths(code: Code) -> list[str]:
+    return list(dict.fromkeys(block.path for block in code.blocks))
+
+
+def _coverage(code: Code) -> Coverage:
+    """A fresh measurement of the files, kept in memory, whatever the user's settings."""
+    try:
+        from coverage import Coverage
+    except ImportError:
+        raise not_installed("a campaign that measures code", "coverage") from None
+    paths = _paths(code)
+    meter = Coverage(data_file=None, config_file=False, include=paths, branch=code.branches)
+    meter.set_option("run:core", "ctrace")  # the newer core knows no contexts
+    meter.set_option("run:disable_warnings", ["no-data-collected"])
+    return meter
+
+
+_ARROW = " → "
+
+
+def measured_groups(campaign: Campaign) -> list[Group]:
+    """What there is to be covered; a group of which nothing is declared has no items.
+
+    Raises:
+        RvmonError: code is measured, and coverage.py is not installed, or a file is no Python.
+    """
+    declared = campaign.transitions
+    transitions = permutations(campaign.states, 2) if declared is None else declared
+    return [
+        group_of(STATES, Subject.STATES, [*map(Item, campaign.states)]),
+        group_of(TRANSITIONS, Subject.TRANSITIONS, [Item(_ARROW.join(one)) for one in transitions]),
+        group_of(PAIRS, Subject.TRANSITIONS, [*map(Item, _pairs(declared or ()))]),
+        *(code_groups(campaign.code) if campaign.code is not None else ()),
+    ]
+
+
+def _pairs(transitions: Sequence[tuple[str, str]]) -> list[str]:
+    """Two transitions one after the other."""
+    return [
+        _ARROW.join((*first, second[1]))
+        for first in transitions
+        for second in transitions
+        if first[1] == second[0]
+    ]
+
+
+def source_and_target(transition: str) -> tuple[str, str]:
+    """The states of a transition, from its name."""
+    source, _, target = transition.partition(_ARROW)
+    return source, target
+
+
+def hits_of_states(run: Run) -> dict[str, Mapping[str, Hit]]:
+    """How often each state was entered and each transition taken, and when first."""
+    names = [state for _, state in run.states]
+    found = {STATES: _counted(run.states)}
+    for group, length in ((TRANSITIONS, 2), (PAIRS, 3)):
+        found[group] = _counted(
+            (t_ns, _ARROW.join(names[end - length : end]))
+            for end, (t_ns, _) in enumerate(run.states, start=1)
+            if end >= length
+        )
+    return {group: items for group, items in found.items() if items}
+
+
+def _counted(happened: Iterable[tuple[int, str]]) -> dict[str, Hit]:
+    hits: dict[str, Hit] = {}
+    for t_ns, name in happened:
+        known = hits.get(name)
+        hits[name] = Hit(1, t_ns) if known is None else Hit(known.count + 1, known.first)
+    return hits
+
+
+@dataclass(slots=True)
+class _Counts:
+    """Tests that ran each line, and that went each way on from a line with several."""
+
+    lines: dict[int, int] = field(default_factory=dict)
+    ways: dict[int, list[int]] = field(default_factory=dict)
+
+
+def lcov(code: Code, model: Model, hits: Hits) -> str:
+    """The blocks of code as an LCOV tracefile; a count is the number of tests.
+
+    Args:
+        code: that was measured.
+        model: with its statements and branches; those without a goal are left out.
+        hits: of all tests.
+    """
+    lines = []
+    for path, file in _counts_by_path(code, model, hits).items():
+        lines += ["TN:", f"SF:{path}"]
+        for line, ways in file.ways.items():
+            ran = file.lines.get(line, 0)
+            lines += [
+                f"BRDA:{line},0,{number},{taken if ran else '-'}"
+                for number, taken in enumerate(ways)
+            ]
+        branches = [taken for ways in file.ways.values() for taken in ways]
+        lines += [f"BRF:{len(branches)}", f"BRH:{sum(map(bool, branches))}"]
+        lines += [f"DA:{line},{count}" for line, count in file.lines.items()]
+        lines += [f"LF:{len(file.lines)}", f"LH:{sum(map(bool, file.lines.values()))}"]
+        lines.append("end_of_record")
+    return "\n".join(lines) + "\n"
+
+
+def cobertura(code: Code, model: Model, hits: Hits) -> str:
+    """The same as Cobertura's XML.
+
+    Args:
+        code: that was measured.
+        model: with its statements and branches; those without a goal are left out.
+        hits: of all tests.
+    """
+    files = _counts_by_path(code, model, hits)
+    root = ET.Element("coverage", _rates([*files.values()], whole=True))
+    root.set("version", rvmon.__version__)
+    root.set("timestamp", "0")
+    ET.SubElement(ET.SubElement(root, "sources"), "source").text = "."
+    packages = ET.SubElement(root, "packages")
+    package = ET.SubElement(packages, "package", {"name": "."} | _rates([*files.values()]))
+    classes = ET.SubElement(package, "classes")
+    for path, file in files.items():
+        names = {"name": Path(path).stem, "filename": path}
+        one = ET.SubElement(classes, "class", names | _rates([file]))
+        ET.SubElement(one, "methods")
+        lines = ET.SubElement(one, "lines")
+        for line, count in file.lines.items():
+            about = {"number": str(line), "hits": str(count)}
+            if ways := file.ways.get(line):
+                taken = sum(map(bool, ways))
+                share = f"{100 * taken // len(ways)}% ({taken}/{len(ways)})"
+                about |= {"branch": "true", "condition-coverage": share}
+            ET.SubElement(lines, "line", about)
+    ET.indent(root)
+    head = (
+        '<?xml version="1.0" ?>\n<!DOCTYPE coverage SYSTEM '
+        '"http://cobertura.sourceforge.net/xml/coverage-04.dtd">\n'
+    )
+    return head + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _counts_by_path(code: Code, model: Model, hits: Hits) -> Mapping[str, _Counts]:
+    """By path, as people would write it here."""
+    files: dict[str, _Counts] = {}
+    for block in code.blocks:
+        path = os.path.relpath(block.path)
+        file = files.setdefault(path, _Counts())
+        for name, item in model.goals_of(statements_name(block.name)):
+            file.lines[int(item)] = count_of(hits, name, item)
+        for name, item in model.goals_of(branches_name(block.name)):
+            line = int(item.partition(_ARROW)[0])
+            file.ways.setdefault(line, []).append(count_of(hits, name, item))
+    return {
+        path: _Counts(dict(sorted(file.lines.items())), dict(sorted(file.ways.items())))
+        for path, file in sorted(files.items())
+    }
+
+
+def _rates(files: Sequence[_Counts], *, whole: bool = False) -> dict[str, str]:
+    lines = [count for file in files for count in file.lines.values()]
+    branches = [taken for file in files for ways in file.ways.values() for taken in ways]
+    rates = {"complexity": "0"}
+    for what, word, counts in (("line", "lines", lines), ("branch", "branches", branches)):
+        covered = sum(map(bool, counts))
+        rates[f"{what}-rate"] = f"{covered / len(counts) if counts else 1:.4g}"
+        if whole:
+            rates |= {f"{word}-covered": str(covered), f"{word}-valid": str(len(counts))}
+    return rates

@@ -1,0 +1,303 @@
+"""A suite played on the code as it is, with all that is recorded: what mutants are held against."""
+
+from __future__ import annotations
+
+import time
+from bisect import bisect_right
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+from rvmon.cdv.campaign import Campaign, Robot
+from rvmon.cdv.code import Code
+from rvmon.cdv.code_coverage import Meter, code_groups, statements_name
+from rvmon.cdv.mutation.mutant import Mutant
+from rvmon.cdv.play import run_of, system_of
+from rvmon.cdv.system import Checker, Observer, Run, System, Values
+from rvmon.cdv.test import Test
+from rvmon.coverage.model import Subject
+from rvmon.errors import RvmonError
+from rvmon.execute import parallel
+from rvmon.execute.ended import Ended
+from rvmon.session import Spec, load
+from rvmon.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """A test that was played.
+
+    Attributes:
+        verdicts: by requirement.
+        run: what the system reported at its end.
+        samples: instants, and what changed or occurred.
+        lines: of each file of the code under test, the statements that ran; where it was measured.
+        cpu_s: processor time of this process that it took.
+    """
+
+    verdicts: Mapping[str, Verdict]
+    run: Run
+    samples: tuple[tuple[int, Values], ...]
+    lines: Mapping[str, frozenset[int]]
+    cpu_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """Where a run first differs from that of the code as it is.
+
+    Attributes:
+        test: that was played.
+        t_ns: the instant; of a difference at the end of the run, that.
+        name: the signal or event; `state`: of the robot; empty: the run's end itself.
+        was: its value; empty: none.
+        now: its value with the change; empty: none.
+        verdicts: requirements that are judged otherwise, none of them F: verdicts before and after.
+    """
+
+    test: str
+    t_ns: int
+    name: str
+    was: str
+    now: str
+    verdicts: tuple[tuple[str, str, str], ...] = ()
+
+
+class Recorder:
+    """Plays tests in this process.
+
+    Args:
+        system: that plays them.
+        checker: that judges them.
+        code: whose statements are measured; `None`: none.
+    """
+
+    def __init__(self, system: System[Test], checker: Checker, code: Code | None = None) -> None:
+        self._system = system
+        self._checker = checker
+        self._code = code
+        self._meter = None if code is None else Meter(code)
+
+    def play(self, test: Test) -> Recorded:
+        """Play a test; whatever its code raises is its result."""
+        samples: list[tuple[int, Values]] = []
+        self._checker.begin()
+        if self._meter is not None:
+            self._meter.begin()
+        observer = Observer(
+            (self._checker.observe, lambda t_ns, values: samples.append((t_ns, dict(values)))),
+            code=self._meter,
+        )
+        begun = time.process_time()
+        if self._meter is not None and self._code is not None and not self._code.marked:
+            with self._meter:
+                run = run_of(self._system, test, observer)
+        else:
+            run = run_of(self._system, test, observer)
+        taken = time.process_time() - begun
+        verdicts = self._checker.finish(run.end_ns).verdicts
+        return Recorded(verdicts, run, tuple(samples), self._lines(), taken)
+
+    def _lines(self) -> dict[str, frozenset[int]]:
+        if self._meter is None or self._code is None:
+            return {}
+        hits = self._meter.hits()
+        lines: dict[str, frozenset[int]] = {}
+        for block in self._code.blocks:
+            ran = frozenset(map(int, hits.get(statements_name(block.name), ())))
+            lines[block.path] = lines.get(block.path, frozenset()) | ran
+        return lines
+
+
+def difference(test: str, was: Recorded, now: Recorded) -> Difference | None:
+    """Where two runs of a test first differ in what is recorded; `None`: nowhere."""
+    verdicts = tuple(
+        (name, verdict.value, now.verdicts[name].value)
+        for name, verdict in was.verdicts.items()
+        if now.verdicts[name] is not verdict
+    )
+    places = [
+        place
+        for place in (
+            _of_samples(was.samples, now.samples),
+            _of_samples(_states(was), _states(now)),
+            None if was.run.end_ns == now.run.end_ns else (now.run.end_ns, "", "", ""),
+        )
+        if place is not None
+    ]
+    if not places:
+        return None
+    return Difference(test, *min(places, key=lambda place: place[0]), verdicts)
+
+
+def _states(one: Recorded) -> tuple[tuple[int, Values], ...]:
+    return tuple((t_ns, {"state": state}) for t_ns, state in one.run.states)
+
+
+def _of_samples(
+    was: tuple[tuple[int, Values], ...], now: tuple[tuple[int, Values], ...]
+) -> tuple[int, str, str, str] | None:
+    for (t_was, values_was), (t_now, values_now) in zip(was, now, strict=False):
+        if t_was < t_now:
+            return _first(t_was, values_was, {})
+        if t_now < t_was:
+            return _first(t_now, {}, values_now)
+        if found := _first(t_was, values_was, values_now):
+            return found
+    if len(was) > len(now):
+        t_ns, values = was[len(now)]
+        return _first(t_ns, values, {})
+    if len(now) > len(was):
+        t_ns, values = now[len(was)]
+        return _first(t_ns, {}, values)
+    return None
+
+
+def _first(t_ns: int, was: Values, now: Values) -> tuple[int, str, str, str] | None:
+    for name in {**was, **now}:
+        before, after = _as_text(was, name), _as_text(now, name)
+        if before != after:
+            return t_ns, name, before, after
+    return None
+
+
+def _as_text(values: Values, name: str) -> str:
+    """A value as text, all digits of it; NaN is as NaN."""
+    if name not in values:
+        return ""
+    value = values[name]
+    return "unknown" if value is None else str(value)
+
+
+Progress = Callable[[int], None]
+"""Called with the number of those that are done."""
+
+
+@dataclass(frozen=True)
+class Suite:
+    """A robot, and tests that were played on it.
+
+    Attributes:
+        name: of the robot.
+        robot: itself.
+        spec: its requirements.
+        code: its code.
+        tests: by name, those that completed.
+        recorded: their runs.
+        left_out: tests that are of no use here, and why.
+    """
+
+    name: str
+    robot: Robot
+    spec: Spec
+    code: Code
+    tests: Mapping[str, Test]
+    recorded: Mapping[str, Recorded]
+    left_out: Mapping[str, str]
+
+    def reaching(self, mutant: Mutant) -> list[str]:
+        """The tests that run the changed statement; of a constant all, as nothing runs it.
+
+        Args:
+            mutant: of one of the files of the code.
+        """
+        path = str(mutant.path)
+        if mutant.function in self.code.constants.get(path, ()):
+            return list(self.tests)
+        statements = self._statements[path]
+        own = statements[bisect_right(statements, mutant.line) - 1]
+        return [name for name, one in self.recorded.items() if own in one.lines[path]]
+
+    @cached_property
+    def _statements(self) -> dict[str, list[int]]:
+        """The first lines of the statements of each file, ascending."""
+        groups = [one for one in code_groups(self.code) if one.subject is Subject.STATEMENTS]
+        found: dict[str, list[int]] = {}
+        for block, group in zip(self.code.blocks, groups, strict=True):
+            found.setdefault(block.path, []).extend(map(int, group.items))
+        return {path: sorted(lines) for path, lines in found.items()}
+
+
+def mutated_code(campaign: Campaign) -> Code:
+    """The code of a campaign that is to be mutated.
+
+    Raises:
+        RvmonError: it names none.
+    """
+    if campaign.code is None:
+        raise RvmonError(f"campaign `{campaign.name}` names no code: give it `code` to be mutated")
+    return campaign.code
+
+
+def mutated_spec(campaign: Campaign, robot: str) -> Spec:
+    """The requirements of a robot.
+
+    Raises:
+        RvmonError: it has none, or they are wrong.
+    """
+    path = campaign.robots[robot].spec
+    if path is None:
+        raise RvmonError(f"robot `{robot}` has no requirements: name some by --spec")
+    return load(path)
+
+
+def record_suite(
+    campaign: Campaign,
+    robot: str,
+    tests: Sequence[Test],
+    *,
+    jobs: int,
+    progress: Progress | None = None,
+) -> Suite:
+    """Play tests on a robot as it is.
+
+    Args:
+        campaign: that they are of.
+        robot: its name.
+        tests: of the suite; those that are for another robot, or plant a fault of their own, are
+            passed over.
+        jobs: processes.
+        progress: called as each test is played.
+
+    Raises:
+        RvmonError: the campaign measures no code, the robot has no requirements, or no test is
+            left.
+    """
+    under_test = campaign.robots[robot]
+    code = mutated_code(campaign)
+    spec = mutated_spec(campaign, robot)
+    own = [one for one in tests if one.mutation is None and one.robot in (None, robot)]
+    recorded: dict[str, Recorded] = {}
+    left_out: dict[str, str] = {}
+    with closing(
+        parallel.execute(
+            own,
+            partial(_begin, robot, under_test, spec, code),
+            jobs=jobs,
+            what="test",
+            instead=_ended,
+            timeout_s=campaign.timeout_s,
+        )
+    ) as results:
+        for number, (test, result) in enumerate(zip(own, results, strict=True), start=1):
+            if isinstance(result, Recorded) and result.run.error is None:
+                recorded[test.name] = result
+            else:
+                error = result.run.error if isinstance(result, Recorded) else result
+                left_out[test.name] = error or ""
+            if progress is not None:
+                progress(number)
+    if not recorded:
+        why = next(iter(left_out.values()), "it has no test for this robot without a planted fault")
+        raise RvmonError(f"the suite has no result for robot `{robot}`: {why}")
+    used = {one.name: one for one in own if one.name in recorded}
+    return Suite(robot, under_test, spec, code, used, recorded, left_out)
+
+
+def _begin(name: str, robot: Robot, spec: Spec, code: Code) -> Callable[[Test], Recorded | str]:
+    return Recorder(system_of(name, robot), Checker(spec), code).play
+
+
+def _ended(_: Test, ended: Ended) -> Recorded | str:
+    return ended.why
