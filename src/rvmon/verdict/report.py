@@ -45,8 +45,9 @@ class Report:
         illegal: what was hit of coverpoints and crosses and must not be; where somebody looked.
         coverage: what was hit of them and what not; where somebody looked.
         law: version of the law that judged; a report that was kept may be of an older one.
-        dropped: by requirement, how many of its attempts were not kept, by verdict; verdicts and
-            counts speak of them as well.
+        dropped: by requirement, how many of its attempts were not kept, by verdict: with `keep`,
+            or failures that only time brought, thousands in one silence. Verdicts and counts speak
+            of them as well; no count is above 4,294,967,295.
     """
 
     verdicts: Mapping[str, Verdict]

@@ -127,6 +127,7 @@ typedef struct {
     int64_t position;          /* that its attempts have come to */
     int64_t lag;               /* what is decided so long before it is due is still to be found */
     int64_t failed_at;         /* when the attempt of the episode that runs did */
+    int64_t again_at;          /* when the last one began that followed such a failure */
     networks *net;
     chain *chain;
     queue *queue;              /* NULL: its attempts are driven one by one */
@@ -254,6 +255,8 @@ struct run {
         int64_t awaited;       /* the tick of a clock that what was taken belongs to; or the position
                                 * at which names are lost */
         int64_t ends_at;       /* a position behind which some are known to be found */
+        int64_t quiet_from;    /* between these nothing comes that is not there yet */
+        int64_t quiet_until;
         int32_t lost_count;    /* names of which something is lost */
         int32_t fading_count;
         int32_t fresh_count;

@@ -81,6 +81,7 @@ static void call_up(run *r, int64_t t)
 static void start(run *r, int64_t t)
 {
     r->at.started = true;
+    r->at.quiet_until = -LIMIT;
     r->at.starting = IS_TRUE;
     r->at.origin = t;
     r->at.begun = t;
@@ -135,7 +136,8 @@ void have_judged(run *r, int64_t t)
     if (r->failing_count > 0) {
         for (i = 0; i < r->failing_count; i++) {
             const int32_t index = r->failing[i];
-            if (may_go_on(r, index) && (r->judges[index].failed_at < t)) {
+            if (may_go_on(r, index) && (r->judges[index].failed_at < t)
+                && !passes_repeats_over(r, index, t)) {
                 begin_here(r, index, t, t);
             }
         }
@@ -234,6 +236,8 @@ void through(run *r, int64_t limit, bool comes)
     const bool restarts = r->part->restarts && (gap > 0);
     int64_t position;
     int32_t i;
+    r->at.quiet_from = r->at.position;
+    r->at.quiet_until = limit;
     for (;;) {
         int64_t until;
         int64_t stop;
@@ -261,6 +265,7 @@ void through(run *r, int64_t limit, bool comes)
         }
         visit(r, position);
     }
+    r->at.quiet_until = -LIMIT;
     set_alarm(r, position);
 }
 

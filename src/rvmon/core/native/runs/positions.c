@@ -1,6 +1,8 @@
 /* Which positions something can change at without a further sample. */
+#include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "runs/runs.h"
+#include "windows/windows.h"
 
 /* The smallest multiple of `step` from `start` on that is not before `t`. */
 static int64_t position_from(int64_t start, int64_t step, int64_t t)
@@ -37,6 +39,53 @@ void tidy_failing(run *r)
         }
     }
     r->failing_count = kept;
+}
+
+/* In one silence, so many failures that follow each other by time alone are told one by one; beyond
+ * them, and but for the last two, they are counted. It bounds what a stamp that leaps by years costs:
+ * `always within 3 s e` fails 500 million times in fifty years. */
+enum { REPEATS_TOLD = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
+
+/* Whether all that the attempts of a run read stays as it is while nothing comes, but for timers. */
+static bool is_silent(const run *r)
+{
+    return (GAP(r) > 0) && (r->part->plan->captured == 0) && (r->margins == NULL)
+           && (r->at.presence == ARE_THERE) && (r->at.fading_count + r->at.fresh_count == 0)
+           && !r->opening && !r->stays_busy;
+}
+
+/* Count what an episode would do again and again before something comes, if that is often, in place
+ * of doing it; false if another attempt is to begin at `t`.
+ *
+ * The one that would begin at `t` finds what the last one found, which began in the same silence: no
+ * attempt is open, and nothing that is read changes before the next timer. So it fails after the same
+ * time, and so on. Records and numbers have 32 bits: the counts stay below that. */
+bool passes_repeats_over(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    const int64_t before = j->again_at;
+    const int64_t period = t - before;
+    const int64_t silent = r->at.quiet_from;
+    int64_t until = least(r->at.quiet_until, least(timers_next(&r->wake), r->at.ends_at) - 1);
+    int64_t many;
+    int64_t counted;
+    j->again_at = t;
+    if ((before <= silent) || has_attempts(j) || watches(r, index) || !is_sure(r, index)
+        || !is_silent(r)) {
+        return false;
+    }
+    until = (r->cut < NEVER) ? t : until;
+    many = (until - t) / period - REPEATS_LEFT;
+    if ((many <= REPEATS_TOLD) || ((t - silent) / period < REPEATS_TOLD)) {
+        return false;
+    }
+    counted = least(many, (int64_t)(UINT32_MAX - COUNTS_LEFT) - (int64_t)j->count);
+    counted = (counted > 0) ? counted : 0;
+    j->count += (uint32_t)counted;
+    j->failed += (uint32_t)counted;
+    j->failed_at += many * period;
+    j->again_at = t + (many - 1) * period;
+    return true;
 }
 
 /* The next position at which an attempt may follow a failure though nothing changes. */

@@ -284,6 +284,7 @@ void clear_judges(run *r)
         r->judges[i].undecidable = -1;
         r->judges[i].current = -1;
         r->judges[i].failed_at = NEVER;
+        r->judges[i].again_at = -LIMIT;
     }
     for (i = 0; i < p->nodes.count; i++) {
         const list links = r->part->nodes[i].links;

@@ -13,6 +13,7 @@ bool distribute(rv_monitor *m, const rv_update *updates, int32_t count);
 int64_t tick_from(int64_t gap, int64_t t);
 bool may_go_on(const run *r, int32_t index);
 void tidy_failing(run *r);
+bool passes_repeats_over(run *r, int32_t index, int64_t t);
 int64_t next_start(const run *r);
 int64_t next_position(const run *r);
 void set_alarm(run *r, int64_t position);

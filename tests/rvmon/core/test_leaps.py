@@ -1,0 +1,67 @@
+"""What time alone decides again and again while nothing comes: counted, not told one by one."""
+
+import pytest
+
+import rvmon
+
+STEP = 50
+"""Seconds: so often one of both monitors is told that time passes, and the other never."""
+
+TOLD = 990
+"""At least so many failures of one silence are told one by one before the last two."""
+
+FORMS = {
+    "automaton": "always within 3 s hb",
+    "bound": "always within 3 s (hb or p)",
+    "past": "always ((within 1 s p) or (once[0, 2 s] hb))",
+    "past of the trigger": "whenever once[0, 9000 s] hb then within 3 s p",
+    "window": "always within 1 s for 1 s p",
+    "window that opens later": "whenever not p then F[1 s, 2 s] hb",
+    "windows": "always (within 2 s (hb and within 5 s p))",
+    "network": "always (within 1 s (hb and (once[0, 3 s] p) and within 2 s q))",
+    "network that looks back": "always (within 2 s once[0, 1 s] (p and within 1 s hb))",
+}
+
+
+def spec_of(form, time="held"):
+    """A specification with two requirements, of which one repeats itself more often."""
+    return rvmon.loads(
+        f"spec s\ntime {time}\nevent hb\nsignal p : bool\nsignal q : bool\n"
+        f"requirement R1\n  {form}\nrequirement R2\n  always within 7 s q\n"
+    )
+
+
+def run(spec, leap, *, in_steps):
+    """A silence between two samples, at once or in steps."""
+    monitor = spec.monitor()
+    monitor.step(0, {"hb": True, "p": False, "q": False})
+    for t in range(STEP, leap, STEP) if in_steps else ():
+        monitor.advance(t)
+    monitor.step(leap, {"hb": True, "q": True})
+    return monitor.finish(leap + 1)
+
+
+@pytest.mark.parametrize("time", ["held", "sampled every 500 ms"])
+@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
+def test_what_is_counted_is_what_would_be_told(form, time):
+    """Verdicts and counts are the same, and so are the first records and the last ones."""
+    spec = spec_of(form, time)
+    told, counted = (run(spec, 10_000, in_steps=steps) for steps in (True, False))
+    assert not told.dropped
+    assert told.verdicts == counted.verdicts
+    assert told.counts == counted.counts
+    for name in told.verdicts:
+        all_, some = ([a for a in r.attempts if a.requirement == name] for r in (told, counted))
+        assert all_[:TOLD] == some[:TOLD]
+        assert all_[-2:] == some[-2:]
+        assert [a.reason for a in all_[-2:]] == [a.reason for a in some[-2:]]
+        assert len(some) == len(all_) - sum(counted.dropped.get(name, {}).values())
+
+
+def test_a_stamp_that_leaps_by_years_is_told_in_bounded_memory():
+    """Of more failures than a count has room for, those are counted that have."""
+    report = run(spec_of("always within 100 ms hb"), 1_700_000_000, in_steps=False)
+    assert report.verdicts["R1"] == "F"
+    assert len(report.attempts) < 4 * TOLD
+    assert 240_000_000 < report.counts["R2"]["F"] < 1_700_000_000 / 7
+    assert 2**32 - 2**17 < report.counts["R1"]["F"] < 2**32
