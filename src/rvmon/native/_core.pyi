@@ -31,7 +31,7 @@ class Monitor:
         absent: of each name whether it has no source.
         look_closer: take the samples that are not plain values in a `dict`, at seconds, at ticks.
         attempts: the type, which derives from `Record`, ids of requirements, verdicts, decisions,
-            what gives an attempt its other fields.
+            what gives an attempt its other fields, what makes a sequence of raw records.
 
     Raises:
         ValueError: the plan is damaged, or all this does not fit it.
@@ -49,6 +49,7 @@ class Monitor:
             tuple[Any, ...],
             tuple[Any, ...],
             Callable[[Attempt, Any], Mapping[str, Any]],
+            Callable[[Any], Sequence[Attempt]] | None,
         ],
         /,
     ) -> Monitor: ...

@@ -159,8 +159,9 @@ class FedMonitor(ABC, Generic[T]):
         step: a function that takes one sample: its time in seconds, and values by name; otherwise
             as `step_ns`.
         step_ns: the same at ticks, later than all samples before; it returns what the sample
-            decided. The values are what was updated or occurred: signals by value, `None` or NaN if
-            it became unknown; events `True`, or their payload. It raises `TimeOrderError` if the
+            decided, of more than 4,096 attempts a sequence that makes each as it is read. The
+            values are what was updated or occurred: signals by value, `None` or NaN if it became
+            unknown; events `True`, or their payload. It raises `TimeOrderError` if the
             time is not later, or an `advance` ruled it out; `TraceError` for a name or a value that
             the specification does not know, or a time that is no whole number; `OverlapError` if
             another call is under way. In all cases the monitor is as it was.

@@ -47,7 +47,7 @@ class Monitor(FedMonitor[Attempt]):
         self._planned = planned
         declared = frozenset((*checked.signals, *checked.events))
         self._absent = frozenset() if sources is None else declared - sources
-        self._core = planned.monitor(self._absent, self._take_at, self._look_closer)
+        self._core = planned.monitor(self._absent, self._take_at, self._look_closer, self._many)
         if options.keep is not None:
             self._core.keep(options.keep)
         self._listeners = Listeners()
@@ -91,6 +91,11 @@ class Monitor(FedMonitor[Attempt]):
     def _look_closer(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         """Take a sample that the core has left; who called it reports what that decides."""
         return self._one_call(self._step, t_ns, values)
+
+    def _many(self, raw: tuple[bytes, bytes, bytes, Any]) -> Sequence[Attempt]:
+        from rvmon.monitor.core.recorded import recorded  # NumPy is needed for so many alone
+
+        return recorded(self._planned, raw)
 
     def _step(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
         t_ns = self._taken_time(t_ns)

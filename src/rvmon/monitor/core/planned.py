@@ -143,6 +143,7 @@ class PlannedCore:
         absent: frozenset[str],
         look_closer: Callable[[float, Mapping[str, Any]], Sequence[Any]] | None = None,
         look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Any]] | None = None,
+        many: Callable[[Any], Sequence[Attempt]] | None = None,
     ) -> native.Monitor:
         """Begin a run.
 
@@ -150,6 +151,8 @@ class PlannedCore:
             absent: the names without a source.
             look_closer: judges the samples that are not plain values in a `dict`, at seconds.
             look_closer_ns: the same at ticks.
+            many: makes a sequence of raw records, where thousands are decided at once; see
+                `rvmon.monitor.core.recorded.recorded`.
         """
         coming = {name: number for name, number in self.numbers.items() if name not in absent}
         attempts = (
@@ -158,6 +161,7 @@ class PlannedCore:
             VERDICTS,
             DECISIONS,
             self._details,
+            many,
         )
         return native.Monitor(
             self.packed.data,

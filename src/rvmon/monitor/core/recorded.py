@@ -119,6 +119,22 @@ def _number_of(number: Any) -> float | None:
     return float(number["bits"].view(np.float64)) if kind == _REAL else None
 
 
+def recorded(planned: PlannedCore, raw: tuple[bytes, bytes, bytes, Any]) -> RecordedAttempts:
+    """The decided attempts among records, in their order.
+
+    Args:
+        planned: the plan that judged.
+        raw: of a run of the core: the records, what they captured, their notes, letters.
+    """
+    records, numbers, words, letters = raw
+    made = np.frombuffer(records, RECORD)
+    captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
+    settled = made["decision"] != _OPEN
+    if not settled.all():
+        made, captured = made[settled], captured[settled]
+    return RecordedAttempts(planned, made, captured, (words, letters))
+
+
 def report_of_run(
     planned: PlannedCore, run: native.Monitor, origin: int, end: int | None
 ) -> Report:

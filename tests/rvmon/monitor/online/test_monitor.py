@@ -160,3 +160,46 @@ def test_what_has_no_automaton_is_judged():
     monitor.step_ns(0, {"a": True})
     monitor.step_ns(1, {"a": True})
     assert brief(monitor.step_ns(99, {})) == [("R", 1, "F", 91)]
+
+
+MANY = """
+spec many
+event go(id: int)
+event stop
+signal p : bool
+requirement R
+  upon go
+  then within 1000 s p
+requirement K
+  upon go.id == i
+  then within 1000 s p
+  for each i in go.id
+"""
+
+
+@pytest.mark.parametrize("keep", [None, 3])
+def test_what_is_decided_together_is_made_as_it_is_read(keep):
+    """More attempts than a call makes itself: all are told once, as few would be."""
+    spec = rvmon.loads(MANY)
+    count = 5_000
+    monitor, heard = spec.monitor(keep=keep), []
+    monitor.step_ns(0, {"p": False})
+    for t in range(1, count + 1):
+        monitor.step_ns(t, {"go": {"id": t}})
+    stop = monitor.on_decided(heard.append)
+    decided = monitor.step_ns(count + 1, {"p": True})
+    stop()
+    assert len(decided) == 2 * count
+    assert not isinstance(decided, tuple)
+    assert [a.name for a in decided] == [a.name for a in heard]
+    assert {a.verdict for a in decided} == {"P"}
+    last = decided[-1]
+    assert last.captured == {"i": count}
+    assert last.reason.startswith("`p` was true at")
+    assert decided[:2] == [decided[0], decided[1]]
+    report = monitor.finish()
+    assert report.counts["K"]["P"] == count
+    if keep is None:
+        assert list(report.attempts) == sorted(
+            decided, key=lambda a: (a.decided, a.requirement != "R", a.number)
+        )

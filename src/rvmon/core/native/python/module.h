@@ -104,10 +104,15 @@ typedef struct {
     PyObject *verdicts;
     PyObject *decisions;
     PyObject *details;         /* gives an attempt its other fields */
+    PyObject *many;            /* makes a sequence of records that makes attempts as they are read; or None */
     note_cache notes;
     int64_t keep;              /* so many records of each kind are kept; -1: all */
     struct figures *figures;   /* what figures are made of; NULL: steps give attempts */
 } monitor;
+
+/* So many attempts a call makes itself; of more it gives a sequence that makes each as it is read, so
+ * that what a million cost is bounded by what of them is looked at. */
+enum { MOST_AT_ONCE = 4096 };
 
 /* Records, each with room for as many captured values as any has. They are copies: what is made of
  * them may set off the collector, and that anything, such as steps of this very monitor. */
@@ -186,6 +191,7 @@ PyObject *keep_of(monitor *c, PyObject *most);
 PyObject *flush_of(monitor *c, PyObject *unused);
 PyObject *open_of(monitor *c, PyObject *unused);
 PyObject *records_of(monitor *c, PyObject *unused);
+PyObject *records_from(const monitor *c, int64_t first);
 PyObject *counts_of(monitor *c, PyObject *unused);
 PyObject *stale_of(monitor *c, PyObject *unused);
 

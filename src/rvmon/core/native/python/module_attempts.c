@@ -180,9 +180,17 @@ PyObject *decided_since(monitor *c)
         return PyTuple_New(0); /* always the same one */
     }
     c->given = count;
-    begin_gathering(&g, c);
-    gather_records(c, first, false, &g);
-    made = attempts_of(&g);
+    if ((count - first > MOST_AT_ONCE) && (c->many != Py_None)) {
+        PyObject *raw = records_from(c, first);
+        PyObject *given = (raw == NULL) ? NULL : PyTuple_Pack(1, raw);
+        made = (given == NULL) ? NULL : PyObject_Call(c->many, given, NULL);
+        Py_XDECREF(given);
+        Py_XDECREF(raw);
+    } else {
+        begin_gathering(&g, c);
+        gather_records(c, first, false, &g);
+        made = attempts_of(&g);
+    }
     trim_given(c);
     return made;
 }

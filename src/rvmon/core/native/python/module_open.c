@@ -72,7 +72,7 @@ static bool set_absent(const monitor *c, PyObject *absent)
 }
 
 /* Monitor(plan, (numbers, words, kinds, single), absent, (look_closer, look_closer_ns),
- *         (attempt, ids, verdicts, decisions, details)) */
+ *         (attempt, ids, verdicts, decisions, details, many)) */
 PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
 {
     PyObject *data;
@@ -86,12 +86,12 @@ PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused)
     if (c == NULL) {
         return NULL;
     }
-    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!O)", &PyBytes_Type, &data,
+    if (PyArg_ParseTuple(args, "O!(O!O!O!O!)O!(OO)(O!O!O!O!OO)", &PyBytes_Type, &data,
                          &PyDict_Type, &numbers, &PyTuple_Type, &words, &PyBytes_Type, &kinds,
                          &PyBytes_Type, &single, &PyBytes_Type, &absent, &c->look_closer,
                          &c->look_closer_ns, &PyType_Type, &c->attempt,
                          &PyTuple_Type, &c->ids, &PyTuple_Type, &c->verdicts, &PyTuple_Type,
-                         &c->decisions, &c->details)) {
+                         &c->decisions, &c->details, &c->many)) {
         c->owner = Py_NewRef(args);
         c->keep = -1;
         if (open_plan(c, data) && make_intake(&c->in, c->m, numbers, words, kinds, single)

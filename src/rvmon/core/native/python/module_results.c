@@ -85,14 +85,14 @@ static PyObject *spans_of(const monitor *c)
     return made;
 }
 
-/* All records as bytes, and as many captured values for each of them as any has; the words of notes, and
- * the letters that they refer to. */
-PyObject *records_of(monitor *c, PyObject *unused)
+/* The records from `first` on as bytes, and as many captured values for each of them as any has; the
+ * words of all notes, and the letters that they refer to. */
+PyObject *records_from(const monitor *c, int64_t first)
 {
     const rv_record *records;
-    const int64_t count = rv_records(c->m, &records);
+    const int64_t count = rv_records(c->m, &records) - first;
     const Py_ssize_t most = (Py_ssize_t)c->sizes.captured;
-    PyObject *one = PyBytes_FromStringAndSize((const char *)records,
+    PyObject *one = PyBytes_FromStringAndSize((const char *)&records[first],
                                               (Py_ssize_t)count * (Py_ssize_t)sizeof *records);
     PyObject *other = PyBytes_FromStringAndSize(
         NULL, (Py_ssize_t)count * most * (Py_ssize_t)sizeof(rv_number));
@@ -101,13 +101,13 @@ PyObject *records_of(monitor *c, PyObject *unused)
     PyObject *notes = bytes_of_words(words, word_count);
     PyObject *spans = spans_of(c);
     PyObject *made = NULL;
-    (void)unused;
     if ((one != NULL) && (other != NULL) && (notes != NULL) && (spans != NULL)) {
         rv_number *to = (rv_number *)(void *)PyBytes_AsString(other);
         int64_t i;
         (void)memset(to, 0, (size_t)PyBytes_Size(other));
         for (i = 0; i < count; i++) {
-            copy_captured(c, &records[i], rv_captured(c->m, &records[i]), &to[i * most]);
+            const rv_record *record = &records[first + i];
+            copy_captured(c, record, rv_captured(c->m, record), &to[i * most]);
         }
         made = PyTuple_Pack(4, one, other, notes, spans);
     }
@@ -116,6 +116,12 @@ PyObject *records_of(monitor *c, PyObject *unused)
     Py_XDECREF(one);
     Py_XDECREF(other);
     return made;
+}
+
+PyObject *records_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return records_from(c, 0);
 }
 
 /* How many attempts of each requirement failed, passed, and stayed open, and whether its trigger was
