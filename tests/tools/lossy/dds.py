@@ -53,7 +53,8 @@ class _Talker:
     def __init__(self, number: int, trial: Trial, mouth: _Mouth) -> None:
         self.trial, self.samples = trial, trial.case.samples
         spec = trial.case.spec
-        topics = {n: f"/r{number}/{n}" for n in (*spec.signals, *spec.events)}
+        home = f"/p{os.getpid()}r{number}"  # two processes may come to share a domain
+        topics = {n: f"{home}/{n}" for n in (*spec.signals, *spec.events)}
         reading = trial.spec.reading(columns=topics)
         self.clock = SimulatedClock(self.samples[0].t)
         self.driver = Driver(reading, clock=self.clock, sources=trial.case.names)
