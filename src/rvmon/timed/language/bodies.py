@@ -52,7 +52,8 @@ def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expr
         ModelError: it speaks of clocks or runs.
     """
     value = resolver.expression(written, scope)
-    if not is_discrete(value):
+    diagonals = resolver.diagonals
+    if not is_discrete(value) or (diagonals is not None and diagonals.are_read(value)):
         fix = "set variables by numbers and variables only"
         raise model_error("TA009", "a clock's state is written to a variable", written.span, fix)
     return value

@@ -10,6 +10,7 @@ from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.timed.language import syntax
 from rvmon.timed.language.automata import automaton_of, location_names
 from rvmon.timed.language.declare import Findings, Parts, declare
+from rvmon.timed.language.diagonals import Diagonals
 from rvmon.timed.language.document import Document, SignalText
 from rvmon.timed.language.functions import Functions
 from rvmon.timed.language.instantiate import processes_of
@@ -52,7 +53,8 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     findings, parts = Findings(), Parts()
     document = _with_constants(document, constants or {}, findings)
     functions = Functions(parts.variables)
-    resolver = Resolver(functions, open_ints=document.open_ints)
+    diagonals = Diagonals(parts.clocks, parts.variables)
+    resolver = Resolver(functions, open_ints=document.open_ints, diagonals=diagonals)
     top = Scope()
     declare(document.declarations, top, parts, resolver, findings)
     automata, edges = list[Automaton](), 0
@@ -75,14 +77,21 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     # Without all automata, which is an error itself, queries have no meaning.
     complete = bool(symbols) and not findings.has("TA019")
     queries = _queries(
-        document.queries if complete else (), names, findings, lenient=document.open_ints
+        document.queries if complete else (),
+        names,
+        findings,
+        diagonals,
+        lenient=document.open_ints,
     )
     signals = _signals(document.signals if complete else (), names, findings)
     _check_channels(parts, automata, findings)
     findings.raise_errors()
     with findings.collect():
-        automata = list(without_lower_bounds(automata, parts.channels))
+        automata = list(diagonals.kept_up(without_lower_bounds(automata, parts.channels)))
     findings.raise_errors()
+    if sum(len(automaton.edges) for automaton in automata) > MAX_EDGES:
+        fix = "compare fewer differences of clocks"
+        raise model_error("TA019", f"more than {MAX_EDGES:,} edges", None, fix)
     return Network(
         document.name,
         document.title,
@@ -95,6 +104,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
         signals,
         tuple(findings.found.values()),
         names,
+        has_diagonals=bool(diagonals.places),
     )
 
 
@@ -132,10 +142,15 @@ def query_on(network: Network, text: str) -> Query:
 
 
 def _queries(
-    written: Iterable[syntax.QueryText], names: Names, findings: Findings, *, lenient: bool = False
+    written: Iterable[syntax.QueryText],
+    names: Names,
+    findings: Findings,
+    diagonals: Diagonals | None = None,
+    *,
+    lenient: bool = False,
 ) -> tuple[Query, ...]:
     """The queries that have a meaning; if `lenient`, one that has none is only left out."""
-    resolver, top = Resolver(names.functions, names.automata), names.top
+    resolver, top = Resolver(names.functions, names.automata, diagonals=diagonals), names.top
     queries, ids = [], Scope()
     for query in written:
         own = Findings()

@@ -10,6 +10,7 @@ from rvmon.diagnostics import Span
 from rvmon.diagnostics.nearest import did_you_mean
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
+from rvmon.timed.language.diagonals import Diagonals, terms_of
 from rvmon.timed.language.foreign import REAL_FUNCTIONS, type_reason
 from rvmon.timed.language.layout import MAX_VALUES, Calls, values_of
 from rvmon.timed.language.linear import LINEAR_WORDS, linear_of
@@ -68,12 +69,14 @@ class Resolver:
         functions: those that can be called.
         automata: by name and arguments; only queries can see them.
         open_ints: whether `int` without a range is allowed.
+        diagonals: what differences of clocks become; `None` where they may not be compared.
         unrolled: conditions that quantifiers stood for so far.
     """
 
     functions: Calls
     automata: Mapping[AutomatonKey, AutomatonSymbol] = field(default_factory=dict)
     open_ints: bool = False
+    diagonals: Diagonals | None = None
     unrolled: int = 0
 
     def expression(self, written: syntax.Expression, scope: Scope) -> Expression:
@@ -297,18 +300,38 @@ class Resolver:
                 return None
 
     def _clock_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
-        _refuse_difference(self, written, scope)
-        left, right = self.clock(written.left, scope), self.clock(written.right, scope)
-        if left is not None and right is not None:
-            fix = "compare each clock with a number; a clock reset with the one can stand for it"
-            raise model_error("TA008", "two clocks are compared", written.span, fix)
-        if left is not None:
-            bound = self.expression(written.right, scope)
-            return compare_clock(left, written.op, bound, written.span)
-        if right is not None:
-            op = MIRRORED[written.op]
-            return compare_clock(right, op, self.expression(written.left, scope), written.span)
-        return None
+        """A comparison in which clocks stand; `None` if none does."""
+        terms = [*terms_of(written.left), *terms_of(written.right, -1)]
+        named = [(sign, part, self.clock(part, scope)) for sign, part in terms]
+        clocks = sorted((sign, clock) for sign, _, clock in named if clock is not None)
+        op, span = written.op, written.span
+        match clocks:
+            case []:
+                return None
+            case [(sign, clock)] if any(
+                part in (written.left, written.right) for _, part, its in named if its is not None
+            ):
+                bound = self.expression(written.right if sign > 0 else written.left, scope)
+                return compare_clock(clock, op if sign > 0 else MIRRORED[op], bound, span)
+        number = -sum(
+            sign * self.constant(part, scope) for sign, part, clock in named if clock is None
+        )
+        match clocks:
+            case [(1, clock)]:
+                return compare_clock(clock, op, Constant(number), span)
+            case [(-1, clock)]:
+                return compare_clock(clock, MIRRORED[op], Constant(-number), span)
+            case [(-1, second), (1, first)] if first != second:
+                if self.diagonals is None:
+                    fix = (
+                        "write it as a query into the model, where edges can be made to keep it up"
+                    )
+                    message = "two clocks are compared in a query on a model that is already read"
+                    raise model_error("TA008", message, span, fix)
+                return self.diagonals.compare(first, second, op, number, span)
+            case _:
+                fix = "compare one clock, or the difference of two, with a number"
+                raise model_error("TA008", "a sum of clocks is compared", span, fix)
 
     def _whole_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
         """Records or arrays compared element by element."""
@@ -365,15 +388,6 @@ class Resolver:
             )
             raise model_error("TA002", f"no automaton `{span.text}`", span, fix)
         return self.automata[key]
-
-
-def _refuse_difference(resolver: Resolver, written: syntax.Binary, scope: Scope) -> None:
-    for side in (written.left, written.right):
-        if not isinstance(side, syntax.Binary) or side.op not in (BinaryOp.SUB, BinaryOp.ADD):
-            continue
-        if any(resolver.clock(part, scope) is not None for part in (side.left, side.right)):
-            fix = "diagonal constraints are not supported: compare each clock with a number"
-            raise model_error("TA008", "a difference or sum of clocks", written.span, fix)
 
 
 def _no_value(span: Span) -> ModelError:

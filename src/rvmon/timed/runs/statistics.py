@@ -80,6 +80,10 @@ def sample(
         ModelError: the query cannot be judged on one run, or the network cannot start.
     """
     check_start(network)
+    if network.has_diagonals:
+        fix = "compare clocks with numbers, or ask whether it can happen: E<> p"
+        message = "the odds of edges that set clocks whose difference is compared are not known"
+        raise model_error("TA020", message, query.span, fix)
     random = Random(seed)  # noqa: S311 - repeatable, not secret
     match query.formula:
         case Chance() as chance:
