@@ -33,7 +33,10 @@ def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
     Raises:
         Refusal: the property is not in the fragment; which part and why is in the message.
     """
-    return _Linear(place, time).of(property_.formula, True)
+    try:
+        return _Linear(place, time).of(property_.formula, True)
+    except Refusal as refusal:
+        raise _not_for_models(refusal, property_) from None
 
 
 def shown_form(property_: Property, place: Span, time: TimeModel) -> Formula:
@@ -48,8 +51,17 @@ def shown_form(property_: Property, place: Span, time: TimeModel) -> Formula:
     except Refusal as refusal:
         if any(isinstance(part, ModelAtom) for part in _parts(property_.formula)):
             raise
-        raise Refusal(rules.not_shown(property_.span or place)) from refusal
+        not_shown = Refusal(rules.not_shown(property_.span or place))
+        raise _not_for_models(not_shown, property_) from refusal
     return Unary(UnaryOp.NOT, formula, None, property_.span)
+
+
+def _not_for_models(refusal: Refusal, property_: Property) -> Refusal:
+    """The refusal, which sends nobody to `rvmon verify` with what that refuses, too."""
+    for part in _parts(property_.formula):
+        if isinstance(part, PathUnary | PathBinary) and part.interval and part.interval.low > 0:
+            return Refusal(rules.not_for_models(refusal.finding, "a window that opens later"))
+    return refusal
 
 
 def _parts(state: StateFormula) -> Iterator[StateFormula]:

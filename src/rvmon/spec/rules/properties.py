@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from rvmon.diagnostics.diagnostic import Diagnostic, Severity
 from rvmon.diagnostics.span import Span
@@ -85,6 +86,16 @@ not_shown = Breach(
     "`{}` is shown by no single run",
     "as a goal take `E<> φ` or `E[φ U ψ]`; or check it with `rvmon verify`",
 )
+
+
+def not_for_models(found: Diagnostic, what: str) -> Diagnostic:
+    """The same finding, where the way out is not the model checker either."""
+    if found.code != NOT_LINEAR.code or "rvmon verify" not in found.help:
+        return found
+    fix = f"write it for one run; `rvmon verify` does not decide {what} either"
+    return replace(found, help=fix)
+
+
 not_of_a_goal = Breach(
     NOT_LINEAR,
     "`{}` means nothing for `monitor as cover`: a goal has no attempts",

@@ -72,6 +72,15 @@ def test_the_rest_is_refused_with_the_reason(text):
     assert REFUSED[text] in finding.message
 
 
+@pytest.mark.parametrize("text", ["AF[2 s, 5 s] AG a", "AG EF[1 s, 2 s] a", "E<>[1 s, 2 s] AG a"])
+def test_nobody_is_sent_to_a_checker_that_refuses_it(text):
+    """`rvmon verify` knows no windows that open later."""
+    with pytest.raises(SpecError) as raised:
+        parts(text)
+    [finding] = raised.value.diagnostics
+    assert finding.help.endswith("does not decide a window that opens later either")
+
+
 def test_there_has_to_be_a_property():
     """`monitor as written` without one says what to add."""
     with pytest.raises(SpecError, match="add a clause `property"):
