@@ -42,7 +42,7 @@ from rvmon.timed.model.scope import (
 MAX_FINDINGS = 100
 """Behind so many, nothing more is looked for."""
 
-MAX_CLOCKS = 999
+MAX_CLOCKS = 4_999
 """The most clocks of a network: a zone has the square of it in numbers."""
 
 MAX_PARTS = 100_000

@@ -99,6 +99,10 @@ class StatementBuilder(Transformer[Token, Any]):
         target, sign, value = items
         span = self._span(meta)
         before: tuple[syntax.Statement, ...] = ()
+        behind: tuple[syntax.Statement, ...] = ()
+        if is_rule(target, "stepped"):  # a[i++] = v: i counts on behind
+            base, index, step = target.children
+            target, behind = syntax.Index(base, index, span), (self.step(meta, (index, step)),)
         if isinstance(value, tuple):  # a = b = c: first b is set, then a to what b has then
             before, value = value, value[-1].target
         elif isinstance(value, syntax.UpdateText):
@@ -106,7 +110,7 @@ class StatementBuilder(Transformer[Token, Any]):
         if sign not in (":=", "="):
             value = syntax.Binary(BinaryOp(sign[:-1]), target, value, span)
         update = syntax.UpdateText(target, value, span)
-        return (*before, update) if before else update
+        return (*before, update, *behind) if before or behind else update
 
     def step(self, meta: Meta, items: Sequence[Any]) -> syntax.UpdateText:
         target, sign = items if items[1] in ("++", "--") else reversed(items)

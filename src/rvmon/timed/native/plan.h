@@ -98,7 +98,7 @@ enum {
     OPS
 };
 
-#define MOST_CLOCKS 1000
+#define MOST_CLOCKS 5000 /* a zone of so many has 100 MB */
 #define MOST_TREE_ROWS 1000
 #define MOST_PIECES 4000
 #define MOST_SETS 28

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
-from math import inf, log
+from math import log
 
 from rvmon.timed.model.expressions import (
     TRUE,
@@ -26,11 +26,11 @@ from rvmon.timed.search.linear import WayState
 from rvmon.timed.search.outcome import Policy
 from rvmon.timed.search.programs import Programs
 from rvmon.timed.search.sought import Seek, Sought
-from rvmon.timed.zones.clock_bounds import ClockBounds, compared_bounds, location_bounds
+from rvmon.timed.zones.clock_bounds import ClockBounds, location_bounds
 from rvmon.timed.zones.zone_unions import MOST_PIECES, Alternative, alternatives_of, together
 
 MAGIC = 0x5A4E3031
-MOST_CLOCKS = 1000
+MOST_CLOCKS = 5000
 MOST_TREE_ROWS = 1000
 LARGEST = (1 << 31) - 2
 _OPS = {ClockOp.LT: 0, ClockOp.LE: 1, ClockOp.GE: 2, ClockOp.GT: 3}
@@ -180,7 +180,9 @@ class Plan:
     def _extra(self, sought: Sought, timer: int) -> list[int]:
         """What the query compares clocks with, wherever the automata are."""
         everywhere = self._asked.get(None, {}).get(0, [])
-        rows = _limit_rows(compared_bounds(self._network, everywhere))
+        bounds = ClockBounds()
+        bounds.note(everywhere, self._network)
+        rows = _limit_rows(bounds)
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             rows += [timer, 0, sought.bound]
         return rows
@@ -265,9 +267,9 @@ def _way_rows(states: Iterable[WayState]) -> list[int]:
 
 
 def _limit_rows(bounds: ClockBounds) -> list[int]:
-    rows: list[int] = []
-    for clock, (low, high) in enumerate(zip(bounds.lower, bounds.upper, strict=True), start=1):
-        for is_lower, number in ((1, low), (0, high)):
-            if number > -inf:
-                rows += [clock, is_lower, int(min(number, LARGEST))]
-    return rows
+    return [
+        number
+        for is_lower, table in ((1, bounds.lower), (0, bounds.upper))
+        for clock, limit in table.items()
+        for number in (clock + 1, is_lower, min(limit, LARGEST))
+    ]

@@ -8,8 +8,7 @@ Abstractions of Timed Automata, 2006.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from math import inf
+from dataclasses import dataclass, field
 
 from rvmon.timed.model.expressions import (
     BinaryOperation,
@@ -28,20 +27,33 @@ from rvmon.timed.model.expressions import (
 from rvmon.timed.model.network import Automaton, Edge, Network
 from rvmon.timed.model.operators import BinaryOp, UnaryOp
 
+Limits = dict[int, int]
+"""For each clock that is compared the largest number; others are compared with none."""
+
 
 @dataclass(frozen=True, slots=True)
 class ClockBounds:
-    """For each clock the largest number in a lower and in an upper bound; −inf if there is none."""
+    """The numbers in lower and in upper bounds."""
 
-    lower: tuple[float, ...]
-    upper: tuple[float, ...]
+    lower: Limits = field(default_factory=dict)
+    upper: Limits = field(default_factory=dict)
+
+    def note(self, compares: Iterable[ClockCompare], network: Network) -> None:
+        """Add the numbers of some comparisons."""
+        for compare in compares:
+            table = self.lower if compare.op in (ClockOp.GE, ClockOp.GT) else self.upper
+            highest = value_range(compare.bound, network)[1]
+            table[compare.clock] = max(table.get(compare.clock, 0), highest)
 
 
-def joined(several: Sequence[ClockBounds]) -> ClockBounds:
-    """The largest of some, at least one, clock by clock."""
-    lower, upper = zip(*((one.lower, one.upper) for one in several), strict=True)
-    largest = (tuple(map(max, *side)) if len(side) > 1 else side[0] for side in (lower, upper))
-    return ClockBounds(*largest)
+def joined(several: Iterable[ClockBounds]) -> ClockBounds:
+    """The largest numbers of some, clock by clock."""
+    made = ClockBounds()
+    for one in several:
+        for table, own in ((made.lower, one.lower), (made.upper, one.upper)):
+            for clock, number in own.items():
+                table[clock] = max(table.get(clock, 0), number)
+    return made
 
 
 def location_bounds(
@@ -56,52 +68,33 @@ def location_bounds(
         automaton: whose bounds.
         asked: by location, what a query compares clocks with only while the automaton is there.
     """
-    clocks = len(network.clocks)
-    lower = [[-inf] * clocks for _ in automaton.locations]
-    upper = [[-inf] * clocks for _ in automaton.locations]
+    bounds = [ClockBounds() for _ in automaton.locations]
     for index, location in enumerate(automaton.locations):
-        here = (*location.invariant.clocks, *(asked or {}).get(index, ()))
-        _note(here, lower[index], upper[index], network)
-    kept: list[tuple[int, int, list[int]]] = []
+        bounds[index].note((*location.invariant.clocks, *(asked or {}).get(index, ())), network)
+    resets = []
     for edge in automaton.edges:
-        _note(edge.guard.clocks, lower[edge.source], upper[edge.source], network)
+        own = bounds[edge.source]
+        own.note(edge.guard.clocks, network)
         if _is_kept_back(edge, network):  # who is kept back, counts the other way round
-            _note(edge.guard.clocks, upper[edge.source], lower[edge.source], network)
-        resets = {update.clock for update in edge.updates if isinstance(update, Reset)}
-        kept.append((edge.source, edge.target, [c for c in range(clocks) if c not in resets]))
+            ClockBounds(own.upper, own.lower).note(edge.guard.clocks, network)
+        resets.append({update.clock for update in edge.updates if isinstance(update, Reset)})
     changed = True
     while changed:
         changed = False
-        for source, target, clocks_kept in kept:
-            for table in (lower, upper):
-                for clock in clocks_kept:
-                    if table[target][clock] > table[source][clock]:
-                        table[source][clock] = table[target][clock]
+        for edge, gone in zip(automaton.edges, resets, strict=True):
+            source, target = bounds[edge.source], bounds[edge.target]
+            for here, behind in ((source.lower, target.lower), (source.upper, target.upper)):
+                for clock, number in list(behind.items()):
+                    if clock not in gone and number > here.get(clock, -1):
+                        here[clock] = number
                         changed = True
-    return [ClockBounds(tuple(low), tuple(high)) for low, high in zip(lower, upper, strict=True)]
+    return bounds
 
 
 def _is_kept_back(edge: Edge, network: Network) -> bool:
     """Whether an edge has no part in a move because its guard on clocks fails."""
     sync = edge.sync
     return sync is not None and not sync.sends and network.channels[sync.slot.first].broadcast
-
-
-def compared_bounds(network: Network, compares: Iterable[ClockCompare]) -> ClockBounds:
-    """The bounds that some comparisons alone need."""
-    clocks = len(network.clocks)
-    lower, upper = [-inf] * clocks, [-inf] * clocks
-    _note(compares, lower, upper, network)
-    return ClockBounds(tuple(lower), tuple(upper))
-
-
-def _note(
-    compares: Iterable[ClockCompare], lower: list[float], upper: list[float], network: Network
-) -> None:
-    for compare in compares:
-        table = lower if compare.op in (ClockOp.GE, ClockOp.GT) else upper
-        highest = value_range(compare.bound, network)[1]
-        table[compare.clock] = max(table[compare.clock], float(max(highest, 0)))
 
 
 def value_range(expression: Expression, network: Network) -> tuple[int, int]:

@@ -136,7 +136,7 @@ class Space:
         committed = frozenset(i for i, kind in enumerate(kinds) if kind is LocationKind.COMMITTED)
         leaving = [self._edges[i][place] for i, place in enumerate(locations)]
         invariants = [self._invariants[i][place] for i, place in enumerate(locations)]
-        bounds = joined([self._bounds[i][place] for i, place in enumerate(locations)])
+        bounds = joined(self._bounds[i][place] for i, place in enumerate(locations))
         candidates = list(self._candidates(locations, leaving))
         broadcasts = list(self._broadcasts(leaving))
         urgent = [c for c in candidates if self._is_urgent(c.edges[0])] + [
@@ -153,16 +153,8 @@ class Space:
             tuple(urgent),
             tuple(data for data, _ in invariants if data is not None),
             tuple(atoms for _, atoms in invariants),
-            (
-                (0, 0.0),
-                *((c + 1, -u) for c, u in enumerate(bounds.upper) if u > -inf),
-                *self._uppers,
-            ),
-            (
-                (0, 0.0),
-                *((c + 1, low) for c, low in enumerate(bounds.lower) if low > -inf),
-                *self._lowers,
-            ),
+            ((0, 0.0), *((c + 1, -float(u)) for c, u in bounds.upper.items()), *self._uppers),
+            ((0, 0.0), *((c + 1, float(low)) for c, low in bounds.lower.items()), *self._lowers),
         )
         self._vectors[locations] = vector
         return vector

@@ -54,7 +54,8 @@ def check_start(network: Network) -> None:
     Raises:
         ModelError: an invariant forbids it.
     """
-    if not any(Steps(network).start()):
+    state = Space(network).initial()
+    if state is None or any(bound < 0 for _, bound in state.invariant):
         places = [a.locations[a.initial] for a in network.automata]
         spans = [place.span for place in places if place.span is not None]
         span, others = (spans[0] if spans else None), [Label(other) for other in spans[1:]]

@@ -17,7 +17,7 @@ A = "automaton A { location a start a } "
         ("unit " + "9" * 5000 + " ms " + A, "TA007", "the number is too large"),
         ("clock x[99999999999] " + A, "TA007", "the number is too large"),
         ("clock x[2000000000] " + A, "TA019", "an array of more than"),
-        ("clock x[1000] " + A, "TA019", "more than 999 clocks"),
+        ("clock x[5000] " + A, "TA019", "more than 4,999 clocks"),
         (" ".join(f"bool a{i}[10000]" for i in range(11)) + " " + A, "TA019", "variables"),
         (" ".join(f"chan a{i}[10000]" for i in range(11)) + " " + A, "TA019", "channels"),
         (
