@@ -13,7 +13,8 @@ from rvmon.timed.language.declare import Findings, Parts
 from rvmon.timed.language.instantiate import Process
 from rvmon.timed.language.layout import MAX_VALUES, refuse_double, values_of
 from rvmon.timed.language.resolve import Resolver
-from rvmon.timed.model.guards import refuse_changes, split_guard
+from rvmon.timed.model.expressions import Expression
+from rvmon.timed.model.guards import guards_of, refuse_changes, split_guard
 from rvmon.timed.model.network import (
     Automaton,
     Channel,
@@ -28,6 +29,9 @@ from rvmon.timed.model.scope import (
     ConstantSymbol,
     Scope,
 )
+
+MAX_CASES = 16
+"""The most cases of a guard in which clocks stand under `or`: each is an edge."""
 
 
 def location_names(template: syntax.Template, findings: Findings) -> dict[str, int]:
@@ -56,7 +60,8 @@ def automaton_of(
         invariant = Guard()
         with findings.collect():
             if written.invariant is not None:
-                invariant = _guard(written.invariant, scope, resolver)
+                condition = _condition(written.invariant, scope, resolver)
+                invariant = split_guard(condition, written.invariant.span)
         locations.append(Location(written.name, written.kind, invariant, written.span))
     edges: list[Edge] = []
     for edge in template.edges:
@@ -81,10 +86,10 @@ def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
     return names[name.name]
 
 
-def _guard(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Guard:
+def _condition(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
     condition = resolver.expression(written, scope)
     refuse_changes(condition, written.span)
-    return split_guard(condition, written.span)
+    return condition
 
 
 def _edges(
@@ -94,7 +99,7 @@ def _edges(
     parts: Parts,
     resolver: Resolver,
 ) -> Iterator[Edge]:
-    """One edge for each choice of the selected values."""
+    """One edge for each choice of the selected values, and each case of a guard with clocks."""
     source, target = _location(written.source, names), _location(written.target, names)
     ranges, selected_names = [], Scope()
     for selection in written.selections:
@@ -109,20 +114,26 @@ def _edges(
             for selection, value in zip(written.selections, chosen, strict=True)
         }
         inner = scope.inner(selected) if selected else scope
-        guard = Guard()
+        guards = [Guard()]
         if written.guard is not None:
-            guard = _guard(written.guard, inner, resolver)
+            guards = guards_of(_condition(written.guard, inner, resolver))
+        if len(guards) > MAX_CASES:
+            message = f"a guard of more than {MAX_CASES} cases with clocks"
+            raise model_error("TA019", message, written.span, "write several edges")
         sync = None if written.sync is None else _sync(written.sync, inner, resolver)
         if sync is not None:
-            _refuse_clock_guard(guard, parts.channels[sync.slot.first], sync, written.span)
+            for guard in guards:
+                _refuse_clock_guard(guard, parts.channels[sync.slot.first], sync, written.span)
         updates = updates_of(written.updates, inner, resolver)
         weight = _weight(written, inner, resolver)
         if weight == 0:
             continue
-        yield Edge(
-            source, target, guard, sync, updates, weight, written.label,
-            _edge_text(written, selected), written.span,
-        )  # fmt: skip
+        parts.are_split |= len(guards) > 1
+        for guard in guards:
+            yield Edge(
+                source, target, guard, sync, updates, weight, written.label,
+                _edge_text(written, selected), written.span,
+            )  # fmt: skip
 
 
 def _weight(written: syntax.EdgeText, scope: Scope, resolver: Resolver) -> float:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import prod
 from typing import TypeVar
 
-from rvmon.diagnostics import Diagnostic, Severity, Span
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 from rvmon.errors import ModelError
 from rvmon.timed.language import syntax
 from rvmon.timed.language.layout import (
@@ -42,6 +42,9 @@ from rvmon.timed.model.scope import (
 MAX_FINDINGS = 100
 """Behind so many, nothing more is looked for."""
 
+MOST_SHOWN = 2
+"""Further places that are shown of a finding that stands at many."""
+
 MAX_CLOCKS = 4_999
 """The most clocks of a network: a zone has the square of it in numbers."""
 
@@ -57,12 +60,17 @@ Read = TypeVar("Read")
 
 @dataclass(slots=True)
 class Parts:
-    """What the declarations of a model have made so far."""
+    """What the declarations of a model have made so far.
+
+    Attributes:
+        are_split: whether some edge as written is several, of which clocks decide.
+    """
 
     clocks: list[Clock] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     channels: list[Channel] = field(default_factory=list)
     channel_spans: list[Span] = field(default_factory=list)
+    are_split: bool = False
 
 
 @dataclass(slots=True)
@@ -90,7 +98,7 @@ class Findings:
         """Raise all errors found so far, if there are any."""
         errors = [d for d in self.found.values() if d.severity is Severity.ERROR]
         if errors:
-            raise refusal(*errors)
+            raise refusal(*_counted(errors))
 
     def attempt(self, read: Callable[[], Read], default: Read) -> Read:
         """What `read` returns, or the default if it finds something wrong, which is noted."""
@@ -109,6 +117,20 @@ class Findings:
         except ModelError as error:
             for diagnostic in error.diagnostics:
                 self.add(diagnostic)
+
+
+def _counted(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Findings that say the same of several places as one, with their number and the first few."""
+    alike: dict[tuple[str, str, str], list[Diagnostic]] = {}
+    for one in findings:
+        alike.setdefault((one.code, one.message, one.help), []).append(one)
+    for first, *others in alike.values():
+        if not others:
+            yield first
+            continue
+        further = [Label(label.span) for one in others[:MOST_SHOWN] for label in one.spans[:1]]
+        message = f"{first.message} ({1 + len(others)} places)"
+        yield replace(first, message=message, spans=(*first.spans, *further))
 
 
 def declare(

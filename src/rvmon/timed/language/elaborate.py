@@ -104,7 +104,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
         signals,
         tuple(findings.found.values()),
         names,
-        has_diagonals=bool(diagonals.places),
+        has_split_edges=bool(diagonals.places) or parts.are_split,
     )
 
 

@@ -194,14 +194,37 @@ def split_guard(expression: Expression, span: Span) -> Guard:
     Raises:
         ModelError: clocks stand under `or`.
     """
-    data: Expression = TRUE
-    clocks: list[ClockCompare] = []
-    for part in chained(BinaryOp.AND, normal_form(expression)):
-        if isinstance(part, ClockCompare):
-            clocks.append(part)
-        elif is_discrete(part):
-            data = part if data == TRUE else BinaryOperation(BinaryOp.AND, data, part)
-        else:
-            fix = "make one edge (or location) for each alternative"
-            raise model_error("TA009", "a clock under `or`", span, fix)
-    return Guard(data, tuple(clocks))
+    guards = guards_of(expression)
+    if len(guards) > 1:
+        fix = "make one location for each alternative"
+        raise model_error("TA009", "a clock under `or`", span, fix)
+    return guards[0]
+
+
+def guards_of(expression: Expression) -> list[Guard]:
+    """A condition as guards of which one holds where it does, and never two."""
+    made = []
+    for parts in _cases(normal_form(expression)):
+        data: Expression = TRUE
+        for part in parts:
+            if not isinstance(part, ClockCompare):
+                data = part if data == TRUE else BinaryOperation(BinaryOp.AND, data, part)
+        made.append(Guard(data, tuple(part for part in parts if isinstance(part, ClockCompare))))
+    return made
+
+
+def _cases(formula: Expression) -> list[list[Expression]]:
+    """A normalised condition as alternatives of parts that hold together, each without the others.
+
+    Where `p or q` holds, p does, or it does not and q does.
+    """
+    if is_discrete(formula):
+        return [list(chained(BinaryOp.AND, formula))]
+    match formula:
+        case BinaryOperation(BinaryOp.AND, left, right):
+            return [[*one, *other] for one in _cases(left) for other in _cases(right)]
+        case BinaryOperation(BinaryOp.OR, left, right):
+            without = BinaryOperation(BinaryOp.AND, normal_form(left, positive=False), right)
+            return [*_cases(left), *_cases(without)]
+        case _:
+            return [[formula]]

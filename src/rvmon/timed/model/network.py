@@ -182,7 +182,8 @@ class Network:
         signals: what specifications may call by name, read off locations and variables.
         warnings: what is odd about it but no error.
         names: what queries may refer to.
-        has_diagonals: whether some edges were taken apart for differences of clocks.
+        has_split_edges: whether some edges were taken apart, for differences of clocks or clocks
+            under `or`.
     """
 
     name: str
@@ -196,7 +197,7 @@ class Network:
     signals: tuple[Signal, ...]
     warnings: tuple[Diagnostic, ...] = field(compare=False)
     names: Names = field(compare=False, repr=False)
-    has_diagonals: bool = field(default=False, compare=False)
+    has_split_edges: bool = field(default=False, compare=False)
 
     @property
     def locals(self) -> tuple[Variable, ...]:

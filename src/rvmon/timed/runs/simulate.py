@@ -21,43 +21,59 @@ from rvmon.timed.model.network import Network
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.zones.discrete import Move, State
 from rvmon.timed.zones.successors import Space
-from rvmon.timed.zones.zone_unions import Constraint, ConstraintMaker, constraint_maker
+from rvmon.timed.zones.zone_unions import Constraint, constraint_maker
 
 GRID = 1_000
 """Steps of simulated time in one unit: all times are whole numbers of them."""
+
+CHECK_EVERY = 256
+"""Moves between two looks at the clock."""
 
 MOST_MOVES = 100_000
 """A run with more moves before its end is taken for a Zeno loop."""
 
 
+class CutShortError(Exception):
+    """A run is not simulated to its end, because time is up."""
+
+
 def trial_of(
-    network: Network, sought: Expression, horizon: int, random: Random, mean_wait: float
+    network: Network,
+    sought: Expression,
+    horizon: int,
+    random: Random,
+    mean_wait: float,
+    goes_on: Callable[[], bool],
 ) -> Callable[[], bool]:
     """What simulates one run and says whether it meets a normalised formula within a horizon."""
     space = Space(network)
     constraints = constraint_maker(sought)
-    return lambda: _reaches(space, constraints, horizon * GRID, random, mean_wait * GRID)
 
+    def meets() -> bool:
+        run = stretches(space, horizon * GRID, random, mean_wait * GRID, goes_on)
+        return any(
+            _window(constraint, clocks, 0, stay) is not None
+            for state, clocks, stay in run
+            for constraint in constraints(state.vector.locations, state.values)
+        )
 
-def _reaches(
-    space: Space, constraints: ConstraintMaker, horizon: int, random: Random, mean_wait: float
-) -> bool:
-    """Whether one random run meets a formula within some grid steps."""
-    for state, clocks, stay in stretches(space, horizon, random, mean_wait):
-        here = constraints(state.vector.locations, state.values)
-        if any(_window(constraint, clocks, 0, stay) is not None for constraint in here):
-            return True
-    return False
+    return meets
 
 
 def stretches(
-    space: Space, horizon: int, random: Random, mean_wait: float
+    space: Space, horizon: int, random: Random, mean_wait: float, goes_on: Callable[[], bool]
 ) -> Iterator[tuple[State, list[int], int]]:
-    """One random run: each state, the clocks as it begins and how long it lasts, in grid steps."""
+    """One random run: each state, the clocks as it begins and how long it lasts, in grid steps.
+
+    Raises:
+        CutShortError: it may not go on.
+    """
     state = space.initial()
     assert state is not None  # noqa: S101 - the network can start
     clocks, now = [0] * space.dim, 0
-    for _ in range(MOST_MOVES):
+    for number in range(1, MOST_MOVES + 1):
+        if number % CHECK_EVERY == 0 and not goes_on():
+            raise CutShortError
         drawn = _draw(space, state, clocks, random, mean_wait)
         # If nothing is left to do, time passes as long as it may.
         most = _longest(state, clocks) if drawn is None else drawn[1]

@@ -10,11 +10,12 @@ Probabilistic Model Checking, 2006 (the indifference region).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import fsum, log, log1p, sqrt
 from random import Random
 from statistics import NormalDist
+from typing import TypeVar
 
 from rvmon.confidence import interval
 from rvmon.timed.model.evaluate import evaluator
@@ -22,7 +23,7 @@ from rvmon.timed.model.guards import is_plain, normal_form
 from rvmon.timed.model.network import Chance, Mean, Network, Query
 from rvmon.timed.model.operators import BinaryOp, PathOp
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.runs.simulate import GRID, stretches, trial_of
+from rvmon.timed.runs.simulate import GRID, CutShortError, stretches, trial_of
 from rvmon.timed.zones.successors import Space
 from rvmon.timed.zones.symbolic import check_start
 
@@ -41,6 +42,9 @@ MOST_TRIALS = 1_000_000
 
 MEAN_WAIT = 10.0
 """Units of time by which a wait without end exceeds its beginning on average."""
+
+
+Drawn = TypeVar("Drawn")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,85 +78,93 @@ def sample(
         network: what to simulate.
         query: `Pr…` or `E[…](max: …)`.
         seed: of all choices.
-        watch: asked after each run, with their number, whether to go on.
+        watch: asked now and then, with the number of runs, whether to go on.
 
     Raises:
         ModelError: the query cannot be judged on one run, or the network cannot start.
     """
     check_start(network)
-    if network.has_diagonals:
-        fix = "compare clocks with numbers, or ask whether it can happen: E<> p"
-        message = "the odds of edges that set clocks whose difference is compared are not known"
+    if network.has_split_edges:
+        fix = "compare clocks with numbers, without `or`; or ask whether it can happen: E<> p"
+        message = (
+            "the odds are not known where clocks under `or`, or their differences, split edges"
+        )
         raise model_error("TA020", message, query.span, fix)
     random = Random(seed)  # noqa: S311 - repeatable, not secret
+    runs = _Runs(watch)
     match query.formula:
         case Chance() as chance:
-            return _chance(network, query, chance, random, watch or _on)
+            return _chance(network, query, chance, random, runs)
         case Mean() as mean:
-            return _mean(network, query, mean, random, watch or _on)
+            return _mean(network, query, mean, random, runs)
         case _:
             raise model_error("TA020", "this asks for no probability", query.span)
 
 
-def _on(_runs: int) -> bool:
-    return True
+class _Runs:
+    """Random runs, as long as there is time for them."""
+
+    def __init__(self, watch: Callable[[int], bool] | None) -> None:
+        self._watch = watch
+        self._count = 0
+
+    def goes_on(self) -> bool:
+        """Whether there is time for more, or for more of one."""
+        return self._watch is None or self._watch(self._count)
+
+    def drawn(self, draw: Callable[[], Drawn], most: int) -> Iterator[Drawn]:
+        """What each of at most so many runs gives."""
+        while self._count < most and self.goes_on():
+            try:
+                yield draw()
+            except CutShortError:
+                return
+            self._count += 1
 
 
-def _chance(
-    network: Network,
-    query: Query,
-    chance: Chance,
-    random: Random,
-    watch: Callable[[int], bool],
-) -> Sampled:
+def _chance(network: Network, query: Query, chance: Chance, random: Random, runs: _Runs) -> Sampled:
     if not is_plain(chance.body):
         fix = "write a condition on the state: Pr[<=T](<> p)"
         raise model_error("TA020", "this cannot be evaluated on one run", query.span, fix)
     meets = chance.op is PathOp.FINALLY
     sought = normal_form(chance.body, positive=meets)
-    trial = trial_of(network, sought, chance.horizon, random, MEAN_WAIT)
+    trial = trial_of(network, sought, chance.horizon, random, MEAN_WAIT, runs.goes_on)
     if chance.sign is not None:
-        return _tested(query, chance, lambda: trial() == meets, watch)
-    runs = successes = 0
-    while runs < (chance.runs or RUNS) and watch(runs):
-        successes += trial() == meets
-        runs += 1
-    low, high = interval(successes, runs, 1 - ERROR) if runs else (0.0, 1.0)
-    return Sampled(query, runs, successes / max(1, runs), low, high)
+        return _tested(query, chance, lambda: trial() == meets, runs)
+    met = [found == meets for found in runs.drawn(trial, chance.runs or RUNS)]
+    low, high = interval(sum(met), len(met), 1 - ERROR) if met else (0.0, 1.0)
+    return Sampled(query, len(met), sum(met) / max(1, len(met)), low, high)
 
 
-def _tested(
-    query: Query, chance: Chance, trial: Callable[[], bool], watch: Callable[[int], bool]
-) -> Sampled:
+def _tested(query: Query, chance: Chance, trial: Callable[[], bool], runs: _Runs) -> Sampled:
     """Wald's test of what lies above the level by the margin against what lies below."""
     level = chance.level
     margin = min(MARGIN, level / 2, (1 - level) / 2)
     above, below = level + margin, level - margin
     hit, miss = log(below) - log(above), log1p(-below) - log1p(-above)
     limit = log((1 - ERROR) / ERROR)
-    most = chance.runs or MOST_TRIALS
-    evidence, runs, successes = 0.0, 0, 0
-    while -limit < evidence < limit and runs < most and watch(runs):
-        met = trial()
-        evidence += hit if met else miss
-        successes += met
-        runs += 1
-    share = successes / max(1, runs)
+    evidence, met = 0.0, list[bool]()
+    for one in runs.drawn(trial, chance.runs or MOST_TRIALS):
+        met.append(one)
+        evidence += hit if one else miss
+        if not -limit < evidence < limit:
+            break
+    share = sum(met) / max(1, len(met))
     if -limit < evidence < limit:
-        return Sampled(query, runs, share, margin=margin)
+        return Sampled(query, len(met), share, margin=margin)
     holds = (evidence < 0) == (chance.sign is BinaryOp.GE)
-    return Sampled(query, runs, share, holds=holds, margin=margin)
+    return Sampled(query, len(met), share, holds=holds, margin=margin)
 
 
-def _mean(
-    network: Network, query: Query, mean: Mean, random: Random, watch: Callable[[int], bool]
-) -> Sampled:
+def _mean(network: Network, query: Query, mean: Mean, random: Random, runs: _Runs) -> Sampled:
     space, value = Space(network), evaluator(mean.value)
     best: Callable[[list[int]], int] = max if mean.largest else min
-    found: list[float] = []
-    while len(found) < (mean.runs or RUNS) and watch(len(found)):
-        run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID)
-        found.append(best([value(state.vector.locations, state.values) for state, _, _ in run]))
+
+    def reached() -> int:
+        run = stretches(space, mean.horizon * GRID, random, MEAN_WAIT * GRID, runs.goes_on)
+        return best([value(state.vector.locations, state.values) for state, _, _ in run])
+
+    found = list(runs.drawn(reached, mean.runs or RUNS))
     if len(found) < 2:
         raise model_error("TA019", "too few runs were simulated", query.span)
     middle = fsum(found) / len(found)

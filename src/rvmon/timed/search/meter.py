@@ -12,7 +12,7 @@ from pathlib import Path
 
 from rvmon.timed.search.outcome import Budget, Progress, Statistics, Watch
 
-CHECK_EVERY = 128
+CHECK_EVERY = 16
 """States between two looks at the clock and at the memory."""
 
 

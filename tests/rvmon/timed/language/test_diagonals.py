@@ -1,6 +1,7 @@
 """Differences of clocks in guards, invariants and queries say what they say, and no run is lost."""
 
 import re
+from fractions import Fraction
 from random import Random
 
 import pytest
@@ -10,6 +11,7 @@ from tests.tools.timed_regions import RegionGraph, TooManyRegionsError
 from rvmon.errors import ModelError
 from rvmon.timed.language.elaborate import query_on
 from rvmon.timed.language.load import loads_network
+from rvmon.timed.runs.concrete import Configuration, compares, is_ready
 from rvmon.timed.runs.statistics import sample
 from rvmon.timed.search.verify import verify
 
@@ -142,6 +144,36 @@ def test_what_no_edge_can_keep_up_is_refused(text, message):
         loads_network(text)
 
 
+def test_clocks_under_or_make_edges_of_which_one_fits():
+    """Whoever reads one guard takes exactly one of its edges; in an invariant it is refused."""
+    text = """
+    clock x, y
+    int[0,3] v
+    automaton A {{
+      location a invariant x <= 9 location b start a
+      edge a -> b when (x < 2 or y > 5) and (v == 0 or x == 7) do y = 0
+    }}
+    query: {}
+    """
+    for query, expected in (
+        ("A[] not deadlock or A.b", True),
+        ("E<> A.b and y == 0 and x == 1", True),
+        ("E<> A.b and y == 0 and x == 5", False),
+        ("E<> A.b and y == 0 and x > 5 and x < 6", True),
+    ):
+        network = loads_network(text.format(query))
+        assert verify(network, network.queries[0]).holds is expected, query
+    edges = network.automata[0].edges
+    assert len(edges) == 4
+    for x, y, v in ((0, 0, 0), (1, 6, 1), (7, 7, 1), (8, 8, 0), (8, 8, 1), (3, 3, 0), (1, 1, 2)):
+        now = Configuration((0,), (v,), (Fraction(x), Fraction(y)))
+        fitting = sum(
+            is_ready(now, 0, edge) and all(compares(now, c) for c in edge.guard.clocks)
+            for edge in edges
+        )
+        assert fitting == int((x < 2 or y > 5) and (v == 0 or x == 7))
+
+
 def test_edges_that_set_the_same_clock_may_synchronise():
     """The last one counts, as everywhere."""
     network = loads_network(SYNC.format("x - y < 1", "x = 1") + "query: E<> x - y >= 1 and y == 0")
@@ -153,5 +185,5 @@ def test_queries_on_a_model_that_is_read_compare_no_clocks():
     network = loads_network(MODEL.format("E<> A.c"))
     with pytest.raises(ModelError, match="write it as a query into the model"):
         query_on(network, "E<> x - y > 3")
-    with pytest.raises(ModelError, match="odds of edges"):
+    with pytest.raises(ModelError, match="odds are not known"):
         sample(network, query_on(network, "Pr[<=9](<> A.c)"))

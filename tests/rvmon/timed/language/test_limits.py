@@ -81,8 +81,17 @@ def test_a_wide_quantifier_is_decided():
 def test_findings_end_at_a_hundred():
     """Thousands of mistakes are not all told: the first hundred are."""
     with pytest.raises(ModelError) as caught:
-        loads_network("clock x" + ", x" * 5000)
+        loads_network("clock " + ", ".join(f"x{i}, x{i}" for i in range(200)))
     assert len(caught.value.diagnostics) == 100
+
+
+def test_the_same_mistake_at_many_places_is_told_once():
+    """With their number, and the first few of them."""
+    with pytest.raises(ModelError) as caught:
+        loads_network("clock x, x, x, x, x, x " + A)
+    (found,) = caught.value.diagnostics
+    assert found.message == "two things named `x` (5 places)"
+    assert [label.span.start for label in found.spans] == [9, 6, 12, 15]
 
 
 @pytest.mark.slow
