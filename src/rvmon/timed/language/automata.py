@@ -23,10 +23,11 @@ from rvmon.timed.model.network import (
     Location,
     Sync,
 )
+from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
-    ChannelSymbol,
     ConstantSymbol,
+    PlacedSymbol,
     Scope,
 )
 
@@ -159,11 +160,11 @@ def _edge_text(written: syntax.EdgeText, selected: Mapping[str, ConstantSymbol])
 
 def _sync(written: syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
     match resolver.symbol(written.channel, scope):
-        case ChannelSymbol(slot) if len(slot.indices) == len(slot.extents):
+        case PlacedSymbol(BaseType.CHANNEL, slot) as channel if channel.is_single:
             for index in slot.indices:
                 refuse_changes(index, written.span)
             return Sync(slot, written.sends)
-        case ChannelSymbol():
+        case PlacedSymbol(BaseType.CHANNEL):
             raise model_error("TA004", "an array of channels", written.span, "give an index")
         case _:
             fix = f"declare it: chan {written.channel.span.text}"

@@ -37,11 +37,11 @@ from rvmon.timed.model.operators import BaseType, BinaryOp
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
     ConstantSymbol,
+    PlacedSymbol,
     RecordSymbol,
     ResolvedType,
     Scope,
     Symbol,
-    VariableSymbol,
 )
 
 
@@ -100,7 +100,7 @@ def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> lis
 
 def _set(target: Symbol, value: Expression, span: Span, resolver: Resolver) -> Statement:
     match target:
-        case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
+        case PlacedSymbol(BaseType.INT, slot) if target.is_single:
             variable = resolver.functions.variable(slot)
             return Assignment(replace(slot, span=span), value, variable)
         case _:
@@ -195,7 +195,7 @@ class Bodies:
         """Sets all of a local variable, which has no value from before."""
         resolver = self.resolver
         if written is None:
-            single = [leaf for leaf in leaves(symbol) if isinstance(leaf, VariableSymbol)]
+            single = [leaf for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
             ranges = [resolver.functions.variable(leaf.slot) for leaf in single]
             span = self.text.span
             return [
@@ -226,7 +226,7 @@ class Bodies:
         span = written.span
         kind = ResolvedType(BaseType.INT, values.start, values.stop)
         symbol = resolver.functions.place(kind, (), [f"{self.text.name}.{written.name}"], None)
-        assert isinstance(symbol, VariableSymbol)  # noqa: S101 - of a number
+        assert isinstance(symbol, PlacedSymbol)  # noqa: S101 - of a number
         inner.symbols[written.name], inner.places[written.name] = symbol, span
         body, goes_on = self.statements(written.body, inner.inner({}))
         here = VariableValue(symbol.slot)

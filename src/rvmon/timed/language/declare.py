@@ -28,15 +28,13 @@ from rvmon.timed.model.network import Channel, Clock
 from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import finding, model_error, refusal
 from rvmon.timed.model.scope import (
-    ChannelSymbol,
-    ClockSymbol,
     ConstantValue,
     FunctionSymbol,
+    PlacedSymbol,
     ResolvedType,
     Scope,
     Symbol,
     TypeSymbol,
-    VariableSymbol,
 )
 
 MAX_FINDINGS = 100
@@ -102,12 +100,9 @@ class Findings:
 
     def attempt(self, read: Callable[[], Read], default: Read) -> Read:
         """What `read` returns, or the default if it finds something wrong, which is noted."""
-        try:
-            return read()
-        except ModelError as error:
-            for diagnostic in error.diagnostics:
-                self.add(diagnostic)
-            return default
+        with self.collect():
+            default = read()
+        return default
 
     @contextmanager
     def collect(self) -> Iterator[None]:
@@ -193,17 +188,17 @@ class _Placer:
             case BaseType.CLOCK:
                 first = _room(parts.clocks, len(names), MAX_CLOCKS, "clocks", span)
                 parts.clocks += map(Clock, names)
-                return ClockSymbol(Slot(first, extents))
+                return PlacedSymbol(kind.base, Slot(first, extents))
             case BaseType.CHANNEL:
                 first = _room(parts.channels, len(names), MAX_PARTS, "channels", span)
                 parts.channels += [Channel(name, kind.broadcast, kind.urgent) for name in names]
                 parts.channel_spans += [span] * len(names)
-                return ChannelSymbol(Slot(first, extents))
+                return PlacedSymbol(kind.base, Slot(first, extents))
             case _:
                 first = _room(parts.variables, len(names), MAX_PARTS, "variables", span)
                 numbers = [default_of(kind)] * len(names) if value is None else flat(value)
                 parts.variables += map(partial(variable_of, kind), names, numbers)
-                return VariableSymbol(Slot(first, extents))
+                return PlacedSymbol(BaseType.INT, Slot(first, extents))
 
 
 def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:

@@ -40,15 +40,13 @@ from rvmon.timed.model.guards import parts_of
 from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
-    ChannelSymbol,
     ChosenSymbol,
-    ClockSymbol,
     FunctionSymbol,
+    PlacedSymbol,
     RecordSymbol,
     ResolvedType,
     Scope,
     Symbol,
-    VariableSymbol,
 )
 
 MAX_LOCALS = 100_000
@@ -85,7 +83,7 @@ class Functions:
         self.locals += [variable_of(kind, name, default_of(kind)) for name in reversed(names)]
         if len(self.locals) > MAX_LOCALS:
             raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
-        return VariableSymbol(Slot(-len(self.locals), extents))
+        return PlacedSymbol(BaseType.INT, Slot(-len(self.locals), extents))
 
     def variable(self, slot: Slot) -> Variable:
         """The variable of a slot, or the first of its array."""
@@ -146,7 +144,7 @@ def _type_of(
 
 def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: Extents) -> bool:
     """Whether a parameter stands for the argument itself, not for its value."""
-    if kind.base in (BaseType.CLOCK, BaseType.CHANNEL):
+    if kind.placed_as is not BaseType.INT:
         return True
     return parameter.reference and not (kind.const and not (extents or kind.fields))
 
@@ -155,14 +153,8 @@ def _check_fit(
     thing: Symbol, kind: ResolvedType, extents: Extents, parameter: syntax.Parameter, span: Span
 ) -> None:
     single = leaves(thing)
-    match single[0]:
-        case ClockSymbol():
-            fits = kind.base is BaseType.CLOCK
-        case ChannelSymbol():
-            fits = kind.base is BaseType.CHANNEL
-        case _:
-            fits = kind.base not in (BaseType.CLOCK, BaseType.CHANNEL)
-    if not fits or len(single) != count_of(kind, extents):
+    own = single[0].kind if isinstance(single[0], PlacedSymbol) else BaseType.INT
+    if own is not kind.placed_as or len(single) != count_of(kind, extents):
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
         raise model_error("TA015", "this argument is of the wrong kind", span, fix)
 
@@ -171,7 +163,7 @@ def _with_slots(symbol: Symbol, change: Callable[[Slot], Slot]) -> Symbol:
     match symbol:
         case RecordSymbol(fields):
             return RecordSymbol(tuple((name, _with_slots(s, change)) for name, s in fields))
-        case VariableSymbol(slot) | ClockSymbol(slot) | ChannelSymbol(slot) | ChosenSymbol(_, slot):
+        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
             return replace(symbol, slot=change(slot))
         case _:
             return symbol
@@ -202,7 +194,7 @@ def _make(
             if index == _CHOSEN:
                 kind = ResolvedType(BaseType.INT, extent.start, extent.stop - 1)
                 symbol = functions.place(kind, (), ["index"], None)
-                assert isinstance(symbol, VariableSymbol)  # noqa: S101 - of numbers
+                assert isinstance(symbol, PlacedSymbol)  # noqa: S101 - of numbers
                 indices.append(symbol.slot.first)
                 index = VariableValue(symbol.slot)
             own.append(index)
@@ -217,16 +209,14 @@ def _make(
         kind, called = variable_type(kind), [f"{text.name}.{parameter.name}"]
         symbol = laid_out(kind, extents, called, None, functions)
         inner.symbols[parameter.name] = symbol
-        parameters += [
-            leaf.slot.first for leaf in leaves(symbol) if isinstance(leaf, VariableSymbol)
-        ]
+        parameters += [leaf.slot.first for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
     result = _NOTHING if text.type is None else resolver.type(text.type, scope)
     if result.extents or result.base not in (BaseType.INT, BaseType.BOOL):
         fix = "let it set a parameter that is passed by reference"
         message = f"`{text.name}` returns an array or record"
         raise model_error("TA016", message, text.span, fix)
     place = functions.place(replace(result, const=False), (), [f"{text.name}(…)"], None)
-    assert isinstance(place, VariableSymbol)  # noqa: S101 - of a number
+    assert isinstance(place, PlacedSymbol)  # noqa: S101 - of a number
     body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
     if goes_on:
         body.append(Return(Constant(0)) if text.type is None else Missing(text.name, text.span))

@@ -16,13 +16,11 @@ from rvmon.timed.language.symbols import leaves
 from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
-    ChannelSymbol,
-    ClockSymbol,
     ConstantSymbol,
+    PlacedSymbol,
     RecordSymbol,
     Scope,
     Symbol,
-    VariableSymbol,
 )
 
 Family = syntax.Template | syntax.Instance
@@ -150,13 +148,8 @@ def _argument(
         return ConstantSymbol(value)
     symbol = resolver.symbol(written, scope)
     match symbol:
-        case ClockSymbol(slot):
-            fits = kind.base is BaseType.CLOCK and slot.extents[len(slot.indices) :] == extents
-        case ChannelSymbol(slot):
-            fits = kind.base is BaseType.CHANNEL and slot.extents[len(slot.indices) :] == extents
-        case VariableSymbol(slot):
-            fits = kind.base in (BaseType.INT, BaseType.BOOL)
-            fits = fits and slot.extents[len(slot.indices) :] == extents
+        case PlacedSymbol(place, slot):
+            fits = place is kind.placed_as and slot.extents[len(slot.indices) :] == extents
         case RecordSymbol():
             fits = bool(kind.fields) and len(leaves(symbol)) == count_of(kind, extents)
         case _:

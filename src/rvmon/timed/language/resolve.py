@@ -41,9 +41,9 @@ from rvmon.timed.model.rules import model_error, refusal
 from rvmon.timed.model.scope import (
     AutomatonKey,
     AutomatonSymbol,
-    ClockSymbol,
     ConstantSymbol,
     FunctionSymbol,
+    PlacedSymbol,
     RecordSymbol,
     ResolvedType,
     Scope,
@@ -294,7 +294,7 @@ class Resolver:
         if self._location(written, scope) is not None:
             return None
         match self.symbol(written, scope):
-            case ClockSymbol(slot):
+            case PlacedSymbol(BaseType.CLOCK, slot):
                 return clock_of(slot, written.span)
             case _:
                 return None

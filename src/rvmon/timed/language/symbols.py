@@ -8,18 +8,17 @@ from typing import assert_never
 from rvmon.diagnostics import Span
 from rvmon.timed.model.arithmetic import check_index
 from rvmon.timed.model.expressions import Constant, Expression, Lookup, Slot, VariableValue
+from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.rules import model_error
 from rvmon.timed.model.scope import (
-    ChannelSymbol,
     ChosenSymbol,
-    ClockSymbol,
     ConstantSymbol,
     ConstantValue,
     FunctionSymbol,
+    PlacedSymbol,
     RecordSymbol,
     Symbol,
     TypeSymbol,
-    VariableSymbol,
 )
 
 
@@ -32,21 +31,21 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
     match symbol:
         case ConstantSymbol(int(value), _):
             return Constant(value)
-        case VariableSymbol(slot) if len(slot.indices) == len(slot.extents):
+        case PlacedSymbol(BaseType.INT, slot) if symbol.is_single:
             return VariableValue(replace(slot, span=span))
         case ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
             return Lookup(values, replace(slot, span=span))
-        case ClockSymbol():
+        case PlacedSymbol(BaseType.CLOCK):
             fix = "a clock can only be compared with a number, or be set"
             raise model_error("TA009", "a clock has no value here", span, fix)
-        case VariableSymbol() | ConstantSymbol() | ChosenSymbol():
+        case PlacedSymbol(BaseType.INT) | ConstantSymbol() | ChosenSymbol():
             raise model_error("TA004", "an array is no value", span, "give an index")
         case RecordSymbol(fields):
             fix = f"name a field, such as {span.text}.{fields[0][0]}"
             raise model_error("TA004", "a record is no value", span, fix)
         case FunctionSymbol():
             raise model_error("TA004", "a function is no value", span, f"call it: {span.text}(…)")
-        case ChannelSymbol() | TypeSymbol():
+        case PlacedSymbol() | TypeSymbol():
             fix = "channels stand in synchronisations, types in declarations"
             raise model_error("TA004", f"`{span.text}` is no value", span, fix)
         case _:
@@ -66,14 +65,8 @@ def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
                 return ChosenSymbol(tuple(flat(values)), slot)
             check_index(index.value, extent, span)
             return ConstantSymbol(values[index.value - extent.start], tuple(inner))
-        case VariableSymbol(slot):
-            return VariableSymbol(_deeper(slot, index, span))
-        case ClockSymbol(slot):
-            return ClockSymbol(_deeper(slot, index, span))
-        case ChannelSymbol(slot):
-            return ChannelSymbol(_deeper(slot, index, span))
-        case ChosenSymbol(values, slot):
-            return ChosenSymbol(values, _deeper(slot, index, span))
+        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
+            return replace(symbol, slot=_deeper(slot, index, span))
         case RecordSymbol(fields):
             return RecordSymbol(tuple((name, element_of(s, index, span)) for name, s in fields))
         case ConstantSymbol() | TypeSymbol() | FunctionSymbol():
@@ -94,7 +87,7 @@ def is_whole(symbol: Symbol) -> bool:
     match symbol:
         case RecordSymbol():
             return True
-        case VariableSymbol(slot) | ChosenSymbol(_, slot):
+        case PlacedSymbol(BaseType.INT, slot) | ChosenSymbol(_, slot):
             return len(slot.indices) < len(slot.extents)
         case ConstantSymbol(value):
             return isinstance(value, tuple)
@@ -119,9 +112,7 @@ def leaves(symbol: Symbol) -> list[Symbol]:
             return [leaf for _, inner in fields for leaf in leaves(inner)]
         case ConstantSymbol(tuple() as values, (_, *inner)):
             return [leaf for v in values for leaf in leaves(ConstantSymbol(v, tuple(inner)))]
-        case (
-            VariableSymbol(slot) | ClockSymbol(slot) | ChannelSymbol(slot) | ChosenSymbol(_, slot)
-        ) if len(slot.indices) < len(slot.extents):
+        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot) if len(slot.indices) < len(slot.extents):
             extent = slot.extents[len(slot.indices)]
             deeper = (settle(replace(slot, indices=(*slot.indices, Constant(i)))) for i in extent)
             return [leaf for one in deeper for leaf in leaves(replace(symbol, slot=one))]

@@ -32,6 +32,11 @@ class ResolvedType:
     broadcast: bool = False
     urgent: bool = False
 
+    @property
+    def placed_as(self) -> BaseType:
+        """The kind of place that things of the type have; see `PlacedSymbol`."""
+        return self.base if self.base in (BaseType.CLOCK, BaseType.CHANNEL) else BaseType.INT
+
 
 @dataclass(frozen=True, slots=True)
 class ConstantSymbol:
@@ -46,24 +51,20 @@ class ConstantSymbol:
 
 
 @dataclass(frozen=True, slots=True)
-class VariableSymbol:
-    """A variable, or an array of them while the slot has fewer indices than extents."""
+class PlacedSymbol:
+    """A variable, clock or channel, or an array of them while the slot lacks indices.
 
+    Attributes:
+        kind: `CLOCK`, `CHANNEL`, or `INT` for all variables.
+    """
+
+    kind: BaseType
     slot: Slot
 
-
-@dataclass(frozen=True, slots=True)
-class ClockSymbol:
-    """A clock, or an array of them while the slot has fewer indices than extents."""
-
-    slot: Slot
-
-
-@dataclass(frozen=True, slots=True)
-class ChannelSymbol:
-    """A channel, or an array of them while the slot has fewer indices than extents."""
-
-    slot: Slot
+    @property
+    def is_single(self) -> bool:
+        """Whether it is no array."""
+        return len(self.slot.indices) == len(self.slot.extents)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,16 +97,7 @@ class FunctionSymbol:
     scope: Scope
 
 
-Symbol = (
-    ConstantSymbol
-    | ChosenSymbol
-    | VariableSymbol
-    | ClockSymbol
-    | ChannelSymbol
-    | TypeSymbol
-    | RecordSymbol
-    | FunctionSymbol
-)
+Symbol = ConstantSymbol | ChosenSymbol | PlacedSymbol | TypeSymbol | RecordSymbol | FunctionSymbol
 
 
 @dataclass(slots=True)

@@ -22,9 +22,10 @@ from rvmon.timed.language.elaborate import signal_on
 from rvmon.timed.model.evaluate import Evaluator, evaluator
 from rvmon.timed.model.expressions import VariableValue
 from rvmon.timed.model.network import Network
+from rvmon.timed.model.operators import BaseType
 from rvmon.timed.model.refine import finer
 from rvmon.timed.model.rules import model_error
-from rvmon.timed.model.scope import VariableSymbol
+from rvmon.timed.model.scope import PlacedSymbol
 from rvmon.timed.observation.lasting import Lasting, open_means
 from rvmon.timed.observation.observer import (
     Observed,
@@ -218,7 +219,7 @@ def signals_of(network: Network) -> dict[str, Evaluator]:
     """How specifications' names are read off the network; its own variables come last."""
     signals = {}
     for name, symbol in network.names.top.symbols.items():
-        if isinstance(symbol, VariableSymbol) and not symbol.slot.extents:
+        if isinstance(symbol, PlacedSymbol) and symbol.kind is BaseType.INT and symbol.is_single:
             signals[name] = evaluator(VariableValue(symbol.slot))
     for signal in network.signals:
         signals[signal.name] = evaluator(signal.value)
