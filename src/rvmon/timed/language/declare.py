@@ -100,9 +100,10 @@ class Findings:
 
     def attempt(self, read: Callable[[], Read], default: Read) -> Read:
         """What `read` returns, or the default if it finds something wrong, which is noted."""
+        made = [default]
         with self.collect():
-            default = read()
-        return default
+            made.append(read())
+        return made[-1]
 
     @contextmanager
     def collect(self) -> Iterator[None]:

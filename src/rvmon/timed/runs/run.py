@@ -6,13 +6,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING
 
 from rvmon.timed.model.network import Edge
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from rvmon.timed.runs.constraints import Timing
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,20 +85,6 @@ class Ending(StrEnum):
 
     ZENO_LOOP = "zeno loop"
     """It can go round for ever, but time stops before a certain instant."""
-
-
-@dataclass(frozen=True, slots=True)
-class Timing:
-    """The timed runs along a path.
-
-    Attributes:
-        bounds: float64[n + 1, n + 1] grid steps; entry (p, q) bounds `t[q] − t[p]` from above,
-            closed; `t[0]` is the start, `t[i]` the instant of step i.
-        scale: grid steps in one unit of time.
-    """
-
-    bounds: NDArray[np.float64]
-    scale: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,14 +17,10 @@ from fractions import Fraction
 from itertools import pairwise, product
 from math import ceil, inf, isqrt
 from random import Random
-from typing import TYPE_CHECKING
 
-from rvmon.timed.runs.run import Timing, Window
+from rvmon.timed.runs.constraints import Constraint, Timing
+from rvmon.timed.runs.run import Window
 from rvmon.timed.zones.dbm import Atom, Zone
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,46 +51,39 @@ def timing_of(
             and columns of the result are the instants at which each clock was 0 before.
         rounds: how often the path will be put together with itself: the grid is as much finer.
     """
-    import numpy as np
-
     dim = 1 if start is None else isqrt(len(start))
     size = len(steps) + dim
     scale = rounds * size + 1
-    bounds = np.full((size, size), inf)
-    np.fill_diagonal(bounds, 0.0)
-
-    def limit(p: int, q: int, bound: float) -> None:
-        bounds[p, q] = min(bounds[p, q], on_grid(bound, scale))
-
+    found: list[list[Constraint]] = [[] for _ in range(len(steps) + 1)]
     reset_at: dict[int, tuple[int, float]] = {}
     if start is not None:
         born = [0, *range(len(steps) + 1, size)]
         reset_at = {clock: (born[clock], 0.0) for clock in range(1, dim)}
         for x, y in product(range(dim), repeat=2):
             if start[x * dim + y] < inf:
-                limit(born[y], born[x], start[x * dim + y])
+                found[0].append((born[y], born[x], on_grid(start[x * dim + y], scale)))
 
     def apply(atoms: Iterable[Atom], now: int) -> None:
         for x, y, bound in atoms:
             # A clock's value now is t[now] − t[its reset] + its value then; clock 0 is 0.
             (p, low), (q, high) = reset_at.get(x, (0, 0.0)), reset_at.get(y, (0, 0.0))
             if x == 0:
-                limit(q, now, bound - high)
+                found[now].append((q, now, on_grid(bound - high, scale)))
             elif y == 0:
-                limit(now, p, bound + low)
+                found[now].append((now, p, on_grid(bound + low, scale)))
             else:
-                limit(q, p, bound - high + low)
+                found[now].append((q, p, on_grid(bound - high + low, scale)))
 
     for now, step in enumerate(steps, start=1):
-        limit(now, now - 1, 0.0)
+        found[now].append((now, now - 1, 0.0))
         if not step.waits:
-            limit(now - 1, now, 0.0)
+            found[now].append((now - 1, now, 0.0))
         apply(step.leave, now)
         for clock, value in step.resets:
             reset_at[clock] = now, value
         apply(step.enter, now)
-    close(bounds)
-    return None if bool((np.diagonal(bounds) < 0).any()) else Timing(bounds, scale)
+    timing = Timing(found, dim - 1, scale)
+    return timing if timing.is_possible else None
 
 
 def on_grid(bound: float, scale: int) -> float:
@@ -103,20 +92,10 @@ def on_grid(bound: float, scale: int) -> float:
     return whole * scale - (bound != whole)
 
 
-def close(bounds: NDArray[np.float64]) -> None:
-    """Tighten all bounds to those that they imply together, in place."""
-    import numpy as np
-
-    for middle in range(len(bounds)):
-        np.minimum(bounds, bounds[:, middle, None] + bounds[None, middle, :], out=bounds)
-
-
 def windows(timing: Timing) -> list[Window]:
     """How long the wait before each step can last, over all runs along the path."""
     found = []
-    for after in range(1, len(timing.bounds)):
-        low = -float(timing.bounds[after, after - 1])
-        high = float(timing.bounds[after - 1, after])
+    for low, high, _ in timing.waits:
         low_units, high_units = int(low // timing.scale), None
         if high != inf:
             high_units = int(-(-high // timing.scale))
@@ -137,8 +116,7 @@ def earliest(timing: Timing) -> list[Fraction]:
     The least solution of difference constraints is one of them, so no choice hinders a later one;
     a strict bound is kept by one grid step.
     """
-    times = [-float(timing.bounds[now, 0]) for now in range(len(timing.bounds))]
-    return _delays(times, timing.scale)
+    return _delays([0.0, *(first for _, _, first in timing.waits)], timing.scale)
 
 
 def sample(timing: Timing, random: Random, longest: int) -> list[Fraction]:

@@ -15,7 +15,8 @@ from itertools import product
 from math import inf
 from typing import TYPE_CHECKING
 
-from rvmon.timed.runs.timing import TimedStep, close, on_grid, timing_of
+from rvmon.timed.runs.constraints import close
+from rvmon.timed.runs.timing import TimedStep, on_grid, timing_of
 from rvmon.timed.zones.dbm import Zone, universe
 
 if TYPE_CHECKING:
@@ -75,9 +76,8 @@ def _one_round(loop: Sequence[TimedStep], dim: int, rounds: int) -> tuple[NDArra
     for now, step in enumerate(loop, start=1):
         for clock, value in step.resets:
             after[clock], earlier[clock] = now, value * timing.scale
-    chosen = np.array([*before, *after])
     shift = np.array([*[0.0] * dim, *earlier])
-    relation = timing.bounds[np.ix_(chosen, chosen)] + shift[:, None] - shift[None, :]
+    relation = timing.relation([*before, *after]) + shift[:, None] - shift[None, :]
     return relation, timing.scale
 
 
