@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from rvmon.explain.subformulas import PartTruth
+from rvmon.report.changes import Course
 from rvmon.report.markup import Child, e
 from rvmon.report.panels import Panel
 from rvmon.report.style import MARKS
@@ -96,7 +97,11 @@ def _is_unknown(track: Track, panel: Panel) -> bool:
     if track.absent:
         return True
     view = panel.view
-    inside = any(value is None and view.start <= t <= view.end for t, value in track.changes)
+    changes = track.between(view.start, view.end)
+    if isinstance(changes, Course):
+        inside = changes.has_unknown
+    else:
+        inside = any(value is None for _, value in changes)
     return inside or (track.kind is not TrackKind.EVENT and track.value_at(view.start) is None)
 
 

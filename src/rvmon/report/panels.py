@@ -13,11 +13,12 @@ from rvmon.explain.late_arrival import late_in, waits_of
 from rvmon.explain.near_miss import miss_in, parts_asked
 from rvmon.explain.subformulas import PartTruth, part_truths_of
 from rvmon.explain.truths import Question, Seen, look_through, parts_of
+from rvmon.report.changes import Changes, changes_of, shifted
 from rvmon.report.markup import Child
 from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
-from rvmon.report.tracks import Changes, Track, TrackKind, changes_of, tracks_of
+from rvmon.report.tracks import Track, TrackKind, tracks_of
 from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.health import HealthKind
 from rvmon.trace.sample import Sample
@@ -151,10 +152,7 @@ def _passing(
 
 def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> ReferenceAttempt:
     shift = failed.triggered - passed.triggered
-    moved = (
-        replace(track, changes=tuple((t + shift, value) for t, value in track.changes))
-        for track in candidate.tracks
-    )
+    moved = (replace(track, changes=shifted(track.changes, shift)) for track in candidate.tracks)
     end = candidate.run.report.end
     return ReferenceAttempt(
         name=candidate.run.name,

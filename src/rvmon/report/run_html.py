@@ -232,7 +232,7 @@ def _panel_data(panel: Panel, origin: int) -> dict[str, object]:
 
 
 def _track_data(track: Track, view: View, origin: int) -> dict[str, object]:
-    inside = [change for change in track.changes if view.start < change[0] <= view.end]
+    inside = track.between(view.start + 1, view.end)
     inside = inside[:: len(inside) // READ_OUT + 1]
     changes = [(view.start, track.value_at(view.start)), *inside]
     return {

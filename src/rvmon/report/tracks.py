@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rvmon.readers.coalesce import updates_in
-from rvmon.readers.held import HeldRecording
+from rvmon.report.changes import Changes, Course
 from rvmon.report.time_axis import View
 from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
 from rvmon.spec.checked.reads import names_read
 from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.spec.checked.tense import subformulas
 from rvmon.trace.health import Health, HealthKind
-from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
 from rvmon.verdict.attempt import Blame
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from rvmon.readers.batch import Batch, Cells
+    pass
 
 
 def concerned_names(requirement: Requirement) -> tuple[str, ...]:
@@ -105,17 +103,25 @@ class Track:
 
     name: str
     kind: TrackKind
-    changes: tuple[tuple[int, Scalar], ...]
+    changes: Sequence[tuple[int, Scalar]]
     unit: str = ""
     thresholds: tuple[Threshold, ...] = ()
     absent: bool = False
 
     def value_at(self, instant: int) -> Scalar:
         """A signal's value at an instant; `None` where it is unknown."""
-        from bisect import bisect_right
-
-        index = bisect_right(self.changes, instant, key=lambda change: change[0])
+        index = self._behind(instant)
         return self.changes[index - 1][1] if index else None
+
+    def between(self, first: int, last: int) -> Sequence[tuple[int, Scalar]]:
+        """The changes from one instant to another, both included."""
+        return self.changes[self._behind(first - 1) : self._behind(last)]
+
+    def _behind(self, instant: int) -> int:
+        """How many changes there are up to an instant."""
+        if isinstance(self.changes, Course):
+            return self.changes.behind(instant)
+        return bisect_right(self.changes, instant, key=lambda change: change[0])
 
 
 PLACES = 400
@@ -151,7 +157,9 @@ def stretches(track: Track, view: View, end: int) -> list[Stretch]:
         end: the last instant of the run, ticks.
     """
     stop = min(view.end, end)
-    inside = [(t, value) for t, value in track.changes if view.start < t < stop]
+    inside = track.between(view.start + 1, stop - 1)
+    if isinstance(inside, Course) and track.kind is TrackKind.NUMBER:
+        inside = inside.outlined(PLACES)
     changes = [(view.start, track.value_at(view.start)), *inside, (stop, None)]
     return [
         Stretch(view.fraction(t), view.fraction(after), value)
@@ -176,9 +184,7 @@ def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
 
 def occurrences(track: Track, view: View) -> list[tuple[float, Scalar]]:
     """Where in a view an event occurred (`True`), or may have (`None`); one per place."""
-    inside = [
-        (view.fraction(t), value) for t, value in track.changes if view.start <= t <= view.end
-    ]
+    inside = [(view.fraction(t), value) for t, value in track.between(view.start, view.end)]
     if len(inside) <= PLACES:
         return inside
     return list({round(place * PLACES): (place, value) for place, value in inside}.values())
@@ -220,26 +226,6 @@ _KINDS = {
 }
 
 
-def changes_of(
-    spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
-) -> Mapping[str, Changes]:
-    """By name what each signal and event of a run changed to, whichever requirements read it."""
-    found = {name: Changes(signal.stale_after) for name, signal in spec.signals.items()}
-    found |= {name: Changes(None) for name in spec.events}
-    ignoring = spec.ignoring
-    for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
-        if isinstance(piece, Sample):
-            for name, value in updates_in(piece.values, ignoring).items():
-                if name in found:
-                    found[name].add(piece.t, value, is_signal=name in spec.signals)
-        else:
-            for name, cells in piece.signals.items():
-                found[name].add_cells(piece, cells)
-            for name, events in piece.events.items():
-                found[name].add_occurrences(piece.times, events.says)
-    return found
-
-
 def tracks_of(
     spec: CheckedSpec,
     requirement: Requirement,
@@ -258,83 +244,9 @@ def tracks_of(
     return tuple(
         _signal_track(spec.signals[name], requirement, found[name])
         if name in spec.signals
-        else Track(name, TrackKind.EVENT, tuple(found[name].found), absent=name in absent)
+        else Track(name, TrackKind.EVENT, found[name].ended(), absent=name in absent)
         for name in concerned_names(requirement)
     )
-
-
-class Changes:
-    """What a name changed to, and when.
-
-    Args:
-        stale_after: from when on a value counts as unknown, ticks behind its last update.
-
-    Attributes:
-        found: of a signal its changes, of an event where it may have occurred.
-    """
-
-    def __init__(self, stale_after: int | None) -> None:
-        self._stale_after = stale_after
-        self._last: int | None = None
-        self.found: list[tuple[int, Scalar]] = []
-
-    def add(self, t: int, value: Value, *, is_signal: bool) -> None:
-        """Add an update."""
-        if is_signal:
-            self._add_value(t, _known(value))
-        elif value is not False:
-            self.found.append((t, None if value is None else True))
-
-    def _add_value(self, t: int, known: Scalar) -> None:
-        self._grow_stale(t)
-        if not self.found or self.found[-1][1] != known:
-            self.found.append((t, known))
-        self._last = t
-
-    def _grow_stale(self, t: int | None) -> None:
-        """See whether the value is stale before an instant, or the end."""
-        if self._stale_after is None or self._last is None or self.found[-1][1] is None:
-            return
-        stale_at = self._last + self._stale_after + 1
-        if t is None or t > stale_at:
-            self.found.append((stale_at, None))
-
-    def add_cells(self, batch: Batch, cells: Cells) -> None:
-        """Add what rows say of a signal."""
-        import numpy as np
-
-        from rvmon.readers.batch_notes import last_said, unknown_in
-
-        rows = last_said(batch, cells)
-        times, values = batch.times[rows], cells.values[rows]
-        unknown = unknown_in(cells)
-        hidden = np.zeros(len(rows), bool) if unknown is None else unknown[rows]
-        differs = (values[1:] != values[:-1]) & ~(hidden[1:] & hidden[:-1])
-        differs |= hidden[1:] != hidden[:-1]
-        if self._stale_after is not None:
-            differs |= np.diff(times) > self._stale_after + 1
-        for row in [0, *(np.flatnonzero(differs) + 1).tolist()] if len(rows) else ():
-            if row:
-                self._last = int(times[row - 1])
-            value = values[row].item() if cells.labels is None else cells.labels[values[row]]
-            self._add_value(int(times[row]), None if hidden[row] else value)
-        if len(rows):
-            self._last = int(times[-1])
-
-    def add_occurrences(self, times: NDArray[Any], says: NDArray[Any]) -> None:
-        """Add what rows say of an event: of one instant the surest."""
-        from rvmon.readers.batch import UNKNOWN, YES
-
-        may = (says == UNKNOWN) | (says == YES)
-        found: dict[int, Scalar] = {}
-        for t, said in zip(times[may].tolist(), says[may].tolist(), strict=True):
-            found[t] = True if said == YES else found.get(t)
-        self.found += found.items()
-
-    def ended(self) -> tuple[tuple[int, Scalar], ...]:
-        """The changes of a signal, when all was added."""
-        self._grow_stale(None)
-        return tuple(self.found)
 
 
 def _signal_track(signal: Signal, requirement: Requirement, changes: Changes) -> Track:
@@ -345,10 +257,3 @@ def _signal_track(signal: Signal, requirement: Requirement, changes: Changes) ->
         signal.type.unit,
         thresholds(requirement, signal.name),
     )
-
-
-def _known(value: Value) -> Scalar:
-    """A signal's value, `None` for what counts as unknown."""
-    if isinstance(value, float) and value != value:  # NaN
-        return None
-    return value if isinstance(value, bool | int | float | str) else None

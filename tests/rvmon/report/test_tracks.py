@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import rvmon
 from rvmon.readers import line_chunks
 from rvmon.readers.held import HeldRecording
+from rvmon.report.changes import Course, changes_of
 from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (
     PLACES,
@@ -17,7 +18,6 @@ from rvmon.report.tracks import (
     Track,
     TrackKind,
     blamed_names,
-    changes_of,
     concerned_names,
     occurrences,
     polylines,
@@ -204,3 +204,25 @@ def test_held_columns_give_the_tracks_of_samples(seed, tmp_path, monkeypatch):
         assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks_of(
             SPEC, requirement, changes_of(SPEC, list(recording))
         )
+
+
+def test_many_numbers_are_drawn_by_their_extremes():
+    """A peak of one row among a hundred thousand is seen, and so is a row that is not known."""
+    import numpy as np
+
+    count = 100_000
+    values, hidden = np.zeros(count), np.zeros(count, bool)
+    values[12_345], values[54_321], hidden[70_000] = 9.0, -9.0, True
+    values[hidden] = np.nan
+    course = Course(np.arange(count) * 1000, values, hidden)
+    drawn = course.outlined(PLACES)
+    assert len(drawn) < 4 * PLACES + 10
+    assert {9.0, -9.0, None} <= {value for _, value in drawn}
+    assert [t for t, _ in drawn] == sorted(t for t, _ in drawn)
+    assert course[:5].outlined(PLACES) == (
+        (0, 0.0),
+        (1000, 0.0),
+        (2000, 0.0),
+        (3000, 0.0),
+        (4000, 0.0),
+    )

@@ -1,0 +1,231 @@
+"""What signals and events of a recording changed to, and when: in columns where they came so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, overload
+
+from rvmon.readers.coalesce import updates_in
+from rvmon.readers.held import HeldRecording
+from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.trace.sample import Sample, Scalar, Value
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.readers.batch import Batch, Cells
+
+_DENSE = 8
+"""More changes than so many a place are drawn by their extremes."""
+
+
+class Course(Sequence[tuple[int, Scalar]]):
+    """Changes as columns; each is made as it is asked for.
+
+    Args:
+        times: int64[n] ticks.
+        values: of n numbers, truths or texts.
+        hidden: bool[n], where it became unknown.
+    """
+
+    def __init__(self, times: NDArray[Any], values: NDArray[Any], hidden: NDArray[Any]) -> None:
+        self._columns = times, values, hidden
+
+    def __len__(self) -> int:
+        return len(self._columns[0])
+
+    @overload
+    def __getitem__(self, place: int) -> tuple[int, Scalar]: ...
+    @overload
+    def __getitem__(self, place: slice) -> Course: ...
+    def __getitem__(self, place: int | slice) -> tuple[int, Scalar] | Course:
+        times, values, hidden = self._columns
+        if isinstance(place, slice):
+            return Course(times[place], values[place], hidden[place])
+        value = values[place]
+        known: Scalar = value.item() if hasattr(value, "item") else value
+        return int(times[place]), None if hidden[place] else known
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def shifted(self, ticks: int) -> Course:
+        """The same so much later."""
+        times, values, hidden = self._columns
+        return Course(times + ticks, values, hidden)
+
+    def behind(self, instant: int) -> int:
+        """How many of them are not after an instant."""
+        return int(self._columns[0].searchsorted(instant, "right"))
+
+    @property
+    def has_unknown(self) -> bool:
+        """Whether one is to the unknown."""
+        return bool(self._columns[2].any())
+
+    def outlined(self, places: int) -> Course:
+        """Of many numbers the first, the last and the extremes in each of so many equal stretches.
+
+        Where it becomes unknown, or known again, nothing is left out.
+        """
+        import numpy as np
+
+        times, values, hidden = self._columns
+        if len(times) <= _DENSE * places:
+            return self
+        edges = np.linspace(float(times[0]), float(times[-1]), places + 1)
+        bounds = [0, *np.searchsorted(times, edges[1:-1]).tolist(), len(times)]
+        kept = {0, len(times) - 1}
+        lows, highs = np.where(hidden, np.inf, values), np.where(hidden, -np.inf, values)
+        for start, stop in pairwise(bounds):
+            if start < stop:
+                low, high = int(lows[start:stop].argmin()), int(highs[start:stop].argmax())
+                kept |= {start, start + low, start + high, stop - 1}
+        turns = np.flatnonzero(hidden[1:] != hidden[:-1])
+        rows = np.array(sorted({*kept, *turns.tolist(), *(turns + 1).tolist()}))
+        return Course(times[rows], values[rows], hidden[rows])
+
+
+def shifted(changes: Sequence[tuple[int, Scalar]], ticks: int) -> Sequence[tuple[int, Scalar]]:
+    """Changes so much later."""
+    if isinstance(changes, Course):
+        return changes.shifted(ticks)
+    return tuple((t + ticks, value) for t, value in changes)
+
+
+def changes_of(
+    spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
+) -> Mapping[str, Changes]:
+    """By name what each signal and event of a run changed to, whichever requirements read it."""
+    found = {name: Changes(signal.stale_after) for name, signal in spec.signals.items()}
+    found |= {name: Changes(None) for name in spec.events}
+    ignoring = spec.ignoring
+    for piece in samples.pieces if isinstance(samples, HeldRecording) else samples:
+        if isinstance(piece, Sample):
+            for name, value in updates_in(piece.values, ignoring).items():
+                if name in found:
+                    found[name].add(piece.t, value, is_signal=name in spec.signals)
+        else:
+            for name, cells in piece.signals.items():
+                found[name].add_cells(piece, cells)
+            for name, events in piece.events.items():
+                found[name].add_occurrences(piece.times, events.says)
+    return found
+
+
+class Changes:
+    """What a name changed to, and when.
+
+    Args:
+        stale_after: from when on a value counts as unknown, ticks behind its last update.
+    """
+
+    def __init__(self, stale_after: int | None) -> None:
+        self._stale_after = stale_after
+        self._last: int | None = None
+        self._known: Scalar = None
+        self._found: list[tuple[int, Scalar]] = []
+        self._columns: list[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]] = []
+
+    def add(self, t: int, value: Value, *, is_signal: bool) -> None:
+        """Add an update."""
+        if is_signal:
+            self._add_value(t, _known(value))
+        elif value is not False:
+            self._found.append((t, None if value is None else True))
+
+    def _add_value(self, t: int, known: Scalar) -> None:
+        self._grow_stale(t)
+        if self._last is None or self._known != known:
+            self._found.append((t, known))
+        self._last, self._known = t, known
+
+    def _grow_stale(self, t: int | None) -> None:
+        """See whether the value is stale before an instant, or the end."""
+        if self._stale_after is None or self._last is None or self._known is None:
+            return
+        stale_at = self._last + self._stale_after + 1
+        if t is None or t > stale_at:
+            self._found.append((stale_at, None))
+            self._known = None
+
+    def add_cells(self, batch: Batch, cells: Cells) -> None:
+        """Add what rows say of a signal."""
+        import numpy as np
+
+        from rvmon.readers.batch_notes import last_said, unknown_in
+
+        rows = last_said(batch, cells)
+        if not len(rows):
+            return
+        times, values = batch.times[rows], cells.values[rows]
+        if cells.labels is not None:
+            values = np.array(cells.labels, object)[values]
+        unknown = unknown_in(cells)
+        hidden = np.zeros(len(rows), bool) if unknown is None else unknown[rows]
+        self._add_value(int(times[0]), None if hidden[0] else _plain(values[0]))
+        differs = (values[1:] != values[:-1]) & ~(hidden[1:] & hidden[:-1])
+        differs |= hidden[1:] != hidden[:-1]
+        if self._stale_after is not None:
+            aged = (np.diff(times) > self._stale_after + 1) & ~hidden[:-1]
+            differs = np.where(aged, ~hidden[1:], differs)
+        else:
+            aged = np.zeros(len(times) - 1, bool)
+        # In the order of rows: where a value becomes stale before the next, that stands before it.
+        kept = np.flatnonzero(differs) + 1
+        gone = np.flatnonzero(aged)
+        order = np.argsort(np.concatenate([2 * kept, 2 * gone + 1]), kind="stable")
+        told = np.concatenate([times[kept], times[gone] + (self._stale_after or 0) + 1])
+        column = told[order], np.concatenate([values[kept], values[gone]])[order]
+        self._settle()
+        self._columns.append((*column, np.concatenate([hidden[kept], aged[gone]])[order]))
+        self._last = int(times[-1])
+        self._known = None if hidden[-1] else _plain(values[-1])
+
+    def add_occurrences(self, times: NDArray[Any], says: NDArray[Any]) -> None:
+        """Add what rows say of an event: of one instant the surest."""
+        from rvmon.readers.batch import UNKNOWN, YES
+
+        may = (says == UNKNOWN) | (says == YES)
+        found: dict[int, Scalar] = {}
+        for t, said in zip(times[may].tolist(), says[may].tolist(), strict=True):
+            found[t] = True if said == YES else found.get(t)
+        self._found += found.items()
+
+    def _settle(self) -> None:
+        """Put what was added one by one into columns."""
+        import numpy as np
+
+        if self._found:
+            times, values = zip(*self._found, strict=True)
+            hidden = np.array([value is None for value in values])
+            shown = [0 if value is None else value for value in values]
+            texts = any(isinstance(value, str) for value in values)
+            column = np.array(shown, object if texts else None)
+            self._columns.append((np.array(times, np.int64), column, hidden))
+            self._found = []
+
+    def ended(self) -> Sequence[tuple[int, Scalar]]:
+        """All of them: of a signal its changes, of an event where it may have occurred."""
+        self._grow_stale(None)
+        if not self._columns:
+            return tuple(self._found)
+        import numpy as np
+
+        self._settle()
+        return Course(*map(np.concatenate, zip(*self._columns, strict=True)))
+
+
+def _plain(value: Any) -> Scalar:
+    found: Scalar = value.item() if hasattr(value, "item") else value
+    return found
+
+
+def _known(value: Value) -> Scalar:
+    """A signal's value, `None` for what counts as unknown."""
+    if isinstance(value, float) and value != value:  # NaN
+        return None
+    return value if isinstance(value, bool | int | float | str) else None
