@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rvmon.coverage.model import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics.diagnostic import Diagnostic
+    from rvmon.explain.truths import Plans
     from rvmon.monitor import CompiledSpec, Monitor
     from rvmon.monitor.robustness import Margins, RobustnessMonitor
     from rvmon.readers.source import Reading, ReadingArguments, SchemaArguments, Source
@@ -93,6 +94,11 @@ class Spec:
         from rvmon.monitor.compiled.specification import CompiledSpec
 
         return CompiledSpec(self.checked, is_kept=True)
+
+    @cached_property
+    def plans_of_truths(self) -> Plans:
+        """What was made to look recordings through; see `rvmon.explain.truths.look_through`."""
+        return {}
 
     def monitor(
         self,

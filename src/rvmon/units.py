@@ -119,6 +119,7 @@ def _add_prefixed(table: dict[str, Unit], symbol: str) -> None:
         table.setdefault(name, Unit(name, unit.dimension, unit.factor * factor))
 
 
+@cache
 def parse_unit(text: str) -> Unit:
     """Read a unit such as `m/s`, `kg*m^2`, `1/s`.
 

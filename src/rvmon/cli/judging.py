@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.output import bar, shown_while_reading
-from rvmon.cli.post_analysis import post_analysis
+from rvmon.cli.post_analysis import Remembered, post_analysis
 from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.diagnostics.shown import shown_path
 from rvmon.errors import TraceError, WorkerLostError
@@ -215,6 +215,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         is_alone: whether this process judges nothing else.
     """
     before: list[Attempt] = []
+    remembered = Remembered()
     began = time.monotonic()
     try:
         if trace.endswith((".csv", ".parquet")) and not can_be_read_again(trace):
@@ -230,12 +231,13 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         )
         end = recording.end if options.until is None else ticks_of_seconds(options.until)
         beside = RecordingCoverage(spec, options, trace, recording.names, end)
+        show = partial(shown_while_reading, recording) if is_alone else iter
         source = Source(
             recording,
             end,
             is_cut=True,
             read=iter if beside.is_idle else beside.reading,
-            shown=partial(shown_while_reading, recording) if is_alone else iter,
+            shown=lambda found: remembered.passing(show(found)),
         )
         report = spec.judge(
             source, only=options.only, decided=before.extend, robustness=options.robustness
@@ -248,7 +250,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         place = "" if trace in message else f"{trace}: "
         return Judged(shown_path(trace), None, tuple(before), place + message)
     report = post_analysis(
-        spec, recording, report, goals=options.only is None, explains=options.explains
+        spec, recording, remembered, report, goals=options.only is None, explains=options.explains
     )
     trace = shown_path(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -23,6 +23,36 @@ if TYPE_CHECKING:
     from rvmon.verdict.attempt import Attempt
     from rvmon.verdict.report import Report
 
+MOST_HELD = 65_536
+"""Of a recording with more rows nothing is remembered: it is read once more."""
+
+
+class Remembered:
+    """The pieces of a recording as they were read, if they are few."""
+
+    def __init__(self) -> None:
+        self._pieces: list[Batch | Sample] = []
+        self._left = MOST_HELD
+
+    def passing(self, found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
+        """What is read, unchanged."""
+        for piece in found:
+            self._left -= 1 if isinstance(piece, Sample) else len(piece.times)
+            if self._left >= 0:
+                self._pieces.append(piece)
+            yield piece
+
+    def until(self, end: int) -> list[Batch | Sample] | None:
+        """What was read of it up to an instant; `None`: there was more than is remembered."""
+        if self._left < 0:
+            return None
+        return [
+            piece if isinstance(piece, Sample) else piece.up_to(end)
+            for piece in self._pieces
+            if not isinstance(piece, Sample) or piece.t <= end
+        ]
+
+
 MOST_LATE = 1000
 """Failures of a requirement of which it is looked up whether what they awaited came late."""
 
@@ -31,7 +61,13 @@ MOST_LATE_IN_ALL = 10_000
 
 
 def post_analysis(
-    spec: Spec, recording: FileRecording, report: Report, *, goals: bool, explains: bool = True
+    spec: Spec,
+    recording: FileRecording,
+    remembered: Remembered,
+    report: Report,
+    *,
+    goals: bool,
+    explains: bool = True,
 ) -> Report:
     """The report with the cover goals, and with what only the whole recording shows, if asked.
 
@@ -57,8 +93,9 @@ def post_analysis(
 
     questions = [question for _, waits in late.values() for question in waits.values()]
     questions += [parts_asked(spec.requirements[name]) for name in silent]
-    pieces = _read_again(spec, recording, questions, end)
-    seen = look_through(spec.checked, questions, pieces, end, names)
+    held = remembered.until(end)
+    pieces = _read_again(spec, recording, questions, end) if held is None else held
+    seen = look_through(spec.checked, questions, pieces, end, names, spec.plans_of_truths)
     arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
     misses = {name: miss_in(spec.checked, spec.requirements[name], seen) for name in silent}
     return replace(

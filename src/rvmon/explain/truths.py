@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, assert_never
 from rvmon.formula.core import Core
 from rvmon.formula.core_form import Lowering
 from rvmon.formula.factory import Factory
-from rvmon.monitor.core.watching import TruthsRun
+from rvmon.monitor.core.watching import TruthsPlan, TruthsRun
 from rvmon.readers.coalesce import Conflicts, coalesce
 from rvmon.readers.held import HeldRecording
 from rvmon.spec.checked.formula import Amount, Binary, Bound, BoundAtom, Formula, Unary, UnaryOp
@@ -132,6 +132,7 @@ def look_through(
     pieces: Iterable[Batch | Sample],
     end: int,
     names: frozenset[str] | None = None,
+    plans: Plans | None = None,
 ) -> Seen:
     """Find where formulas are true in a recording, which is read once.
 
@@ -141,6 +142,8 @@ def look_through(
         pieces: the recording, in order.
         end: its last instant, ticks.
         names: the signals and events that have a source; `None`: all.
+        plans: what was made for the same questions about other recordings; what is made now is
+            added.
 
     Cost: one pass in C for each `Question.whose`. Memory grows with how often the truths change,
     in sampled time with the number of samples.
@@ -150,7 +153,7 @@ def look_through(
         if question.whose not in groups:
             groups[question.whose] = _Group(spec, question)
         groups[question.whose].add(question.formulas)
-    runs = [run for one in groups.values() if (run := one.begun(names)) is not None]
+    runs = [one for one in groups.values() if one.begin(names, plans)]
     begin: int | None = None
     instants = array("q")
     valueless = set(spec.signals)
@@ -170,33 +173,56 @@ def look_through(
     return Seen(names, begin, end, positions, frozenset(valueless), truths)
 
 
+class _Plan:
+    """Formulas that are looked at in the same way, made ready.
+
+    Attributes:
+        cores: by their texts; `None`: it is not known while a trace lasts, as where that ends.
+        order: those that there are.
+        plan: for the core; `None`: there is nothing to look for.
+    """
+
+    def __init__(
+        self, spec: CheckedSpec, question: Question, formulas: Mapping[str, Formula]
+    ) -> None:
+        lowering = Lowering(Factory(), spec.period, False)
+        self.cores = {
+            text: None if formula == BoundAtom(Bound.END) else lowering.core(formula, True)
+            for text, formula in formulas.items()
+        }
+        self.order = list(dict.fromkeys(core for core in self.cores.values() if core is not None))
+        self.plan = TruthsPlan(spec, self.order, question.captured) if self.order else None
+
+
+Plans = dict[tuple[str, ...], _Plan]
+"""By the texts of formulas that belong to no instance and read no captured value."""
+
+
 class _Group:
-    """Formulas that are looked at in the same way."""
+    """Formulas that are looked at in the same way, in one recording."""
 
     def __init__(self, spec: CheckedSpec, question: Question) -> None:
         self._spec = spec
         self._question = question
-        self._lowering = Lowering(Factory(), spec.period, False)
-        self._cores: dict[str, Core | None] = {}
-        self._order: list[Core] = []
+        self._formulas: dict[str, Formula] = {}
+        self._made: _Plan | None = None
         self._run: TruthsRun | None = None
 
     def add(self, formulas: Iterable[Formula]) -> None:
         """Look for these, too."""
-        for formula in formulas:
-            text = format_formula(formula)
-            if text not in self._cores:
-                # Where a trace ends is not known while it lasts.
-                at_end = formula == BoundAtom(Bound.END)
-                self._cores[text] = None if at_end else self._lowering.core(formula, True)
+        self._formulas |= {format_formula(formula): formula for formula in formulas}
 
-    def begun(self, names: frozenset[str] | None) -> _Group | None:
-        """This, ready to look; `None`: there is nothing to look for."""
-        self._order = list(dict.fromkeys(core for core in self._cores.values() if core is not None))
-        if not self._order:
-            return None
-        self._run = TruthsRun(self._spec, self._order, names, self._question.captured)
-        return self
+    def begin(self, names: frozenset[str] | None, plans: Plans | None) -> bool:
+        """Be ready to look; false: there is nothing to look for."""
+        if plans is None or self._question.for_each is not None or self._question.captured:
+            plans = {}
+        key = tuple(self._formulas)
+        if key not in plans:
+            plans[key] = _Plan(self._spec, self._question, self._formulas)
+        self._made = plans[key]
+        if self._made.plan is not None:
+            self._run = TruthsRun(self._made.plan, names)
+        return self._run is not None
 
     def take(self, piece: Batch | Sample) -> None:
         """Look at what comes next."""
@@ -215,13 +241,14 @@ class _Group:
 
     def truths(self, ticks: _Ticks) -> dict[str, Truth]:
         """By text of the formula; the recording is over."""
+        assert self._made is not None  # noqa: S101 - it began
         known = [] if self._run is None else self._run.known(ticks.end)
         found: dict[Core | None, Truth] = {
             core: Truth(ticks.spans(one.true), ticks.others(one.false))
-            for core, one in zip(self._order, known, strict=True)
+            for core, one in zip(self._made.order, known, strict=True)
         }
         found[None] = Truth((), ticks.others(()))
-        return {text: found[core] for text, core in self._cores.items()}
+        return {text: found[core] for text, core in self._made.cores.items()}
 
 
 def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:

@@ -101,8 +101,10 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
 
 
-def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
-    """However many failed or were silent, a file is read once more."""
+@pytest.mark.parametrize(("held", "times"), [(10, 1), (90, 0)])
+def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, held, times):
+    """However many failed or were silent, a file is read once more; a small one is remembered."""
+    monkeypatch.setattr(post_analysis, "MOST_HELD", held)
     pairs = range(6)
     text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
     for n in range(30):
@@ -123,7 +125,7 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch):
         lambda *given, **more: opened.append(given) or begin(*given, **more),
     )
     report = judge(rvmon.loads(text), str(path), Options()).report
-    assert len(opened) == 1
+    assert len(opened) == times
     assert {name: dict(found) for name, found in report.late.items()} == {
         f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
     }

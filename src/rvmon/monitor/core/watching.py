@@ -41,33 +41,41 @@ class Known:
     false: Positions
 
 
-class TruthsRun:
-    """Follows where formulas are known while a recording is read.
+class TruthsPlan:
+    """Formulas made ready for the core, for any number of recordings.
 
     Args:
         spec: the specification.
-        formulas: may speak of the future; what the recording ends too early for is not known.
-        names: the signals and events that have a source; `None`: all.
+        formulas: may speak of the future; what a recording ends too early for is not known.
         captured: the values that the formulas read as captured.
     """
 
     def __init__(
-        self,
-        spec: CheckedSpec,
-        formulas: Sequence[Core],
-        names: frozenset[str] | None,
-        captured: Mapping[str, Scalar],
+        self, spec: CheckedSpec, formulas: Sequence[Core], captured: Mapping[str, Scalar]
     ) -> None:
         plan = plan_of_truths(spec, formulas, captured)
-        self._spec = spec
-        self._formulas = formulas
+        self.spec = spec
+        self.planned = planned_as(spec, (), Kept(pack(plan).data))
+        self.read = plan.graph.by_name
+        places = plan_of_all(formulas, plan.gap).places
+        self.places = [places[core] for core in formulas]
+
+
+class TruthsRun:
+    """Follows where formulas are known while a recording is read.
+
+    Args:
+        plan: of the formulas.
+        names: the signals and events that have a source; `None`: all.
+    """
+
+    def __init__(self, plan: TruthsPlan, names: frozenset[str] | None) -> None:
+        self._plan = plan
         self._names = names
-        self._read = plan.graph.by_name
-        self._gap = plan.gap
-        self._planned = planned_as(spec, (), Kept(pack(plan).data))
-        declared = frozenset(self._planned.numbers)
-        self._run = self._planned.monitor(frozenset() if names is None else declared - names)
-        self._validator = Validator(spec, None if names is None else names & declared, frozenset())
+        declared = frozenset(plan.planned.numbers)
+        self._run = plan.planned.monitor(frozenset() if names is None else declared - names)
+        known = None if names is None else names & declared
+        self._validator = Validator(plan.spec, known, frozenset())
 
     def take(self, piece: Batch | Sample) -> None:
         """Take what comes next; what the specification does not declare is passed over."""
@@ -77,10 +85,12 @@ class TruthsRun:
         t, values = piece.t, piece.values
         if self._run.judge(t, values, False):
             return
-        read = {name: values[name] for name in self._read if name in values}
+        read = {name: values[name] for name in self._plan.read if name in values}
         if self._run.judge(t, read, False):
             return
-        if not self._run.judge(t, self._planned.plain(t, self._validator.check(t, read)), True):
+        if not self._run.judge(
+            t, self._plan.planned.plain(t, self._validator.check(t, read)), True
+        ):
             raise ValueError("the core does not take a sample that was checked")
 
     @cached_property
@@ -88,17 +98,16 @@ class TruthsRun:
         from rvmon.monitor.core.recording import RecordingRun  # which imports NumPy
 
         source = Source(Trace((), self._names))
-        made = RecordingRun(self._spec, self._planned, source, finds=False)
+        made = RecordingRun(self._plan.spec, self._plan.planned, source, finds=False)
         made.core = self._run
         return made
 
     def known(self, end: int) -> list[Known]:
         """Where each formula is known, at all positions; the recording ends (ticks)."""
         self._run.finish(end)
-        places = plan_of_all(self._formulas, self._gap).places
         return [
-            Known(*(tuple(_ranges(one)) for one in self._run.truths(places[core])))
-            for core in self._formulas
+            Known(*(tuple(_ranges(one)) for one in self._run.truths(place)))
+            for place in self._plan.places
         ]
 
 
@@ -122,7 +131,7 @@ def known_truths(
 
     Cost: one pass over the samples in C.
     """
-    run = TruthsRun(spec, formulas, names, captured)
+    run = TruthsRun(TruthsPlan(spec, formulas, captured), names)
     for sample in samples:
         run.take(sample)
     return run.known(end)
