@@ -129,7 +129,11 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
     for (robot, _), rows in groupby(matrix, key=lambda one: (one.robot, one.requirement)):
         sections.setdefault(robot, []).append(_row(list(rows)))
     known = [(name, fact) for name, fact in facts.items() if fact]
-    return render("matrix.html", title=title, facts=known, sections=sections).encode("utf-8")
+    counted = "Recordings, or tests"
+    if any(one.planted_fault for one in matrix):
+        counted += ", without a planted fault"
+    page = render("matrix.html", title=title, facts=known, sections=sections, counted=counted)
+    return page.encode("utf-8")
 
 
 class _Lines(NamedTuple):

@@ -54,6 +54,7 @@ class RunPage:
         facts: more about the run, as pairs of name and value.
         scene: what the robot did, if it is known.
         back: address of the page that links here.
+        back_to: what that page lists.
     """
 
     run: JudgedRun
@@ -63,6 +64,7 @@ class RunPage:
     facts: Sequence[tuple[str, Child]] = ()
     scene: Scene | None = None
     back: str = ""
+    back_to: str = "all tests"
 
 
 @dataclass(frozen=True, slots=True)

@@ -120,6 +120,7 @@ def run_page(content: RunPage) -> str:
         run=content.run,
         report=report,
         back=content.back,
+        back_to=content.back_to,
         rows=_rows(report, panels, view),
         axis=axis_row(view, report.origin),
         cut=cut,

@@ -203,6 +203,7 @@ def write_run_pages(
                 ("specification", f"{spec.name}, law {report.law}"),
             ),
             back=INDEX if several else "",
+            back_to="all recordings",
         )
         path = folder / name
         write_whole(path, run_page(content))

@@ -282,3 +282,4 @@ def test_the_page_needs_nothing_but_itself(base):
         page = packed.read("matrix.html").decode()
     assert not re.search(r"(src|href)=\"(?!#)", page)
     assert "2 ✓ passed" in page
+    assert "planted" not in page

@@ -184,6 +184,7 @@ def test_what_fails_stands_first_in_the_list_of_recordings(folder):
     assert places == sorted(places)
     assert "cannot be evaluated: " in index
     assert 'href="bad.html#R1"' in index
+    assert "← all recordings" in (folder / "pages" / "bad.html").read_text()
     assert 'class="filters" hidden="hidden"' in index
 
 
